@@ -6,6 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use cable_tests::without_unit_tests;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -143,7 +145,7 @@ fn modules(source: &Path) -> BTreeMap<String, String> {
         }
         let text = std::fs::read_to_string(path).expect("a source");
         // What may see an item is no import.
-        let text = text.split("#[cfg(test)]\n").next().unwrap_or_default().replace("pub(in crate::", "pub(in ");
+        let text = without_unit_tests(&text).replace("pub(in crate::", "pub(in ");
         let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
         found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
     }
@@ -297,6 +299,70 @@ fn the_core_imports_one_way() {
         assert!(in_loops(&wings).is_empty(), "`{below}`: these import each other in a loop: {:?}", in_loops(&wings));
     }
     assert!(in_loops(&files).len() <= 5, "{:?}", in_loops(&files));
+}
+
+/// Only the folder of the models knows which model it has: others ask for a capability, a label or
+/// a rank.
+#[test]
+fn nothing_outside_the_models_asks_for_a_kind() {
+    let kinds = ["Catenary", "Spans", "Fem", "MassSpring", "External"].map(|kind| format!("Model::{kind}"));
+    // The most capable model is named by what it can do.
+    let compares = |code: &str, sign: &str| code.split(sign).skip(1).any(|after| !after.starts_with("MOST_CAPABLE"));
+    let mut found = Vec::new();
+    for name in ["cable-core", "cable-viewer", "cable-cli"] {
+        let modules = modules(&root().join("crates").join(name).join("src"));
+        // The gallery draws one scene by a model that it names.
+        let may = |module: &str| {
+            module.starts_with("model::") || ["model_id", "app::documentation_pictures"].contains(&module)
+        };
+        for (module, code) in modules.iter().filter(|(module, _)| !may(module)) {
+            let signs = ["== Model::", "!= Model::", "matches!(model, Model::"];
+            if signs.iter().any(|sign| compares(code, sign)) || kinds.iter().any(|kind| code.contains(kind)) {
+                found.push(format!("{name}: {module}"));
+            }
+        }
+    }
+    assert!(found.is_empty(), "these ask which model they have: {found:#?}");
+}
+
+/// Fields have words for names; only two files keep the symbols of the derivation at their head.
+#[test]
+fn fields_have_words_for_names() {
+    let mut found = Vec::new();
+    for name in ["cable-core", "cable-viewer", "cable-cli", "cable-linalg"] {
+        for file in files_below(&root().join("crates").join(name).join("src")) {
+            let symbols = ["catenary/kernel.rs", "boundary/arc.rs"].iter().any(|end| file.ends_with(end));
+            if symbols || file.to_string_lossy().contains("tests") {
+                continue;
+            }
+            let code = without_unit_tests(&std::fs::read_to_string(&file).expect("a source"));
+            for body in code.split("struct ").skip(1).filter_map(|rest| rest.split("\n}").next()) {
+                let has_fields = body.lines().next().is_some_and(|line| line.ends_with('{'));
+                let fields = body.lines().skip(1).filter(|line| has_fields && !line.trim_start().starts_with("//"));
+                let named = fields.filter_map(|line| line.split_once(": ")?.0.rsplit(' ').next());
+                found.extend(named.filter(|n| n.chars().count() == 1).map(|n| format!("{}: {n}", file.display())));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+/// Every module of the core stands in the order that its front page gives, and imports from earlier
+/// steps alone.
+#[test]
+fn the_core_imports_in_the_order_of_its_front_page() {
+    let page = read("crates/cable-core/src/lib.rs");
+    let doc: String = page.lines().map_while(|line| line.strip_prefix("//!")).collect();
+    let order = doc.split("each other: `").nth(1).and_then(|rest| rest.split('`').next()).expect("an order");
+    let steps: Vec<Vec<&str>> = order.split('→').map(|step| step.split(',').map(str::trim).collect()).collect();
+    let step_of = |module: &str| steps.iter().position(|step| step.contains(&module));
+    let mut wrong = Vec::new();
+    for (module, targets) in wings_of(&files_of("cable-core"), "") {
+        let own = step_of(&module);
+        assert!(own.is_some(), "`{module}` is not in the order");
+        wrong.extend(targets.iter().filter(|t| step_of(t) >= own).map(|t| format!("{module} imports from {t}")));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 /// A module is reached by following imports from itself.

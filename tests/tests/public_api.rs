@@ -11,6 +11,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use cable_tests::without_unit_tests;
+
 /// The file of a module below a folder.
 fn file_of(folder: &Path, name: &str) -> Option<PathBuf> {
     let own = folder.join(format!("{name}.rs"));
@@ -81,9 +83,9 @@ fn list_of_room(module: &str, room: &str, names: &[String], folder: &Path, out: 
 /// Public items of a module and of the public modules inside it. Items begin a line; methods are
 /// indented once.
 fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
-    let text = one_line_a_use(&std::fs::read_to_string(file).expect("a source"));
+    let text = one_line_a_use(&without_unit_tests(&std::fs::read_to_string(file).expect("a source")));
     let mut owner = String::new();
-    for line in text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default().lines() {
+    for line in text.lines() {
         if line.starts_with("impl") {
             // `impl<T> Trait for Type {` and `impl Type {`: the last word that begins with a
             // capital is the type.

@@ -2,7 +2,7 @@
 //! against the core, each with an identity that does not use the solver.
 //!
 //! Tolerance: 1e-9 of the case's largest force or length; 1e-8 for stiff spans within 0.1 % of
-//! taut, whose digits double precision loses to L − chord (data/README says 4 to 5 of them).
+//! taut, whose digits double precision loses to L − chord: 4 to 5 of them.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -20,6 +20,8 @@ pub enum Failure {
     Table(PathBuf, WriteError),
     /// No answer.
     Solve(Box<SolveError>),
+    /// An error of a kind that is newer than this program.
+    Other(Error),
     /// A solver handed back a number that is not finite.
     NonFinite(String),
     /// A run ended early.
@@ -46,7 +48,7 @@ impl Failure {
             Self::File(e) if e.is_of_writing() => 74,
             Self::Table(_, WriteError::Io { .. }) | Self::Stdout(_) => 74,
             Self::File(_) => 2,
-            Self::Table(..) | Self::Solve(_) | Self::NonFinite(_) | Self::Run { .. } => 1,
+            Self::Table(..) | Self::Solve(_) | Self::NonFinite(_) | Self::Run { .. } | Self::Other(_) => 1,
             Self::AlreadyEnded | Self::Signals(_) | Self::Thread(_) => 1,
             Self::Interrupted(signal, _) => signal.exit_code(),
         }
@@ -58,6 +60,7 @@ impl Failure {
             Error::Scene(e) => Self::Scene(scene.to_owned(), Box::new(e)),
             Error::Solve(e) => Self::Solve(Box::new(e)),
             Error::File(e) => Self::File(e),
+            other => Self::Other(other),
         }
     }
 }
@@ -69,6 +72,7 @@ impl std::fmt::Display for Failure {
             Self::File(e) => write!(f, "{e}"),
             Self::Table(folder, e) => write!(f, "cannot write {}/{e}", folder.display()),
             Self::Solve(e) => write!(f, "{e}"),
+            Self::Other(e) => write!(f, "{e}"),
             Self::NonFinite(what) => write!(f, "no answer: {what} is not finite"),
             Self::Run { reached_s, out, error } => {
                 write!(f, "the run ended at {reached_s:.6} s: {error}; what was reached is in {}", out.display())

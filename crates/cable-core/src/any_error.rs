@@ -10,6 +10,7 @@ use crate::wording::{Sentence, serialize_in_si};
 
 /// Anything the three-line user can meet.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The scene cannot be read or is not a scene that can be solved.
     #[error(transparent)]

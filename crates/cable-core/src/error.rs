@@ -40,6 +40,7 @@ pub struct TextPosition {
 
 /// The fault with a scene.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SceneFault {
     /// Not TOML.
     Syntax {
@@ -260,6 +261,7 @@ pub enum NearKind {
 
 /// The reason why a model has no answer.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum SolveError {
     /// The iteration did not converge.
     NotConverged {

@@ -20,11 +20,11 @@
 //! | angle in files | ° |
 //! | time | s |
 //!
-//! Dependencies between the modules point one way, without a loop:
-//! `math, numerics, model_id, units → verification → error → solution → scene → contact, catenary,
-//! energy → problem → state → model → breakage, warnings, verify
-//! → simulation → timeline, analysis, summary, conformance`, and
-//! `record → files → wording → any_error` beside them, before `simulation`.
+//! Dependencies between the modules point one way, as a test checks; those of one step do not know
+//! each other:
+//! `math, numerics, model_id, units → energy, verification → error → catenary, scene, solution
+//! → contact, kinematics, robot → problem, state → model, record, verify → breakage, files
+//! → warnings, wording → any_error → simulation → analysis, conformance, summary, timeline`.
 
 pub mod analysis;
 mod any_error;
@@ -66,3 +66,8 @@ pub use simulation::Simulation;
 pub use solution::{ErrorEstimates, Solution, Warning};
 pub use state::State;
 pub use units::UnitSystem;
+
+/// The code of the README runs as a test of the documents.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 /// The models a user can ask for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Model {
     /// The cheapest model that can answer.
     #[default]

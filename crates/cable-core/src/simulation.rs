@@ -93,7 +93,7 @@ struct Choice {
     reason: ModelReason,
 }
 
-/// The series of instants that an instant belongs to.
+/// The place of an instant in a run: it begins one or continues one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RunPhase {
     /// The cables rest, and a run begins here.
@@ -127,7 +127,7 @@ impl Simulation {
     /// As [`Self::new`].
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
-        if model != Model::Auto {
+        if !model.is_automatic() {
             let source = ModelSource::Registered(model);
             return Self::from_choice(
                 scene,
@@ -330,7 +330,7 @@ impl Simulation {
         }
         found?;
         self.warn_not_unique();
-        if self.requested == Model::Auto && self.settings.histories {
+        if self.requested.is_automatic() && self.settings.histories {
             let problems = self.cables.iter().map(BreakableCable::problem);
             let cables = problems.zip(&self.answers).filter(|_| self.time_s() == 0.0);
             self.next_cheaper = next_cheaper::next_cheaper(cables, self.reason(), self.settings);

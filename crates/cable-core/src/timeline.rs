@@ -91,6 +91,16 @@ pub struct Timeline {
     monitor: RunMonitor,
 }
 
+impl std::fmt::Debug for Timeline {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Timeline")
+            .field("inertia", &self.inertia)
+            .field("step", &self.step)
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Timeline {
     /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or
     /// [`QUASI_STATIC_STEP_S`] where that is None.

@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used)]
 
 use cable_core::contact::distance::cross_properly;
-use cable_core::contact::self_contact_pairs::SelfContact;
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{Model, Settings, Simulation};
@@ -32,7 +31,24 @@ fn own_gap(sim: &Simulation) -> f64 {
     let x: Vec<Vec2> = nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();
     let s: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
     assert!(x.iter().all(|p| p.x.is_finite() && p.y.is_finite()));
-    SelfContact { diameter: sim.scene().cables[0].diameter_m }.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0)
+    smallest_own_gap(&x, &s, sim.scene().cables[0].diameter_m).min(1.0)
+}
+
+/// Smallest distance of a cable of a diameter from itself by brute force, m: of each node from each
+/// segment farther along it than a half turn takes.
+fn smallest_own_gap(x: &[Vec2], arc: &[f64], diameter: f64) -> f64 {
+    let mut least = f64::INFINITY;
+    for (e, ends) in x.windows(2).enumerate() {
+        let chord = ends[1] - ends[0];
+        for (p, at) in x.iter().enumerate() {
+            let between = if p <= e { arc[e] - arc[p] } else { arc[p] - arc[e + 1] };
+            let fraction = ((at - ends[0]).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0);
+            if between >= 2.4 * diameter {
+                least = least.min((at - ends[0] - chord * fraction).norm() - diameter);
+            }
+        }
+    }
+    least
 }
 
 fn top(sim: &Simulation) -> f64 {

@@ -82,6 +82,7 @@ impl Verdict {
             SolveError::TooMuchWork { .. } => "too much work",
             SolveError::Neither { .. } => "no model",
             SolveError::Unsound { .. } => "not sound",
+            _ => "another error",
         })
     }
 }

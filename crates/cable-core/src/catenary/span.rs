@@ -87,7 +87,7 @@ pub struct Catenary {
     span: Span,
     frame: Frame,
     /// Force at the start in the frame, N.
-    h: f64,
+    horizontal: f64,
     va: f64,
     iterations: usize,
 }
@@ -141,7 +141,7 @@ impl Catenary {
             }
             (m.h, m.v, m.iterations)
         };
-        Ok(Self { span: *span, frame, h: h * load, va: v * load, iterations })
+        Ok(Self { span: *span, frame, horizontal: h * load, va: v * load, iterations })
     }
 
     /// A straight bar: no load.
@@ -151,7 +151,13 @@ impl Catenary {
         }
         let straight = Span { weight: Vec2::zeros(), ..*span };
         let frame = Frame::new(Vec2::zeros(), span.chord).facing(span.chord);
-        Ok(Self { span: straight, frame, h: span.axial_stiffness * (chord / length - 1.0), va: 0.0, iterations: 0 })
+        Ok(Self {
+            span: straight,
+            frame,
+            horizontal: span.axial_stiffness * (chord / length - 1.0),
+            va: 0.0,
+            iterations: 0,
+        })
     }
 
     /// A cable whose start force (N, pulling along growing arc length) is known, and with it where
@@ -160,7 +166,7 @@ impl Catenary {
     pub fn from_start_force(span: &Span, force: Vec2) -> Self {
         let frame = Frame::new(span.weight, force).facing(force);
         let (h, va) = frame.split(force);
-        let mut c = Self { span: *span, frame, h, va, iterations: 0 };
+        let mut c = Self { span: *span, frame, horizontal: h, va, iterations: 0 };
         c.span.chord = c.position_at(span.length);
         c
     }
@@ -186,7 +192,7 @@ impl Catenary {
     /// length.
     #[must_use]
     pub(crate) fn force_at(&self, s: f64) -> Vec2 {
-        self.frame.join(self.h, self.v(s))
+        self.frame.join(self.horizontal, self.v(s))
     }
 
     /// Force at the start, N: what the cable does to what holds its start.
@@ -204,7 +210,7 @@ impl Catenary {
     /// Tension at s, N.
     #[must_use]
     pub fn tension_at(&self, s: f64) -> f64 {
-        self.h.hypot(self.v(s))
+        self.horizontal.hypot(self.v(s))
     }
 
     /// The greatest tension, N: always at an end.
@@ -217,14 +223,14 @@ impl Catenary {
     /// Position at s from the start, m.
     #[must_use]
     pub fn position_at(&self, s: f64) -> Vec2 {
-        let (x, z) = self.span.piece(s).displacement(self.h, self.va);
+        let (x, z) = self.span.piece(s).displacement(self.horizontal, self.va);
         self.frame.join(x, z)
     }
 
     /// Stretched length up to s, m.
     #[must_use]
     pub fn stretched_to(&self, s: f64) -> f64 {
-        self.span.piece(s).stretched(self.h, self.va)
+        self.span.piece(s).stretched(self.horizontal, self.va)
     }
 
     /// Arc length of the point farthest along the load (the lowest point under weight), m: inside
@@ -254,7 +260,7 @@ impl Catenary {
         let w = self.span.weight.norm();
         let (x, z) = self.frame.split(self.span.chord);
         if w > 0.0 && x > 0.0 {
-            bounded((self.h * z / x - self.va) / w, 0.0, self.span.length)
+            bounded((self.horizontal * z / x - self.va) / w, 0.0, self.span.length)
         } else {
             self.lowest_s()
         }

@@ -61,9 +61,9 @@ pub struct Body {
 #[derive(Clone, Copy, Debug)]
 pub struct Edge {
     /// Start, m.
-    pub p: Vec2,
+    pub from: Vec2,
     /// End, m.
-    pub q: Vec2,
+    pub to: Vec2,
     /// Unit vector from start to end.
     pub tangent: Vec2,
 }
@@ -126,8 +126,8 @@ impl Corner {
 impl Edge {
     /// The edge between two points that are not the same, m.
     #[must_use]
-    pub fn between(p: Vec2, q: Vec2) -> Self {
-        Self { p, q, tangent: (q - p) / (q - p).norm() }
+    pub fn between(from: Vec2, to: Vec2) -> Self {
+        Self { from, to, tangent: (to - from) / (to - from).norm() }
     }
 
     /// Outward unit normal.
@@ -140,7 +140,7 @@ impl Edge {
     /// Length, m.
     #[must_use]
     pub fn length(&self) -> f64 {
-        (self.q - self.p).norm()
+        (self.to - self.from).norm()
     }
 }
 
@@ -160,7 +160,8 @@ impl Body {
             })
         });
         let all = if self.bvh.is_none() { self.edges.as_slice() } else { &[] };
-        let moving = all.iter().enumerate().filter(move |(_, e)| meets(e.p.inf(&e.q), e.p.sup(&e.q))).map(|(k, _)| k);
+        let moving =
+            all.iter().enumerate().filter(move |(_, e)| meets(e.from.inf(&e.to), e.from.sup(&e.to))).map(|(k, _)| k);
         listed.map(|leaf| leaf as usize).filter(|&k| k < self.edges.len()).chain(moving)
     }
 
@@ -171,10 +172,10 @@ impl Body {
         let tangent = |k: usize| self.edges.get(k).map(|e| e.tangent);
         let (before, after, at) = match k {
             _ if n == 0 || k > n || (k == n && self.closed) => return None,
-            0 if self.closed => (tangent(n - 1), tangent(0), self.edges.first()?.p),
-            0 => (None, tangent(0), self.edges.first()?.p),
-            k if k == n => (tangent(n - 1), None, self.edges.last()?.q),
-            k => (tangent(k - 1), tangent(k), self.edges.get(k)?.p),
+            0 if self.closed => (tangent(n - 1), tangent(0), self.edges.first()?.from),
+            0 => (None, tangent(0), self.edges.first()?.from),
+            k if k == n => (tangent(n - 1), None, self.edges.last()?.to),
+            k => (tangent(k - 1), tangent(k), self.edges.get(k)?.from),
         };
         Some(Corner { at, feature: self.first + 2 * k + 1, before, after })
     }
@@ -239,7 +240,7 @@ impl Body {
         }
         let (d, k, f) = self.nearest(p, reach + self.offset)?;
         let e = self.edges[k];
-        let at = e.p + (e.q - e.p) * f;
+        let at = e.from + (e.to - e.from) * f;
         let corner = if f == 0.0 {
             self.corner(k)
         } else if f == 1.0 {
@@ -254,13 +255,13 @@ impl Body {
             Some(Corner { after: None, .. }) if p.x <= at.x => (p - at).dot(&e.normal()).signum(),
             Some(c) if c.is_convex() => 1.0,
             Some(_) => -1.0,
-            None => (p - e.p).dot(&e.normal()).signum(),
+            None => (p - e.from).dot(&e.normal()).signum(),
         };
         // Beside an edge it is the edge's own: at a point on the edge p − at is what rounding left
         // of it.
         let normal = match corner {
             Some(_) => unit_or((p - at) * side, e.normal()),
-            None if self.solid || (p - e.p).dot(&e.normal()) >= 0.0 => e.normal(),
+            None if self.solid || (p - e.from).dot(&e.normal()) >= 0.0 => e.normal(),
             None => -e.normal(),
         };
         let gap = self.gap(corner.map_or(self.first + 2 * k, |c| c.feature), d * side, normal, at);
@@ -284,8 +285,8 @@ impl Body {
         };
         let to_edge = |k: u32, _: f64| {
             let e = self.edges.get(k as usize)?;
-            let f = nearest_fraction(p, e.p, e.q);
-            Some(((p - (e.p + (e.q - e.p) * f)).norm(), f))
+            let f = nearest_fraction(p, e.from, e.to);
+            Some(((p - (e.from + (e.to - e.from) * f)).norm(), f))
         };
         let Some(bvh) = &self.bvh else {
             let of = |k: usize| to_edge(u32::try_from(k).ok()?, 0.0).map(|(d, f)| (d, k, f));
@@ -332,7 +333,7 @@ impl Geometry {
             }
             let first = bodies.last().map_or(0, |b| b.features().end);
             let leaves = edges.iter().map(|e| {
-                let (low, high) = (e.p.inf(&e.q), e.p.sup(&e.q));
+                let (low, high) = (e.from.inf(&e.to), e.from.sup(&e.to));
                 Aabb::new(Vector::new(low.x, low.y), Vector::new(high.x, high.y))
             });
             let bvh = Some(Arc::new(Bvh::from_iter(BvhBuildStrategy::Binned, leaves.enumerate())));

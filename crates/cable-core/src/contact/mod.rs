@@ -2,6 +2,7 @@
 //!
 //! | room | content |
 //! |---|---|
+//! | `gap.rs` | the gap between a cable and one feature of an obstacle |
 //! | `geometry.rs`, `distance.rs` | obstacles as features in search trees; distances |
 //! | `sweep.rs` | continuous collision detection by conservative advancement |
 //! | `pairs.rs`, `neighbour_lists.rs` | contact pairs of a chain; what each segment can come near to |
@@ -18,12 +19,13 @@
 pub(crate) mod barrier;
 pub mod distance;
 pub(crate) mod friction;
+mod gap;
 pub(crate) mod geometry;
 pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
 pub mod outline;
 pub(crate) mod pairs;
-pub mod self_contact_pairs;
+pub(crate) mod self_contact_pairs;
 pub(crate) mod self_crossings;
 pub(crate) mod sweep;
 pub(crate) mod swept_corners;
@@ -33,25 +35,7 @@ mod tests;
 use crate::math::{RigidPose, Vec2};
 use crate::scene::Obstacle;
 
-/// One obstacle feature and where the cable is nearest to it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gap {
-    /// Distance between cable surface and obstacle surface, m; negative = penetration where a sign
-    /// exists.
-    pub gap_m: f64,
-    /// Unit normal, from the obstacle to the cable.
-    pub normal: Vec2,
-    /// Nearest point of the obstacle, m.
-    pub point: Vec2,
-    /// Position of the nearest point along the asked cable segment, 0 to 1 (0 for a point query).
-    pub fraction: f64,
-    /// Coulomb friction coefficient with this cable.
-    pub friction: f64,
-    /// Index of the obstacle in the scene.
-    pub obstacle: usize,
-    /// Index of the feature (edge or circle) in the world.
-    pub feature: usize,
-}
+pub use gap::Gap;
 
 /// The obstacles of a scene, ready for queries by one cable.
 #[derive(Clone, Debug, Default)]
@@ -118,7 +102,7 @@ impl World {
 
     /// The compiled obstacles, for models that build their own contact pairs.
     #[must_use]
-    pub fn geometry(&self) -> &geometry::Geometry {
+    pub(crate) fn geometry(&self) -> &geometry::Geometry {
         &self.geometry
     }
 }

@@ -135,7 +135,7 @@ impl NeighbourLists {
 fn gap(geometry: &Geometry, part: ObstaclePart, [a, b]: [Vec2; 2]) -> f64 {
     let Some(body) = geometry.bodies().get(part.body) else { return f64::INFINITY };
     let distance = match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
-        (Some(e), _) => segment_segment(a, b, e.p, e.q),
+        (Some(e), _) => segment_segment(a, b, e.from, e.to),
         (None, Some(c)) => point_segment(c, a, b),
         (None, None) => return f64::INFINITY,
     };

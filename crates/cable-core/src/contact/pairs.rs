@@ -65,12 +65,12 @@ impl Geometry {
             };
             let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
             // Nothing of an edge is nearer than the line it lies on.
-            if (p - e.p).dot(&e.normal()).abs() > within {
+            if (p - e.from).dot(&e.normal()).abs() > within {
                 continue;
             }
             push_edge(body, k, p, reach, out);
             let far = |at: Vec2| (p - at).norm_squared() > within * within;
-            if far(e.p) && far(e.q) {
+            if far(e.from) && far(e.to) {
                 continue;
             }
             for corner in body.corners_of(k) {
@@ -112,7 +112,7 @@ impl Geometry {
                             || at.y < low.y - within
                             || at.y > high.y + within
                     };
-                    if far(e.p) && far(e.q) {
+                    if far(e.from) && far(e.to) {
                         continue;
                     }
                     for corner in body.corners_of(k).filter(|c| body.is_exposed(c)) {
@@ -140,13 +140,13 @@ impl Geometry {
 #[inline]
 fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let e = &body.edges[k];
-    let along = (p - e.p).dot(&e.tangent);
-    if !(along > 0.0 && (p - e.q).dot(&e.tangent) < 0.0) {
+    let along = (p - e.from).dot(&e.tangent);
+    if !(along > 0.0 && (p - e.to).dot(&e.tangent) < 0.0) {
         return;
     }
-    let height = (p - e.p).dot(&e.normal());
+    let height = (p - e.from).dot(&e.normal());
     let side = if height < 0.0 { -1.0 } else { 1.0 };
-    let gap = body.gap(body.first + 2 * k, height.abs(), e.normal() * side, e.p + e.tangent * along);
+    let gap = body.gap(body.first + 2 * k, height.abs(), e.normal() * side, e.from + e.tangent * along);
     if gap.gap_m < reach {
         out(Pair { gap, weight: 1.0 });
     }

@@ -79,10 +79,10 @@ impl Geometry {
             match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
                 // Both ends on one side of its line and far enough from that: the edge cannot be
                 // met.
-                (Some(e), _) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {}
+                (Some(e), _) if way_off([a, b], e.from, e.normal()) - body.offset > sweep.clear(free) => {}
                 (Some(e), _) => {
-                    let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.p, e.q);
-                    free = advance(moving, way, [e.p, e.q], body.offset, how, free);
+                    let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.from, e.to);
+                    free = advance(moving, way, [e.from, e.to], body.offset, how, free);
                 }
                 (None, Some(c)) => {
                     let way = |[a, b]: [Vec2; 2]| -from_segment(c, a, b);
@@ -189,8 +189,8 @@ impl Geometry {
                 && body.candidates(low - r, high + r).all(|k| {
                     let e = &body.edges[k];
                     let beside = round.map(|f| f.is_some_and(|f| body.is_beside(k, f)));
-                    let points = [point_segment(a, e.p, e.q), point_segment(b, e.p, e.q)];
-                    from(beside, segment_segment(a, b, e.p, e.q), points)
+                    let points = [point_segment(a, e.from, e.to), point_segment(b, e.from, e.to)];
+                    from(beside, segment_segment(a, b, e.from, e.to), points)
                 })
         })
     }

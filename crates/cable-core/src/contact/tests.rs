@@ -179,7 +179,7 @@ fn the_nearest_pair_is_the_gap_of_the_segment() {
         let mut nearest = f64::INFINITY;
         for body in world.geometry().bodies() {
             for e in body.edges.iter() {
-                nearest = nearest.min(distance::segment_segment(a, b, e.p, e.q) - body.offset);
+                nearest = nearest.min(distance::segment_segment(a, b, e.from, e.to) - body.offset);
             }
             if let Some(c) = body.center {
                 nearest = nearest.min(distance::point_segment(c, a, b) - body.offset);
@@ -284,15 +284,15 @@ fn sweeps_never_cross_anything() {
         let end = [from[0] + (to[0] - from[0]) * f, from[1] + (to[1] - from[1]) * f];
         for body in world.geometry().bodies() {
             for e in body.edges.iter() {
-                let before = distance::segment_segment(from[0], from[1], e.p, e.q);
-                let after = distance::segment_segment(end[0], end[1], e.p, e.q);
+                let before = distance::segment_segment(from[0], from[1], e.from, e.to);
+                let after = distance::segment_segment(end[0], end[1], e.from, e.to);
                 if before <= 0.0 {
                     continue;
                 }
                 if before > body.offset + 1e-9 {
                     assert!(after - body.offset >= 0.2 * (before - body.offset) - 1e-12, "{before} {after}");
                 }
-                if let Some(t) = first_crossing(from, to, e.p, e.q) {
+                if let Some(t) = first_crossing(from, to, e.from, e.to) {
                     blocked += 1;
                     assert!(f < t, "free {f} but crosses at {t}");
                 }

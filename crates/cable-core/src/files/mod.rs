@@ -26,6 +26,7 @@ pub use self::saved_run::{RunRemark, SavedRun, is_run, load_run};
 /// The reason why a file could not be read or written. The data in memory is untouched, and so is
 /// the old file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FileError {
     /// It cannot be opened or read.
     Read {

@@ -55,6 +55,15 @@ pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (
     chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, ModelReason::SupportsOnly))
 }
 
+/// The model that answers for rest cables whose masses will move, from which
+/// [`Model::MOST_CAPABLE`] takes over as they begin to: `spans`. None where another would have to,
+/// which cannot move.
+#[must_use]
+pub(crate) fn before_motion<'a>(mut cables: impl Iterator<Item = &'a Problem>) -> Option<Model> {
+    let is_spans = cables.all(|problem| choose(problem, Question::Rest).0 == Model::Spans);
+    is_spans.then_some(Model::Spans)
+}
+
 /// Returns what is built where a model was chosen: `spans` and `fem` take turns, and behind
 /// `catenary` stands one that meets the wheels which the cable leaves.
 #[must_use]

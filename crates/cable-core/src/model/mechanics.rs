@@ -12,7 +12,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ModelReason, Warning};
 use crate::state::State;
 
-/// True if inertia takes part in a step.
+/// The part that inertia takes in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
     /// Masses accelerate.
@@ -42,9 +42,8 @@ impl StepReport {
             self.cost.inner_step_s = inner_step_s;
         }
         for warning in more.warnings {
-            // Of the parts of a step each says the same again.
-            let again = warning.to_string();
-            self.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
+            // Of the parts of a step each says the same again, with figures of its own.
+            self.warnings.retain(|w| !w.has_cause_of(&warning));
             self.warnings.push(warning);
         }
     }
@@ -212,4 +211,23 @@ pub trait Mechanics: Send {
 
     /// A copy with all its history, for reset and compare.
     fn boxed_clone(&self) -> Box<dyn Mechanics>;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::StepReport;
+    use crate::solution::{Warning, WarningCause};
+
+    #[test]
+    fn parts_of_a_step_warn_once_of_a_cause_at_a_place() {
+        let warns = |arc_length_m, value| {
+            let warning = Warning::new(WarningCause::StiffPreview, "cable", arc_length_m, [value, 1.0]);
+            StepReport { warnings: vec![warning], ..StepReport::default() }
+        };
+        let mut step = warns(0.0, 2.0);
+        step.add(warns(0.0, 2.000_000_1));
+        step.add(warns(3.0, 2.0));
+        let told: Vec<_> = step.warnings.iter().map(|w| (w.arc_length_m, w.value)).collect();
+        assert_eq!(told, [(0.0, 2.000_000_1), (3.0, 2.0)]);
+    }
 }

@@ -18,6 +18,8 @@ use crate::problem::Problem;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent abilities, each asked for by itself")]
 pub struct Capabilities {
+    /// It divides cables into elements, whose number a user may choose.
+    pub mesh: bool,
     /// Its masses can accelerate.
     pub inertia: bool,
     /// It meets obstacles.
@@ -42,6 +44,7 @@ pub struct Capabilities {
 
 /// No ability at all; each entry names those it has.
 const NO_CAPABILITIES: Capabilities = Capabilities {
+    mesh: false,
     inertia: false,
     contact: false,
     robot_contact: false,
@@ -61,8 +64,12 @@ type Built = Result<Box<dyn Mechanics>, SolveError>;
 pub struct ModelInfo {
     /// Its name.
     pub model: Model,
+    /// Its name on a button or in a legend.
+    pub label: &'static str,
     /// Its description in one line.
     pub summary: &'static str,
+    /// Its use, and its limits, for a reader who chooses between the models.
+    pub help: &'static str,
     /// Its capabilities.
     pub capabilities: Capabilities,
     /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
@@ -75,22 +82,30 @@ pub struct ModelInfo {
 const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::Catenary,
+        label: "Catenary",
         summary: "elastic catenaries between supports: no contact, no motion, no discretisation error",
+        help: "Closed form between supports: no discretisation error. No contact, no bending stiffness; time runs without inertia",
         capabilities: NO_CAPABILITIES,
         accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(catenary::CatenaryModel::new(problem, settings)?)),
     },
     ModelInfo {
         model: Model::Spans,
+        label: "Spans",
         summary: "exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion",
+        help: "Exact spans between contacts that are intervals of an obstacle's surface: friction without a mesh. No bending \
+               stiffness; time runs without inertia",
         capabilities: Capabilities { contact: true, mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
         accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
     },
     ModelInfo {
         model: Model::Fem,
+        label: "FEM",
         summary: "finite elements with contact, friction, bending and dynamics",
+        help: "Finite elements with contact, friction, bending and dynamics",
         capabilities: Capabilities {
+            mesh: true,
             inertia: true,
             contact: true,
             robot_contact: true,
@@ -105,8 +120,16 @@ const SOLVERS: [ModelInfo; 4] = [
     },
     ModelInfo {
         model: Model::MassSpring,
+        label: "Mass-spring",
         summary: "lumped masses and springs, explicit in time",
-        capabilities: Capabilities { inertia: true, contact: true, findings_are_told: true, ..NO_CAPABILITIES },
+        help: "Lumped masses and springs, explicit in time: a quick look at motion, a second opinion at rest",
+        capabilities: Capabilities {
+            mesh: true,
+            inertia: true,
+            contact: true,
+            findings_are_told: true,
+            ..NO_CAPABILITIES
+        },
         accuracy: [1e-3, 2e-5],
         construct: |problem, settings| Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
     },
@@ -115,8 +138,11 @@ const SOLVERS: [ModelInfo; 4] = [
 /// The chooser: one of the others, or two that take turns.
 const AUTO: ModelInfo = ModelInfo {
     model: Model::Auto,
+    label: "Automatic",
     summary: "the cheapest model that can answer",
+    help: "The cheapest model that can answer the scene; the reason stands below",
     capabilities: Capabilities {
+        mesh: true,
         inertia: true,
         contact: true,
         robot_contact: true,
@@ -133,7 +159,9 @@ const AUTO: ModelInfo = ModelInfo {
 /// A model of the program's own, which [`ModelSource::External`] builds.
 const EXTERNAL: ModelInfo = ModelInfo {
     model: Model::External,
+    label: "External model",
     summary: "a model that the program brings along",
+    help: "A model that the program brings along",
     capabilities: Capabilities { inertia: true, contact: true, ..NO_CAPABILITIES },
     accuracy: [1e-5, 1e-6],
     construct: |_, _| {
@@ -162,6 +190,12 @@ impl Model {
         self.info().capabilities
     }
 
+    /// Returns whether the program chooses the model that answers.
+    #[must_use]
+    pub fn is_automatic(self) -> bool {
+        self == Self::Auto
+    }
+
     /// Returns how much it takes on: its place in the registry.
     #[must_use]
     pub fn rank(self) -> usize {
@@ -176,6 +210,12 @@ pub enum ModelSource {
     Registered(Model),
     /// A model of the program's own.
     External(Arc<Constructor>),
+}
+
+impl std::fmt::Debug for ModelSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("ModelSource").field(&self.model()).finish()
+    }
 }
 
 impl ModelSource {

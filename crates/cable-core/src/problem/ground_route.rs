@@ -108,9 +108,9 @@ fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<SurfaceCrossing> {
         .candidates(a.inf(&b), a.sup(&b))
         .filter_map(|k| {
             let e = body.edges.get(k)?;
-            let f = e.q - e.p;
+            let f = e.to - e.from;
             let turn = cross(d, f);
-            let (part, along) = (cross(e.p - a, f) / turn, cross(e.p - a, d) / turn);
+            let (part, along) = (cross(e.from - a, f) / turn, cross(e.from - a, d) / turn);
             let meets = (0.0..=1.0).contains(&part) && (0.0..=1.0).contains(&along);
             meets.then_some(SurfaceCrossing { part, along: k as f64 + along })
         })
@@ -127,7 +127,7 @@ fn nearest(body: &Body, p: Vec2) -> f64 {
         return (local / 2) as f64;
     }
     let k = local / 2;
-    body.edges.get(k).map_or(k as f64, |e| k as f64 + (gap.point - e.p).dot(&e.tangent) / e.length())
+    body.edges.get(k).map_or(k as f64, |e| k as f64 + (gap.point - e.from).dot(&e.tangent) / e.length())
 }
 
 /// The route with its buried stretches led along the surface, the centre line's distance off it.

@@ -31,5 +31,5 @@ pub(crate) mod wheels_as_posts;
 pub use self::definition::{PointLoad, Problem, SupportPoint};
 pub(crate) use self::definition::{StandingWheels, WheelsAsPosts};
 pub use self::from_scene::{check, problems};
-pub use self::robot_outline::robot_outline;
+pub use self::robot_outline::{OUTLINE_NAME, robot_outline};
 pub use self::series::Series;

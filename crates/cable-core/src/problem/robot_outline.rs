@@ -7,7 +7,7 @@ use crate::scene::robot::Pose;
 use crate::scene::{Scene, View};
 
 /// Name of the outline among the obstacles of a cable.
-pub(crate) const OUTLINE_NAME: &str = "robot";
+pub const OUTLINE_NAME: &str = "robot";
 
 /// The outline of the robot that a cable of this friction meets; None where there is no robot, and
 /// in a plan view.

@@ -34,6 +34,16 @@ pub struct WholeRecords<R> {
     ended: bool,
 }
 
+impl<R> std::fmt::Debug for WholeRecords<R> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("WholeRecords")
+            .field("passed", &self.passed)
+            .field("whole", &self.whole)
+            .field("ended", &self.ended)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<R: Read> WholeRecords<R> {
     /// Of a text.
     pub fn new(from: R) -> Self {

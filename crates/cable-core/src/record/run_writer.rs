@@ -26,6 +26,12 @@ pub struct RunWriter<W: Write> {
 /// Kind, cable and the time since when, in bits, of a warning that lasts.
 type LastingWarning = (WarningKind, String, Option<u64>);
 
+impl<W: Write> std::fmt::Debug for RunWriter<W> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RunWriter").field("node_choice", &self.node_choice).finish_non_exhaustive()
+    }
+}
+
 impl<W: Write> RunWriter<W> {
     /// Over three places to write to.
     pub fn new(history: W, nodes: W, events: W) -> Self {

@@ -77,6 +77,7 @@ pub enum ReadError {
 
 /// The fault of a row, or of the header.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum RowFault {
     /// It is no row of a table of comma-separated values.
     Unreadable {

@@ -240,14 +240,14 @@ impl Vehicle {
     pub fn begin(&mut self, h: f64, pulls: Pulls) -> Drive {
         self.pulls = pulls;
         let order = self.order(h);
-        Drive { wanted: order.speed, asked: self.governed_motion().next(order, h), h }
+        Drive { wanted: order.speed, asked: self.governed_motion().next(order, h), step_s: h }
     }
 
     /// The speed that it would have at the end of a step if the pull on its hitch went on changing
     /// as it did, m/s.
     #[must_use]
     pub fn foreseen(&self, drive: Drive) -> f64 {
-        let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.h, ..self.pulls };
+        let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.step_s, ..self.pulls };
         self.balance(drive, pulls).speed
     }
 
@@ -255,13 +255,13 @@ impl Vehicle {
     /// cannot stand there.
     #[must_use]
     pub(crate) fn pose_at_speed(&self, drive: Drive, speed: f64) -> Option<Pose> {
-        let way = 0.5 * drive.h * (self.speed + speed);
+        let way = 0.5 * drive.step_s * (self.speed + speed);
         if way == 0.0 && self.speed == 0.0 {
-            return self.tipped_pose(self.pose.at_m[0], drive.h);
+            return self.tipped_pose(self.pose.at_m[0], drive.step_s);
         }
         let x_m = self.pose.at_m[0] + way * self.pose.pitch.cos();
         let ground = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped_pose(x_m, drive.h) } else { None }
+        if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped_pose(x_m, drive.step_s) } else { None }
     }
 
     /// Its pose at a place, tipped towards the ground as far as it can in a step of `h` (s).
@@ -289,8 +289,12 @@ impl Vehicle {
         let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
         let force = pull + weight;
         let sense = [drive.wanted, self.speed, -force].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
-        let step =
-            StepForces { mass: self.preset.mass_kg.value, h: drive.h, speed: self.speed * sense, force: force * sense };
+        let step = StepForces {
+            mass: self.preset.mass_kg.value,
+            step_s: drive.step_s,
+            speed: self.speed * sense,
+            force: force * sense,
+        };
         let along = self.grip(drive, normal, sense).balance(step);
         let [speed, tracks, rolling] = [along.speed, along.tracks, along.rolling].map(|x| x * sense);
         SpeedBalance { speed, tracks, rolling, normal, pull, weight, ..along }
@@ -304,7 +308,7 @@ impl Vehicle {
     /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside
     /// one.
     pub(crate) fn arrive(&mut self, drive: Drive, to: Pose, led: f64, balance: SpeedBalance, speed: f64, pulls: Pulls) {
-        let way = 0.5 * drive.h * (self.speed + led);
+        let way = 0.5 * drive.step_s * (self.speed + led);
         let SpeedBalance { tracks, rolling, pull, weight, slips, .. } = balance;
         let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
         let cable = self.mean(pulls).dot(&(self.hitch_at(to) - self.hitch())) + pulls.outline.dot(&along) * way;
@@ -316,11 +320,11 @@ impl Vehicle {
         work.cable_j += cable;
         work.ground_j += (weight + pull) * way - lifted - cable;
         // The energy of a stop is none of those.
-        work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
-        self.tipping_speed = (to.pitch - self.pose.pitch) / drive.h;
-        self.set = drive.asked.held_up(drive.h, [self.speed, speed]);
+        work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.step_s * way;
+        self.tipping_speed = (to.pitch - self.pose.pitch) / drive.step_s;
+        self.set = drive.asked.held_up(drive.step_s, [self.speed, speed]);
         (self.pose, self.speed) = (to, speed);
-        self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
+        self.rate = (pulls.hitch - self.pulls.hitch) / drive.step_s;
         self.pulls = pulls;
         let forces = Forces { normal: balance.normal, thrust: tracks };
         self.update_report(pulls, forces, drive.wanted, balance.going);
@@ -451,7 +455,7 @@ pub struct Drive {
     /// Motion that the governor asks for at its end.
     asked: PlannedMotion,
     /// Its length, s.
-    h: f64,
+    step_s: f64,
 }
 
 /// The force of the ground on it, N.

@@ -35,7 +35,7 @@ pub(super) struct StepForces {
     /// Mass, kg.
     pub(super) mass: f64,
     /// Length of the step, s.
-    pub(super) h: f64,
+    pub(super) step_s: f64,
     /// Speed at its start, m/s.
     pub(super) speed: f64,
     /// Pull of the cable and weight, N.
@@ -45,7 +45,7 @@ pub(super) struct StepForces {
 impl StepForces {
     /// The force that tracks and rolling resistance have to give for a speed at the end, N.
     fn needed(&self, speed: f64) -> f64 {
-        self.mass * (speed - self.speed) / self.h - self.force
+        self.mass * (speed - self.speed) / self.step_s - self.force
     }
 }
 
@@ -121,7 +121,7 @@ impl TrackGrip {
 
     /// The balance in the range of a speed, where no force jumps.
     fn balance_beside(&self, step: StepForces, near: f64) -> (SpeedBalance, Traction) {
-        let StepForces { mass, h, speed: v, force: pull } = step;
+        let StepForces { mass, step_s: h, speed: v, force: pull } = step;
         let rolling = self.rolls(near, Limit::Above);
         let reached = |force: f64, falls: f64| (mass * v / h + pull + rolling + force) / (mass / h + falls);
         let slipping = if self.tracks(near, Limit::Above) < 0.0 { -self.hold } else { self.hold };

@@ -94,7 +94,7 @@ impl Columns {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stand {
     /// Height of its middle, m.
-    pub y: f64,
+    pub height: f64,
     /// Its slope, rad, positive where it climbs to the right.
     pub pitch: f64,
 }
@@ -145,7 +145,7 @@ impl Ground {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let [a, b] = edge_over(&upper_hull(&points), x)?;
         let slope = (b[1] - a[1]) / (b[0] - a[0]);
-        Some(Stand { y: a[1] + slope * (x - a[0]), pitch: slope.atan() })
+        Some(Stand { height: a[1] + slope * (x - a[0]), pitch: slope.atan() })
     }
 }
 
@@ -183,7 +183,7 @@ mod tests {
         for slope in [-0.4, 0.0, 0.25] {
             let g = ground(&[[-10.0, -10.0 * slope], [10.0, 10.0 * slope]]);
             let s = g.stand(1.5, 0.6).unwrap();
-            assert!((s.y - 1.5 * slope).abs() < 1e-12 && (s.pitch - f64::atan(slope)).abs() < 1e-12, "{s:?}");
+            assert!((s.height - 1.5 * slope).abs() < 1e-12 && (s.pitch - f64::atan(slope)).abs() < 1e-12, "{s:?}");
         }
     }
 
@@ -194,13 +194,13 @@ mod tests {
         let g = ground(&[[-5.0, 0.0], [0.45, 0.0], [0.5, 0.2], [0.55, 0.0], [5.0, 0.0]]);
         let s = g.stand(0.0, 0.6).unwrap();
         assert!((s.pitch - f64::atan(0.2 / 1.1)).abs() < 1e-12, "{s:?}");
-        assert!((s.y - 0.6 * 0.2 / 1.1).abs() < 1e-12, "{s:?}");
+        assert!((s.height - 0.6 * 0.2 / 1.1).abs() < 1e-12, "{s:?}");
     }
 
     #[test]
     fn it_bridges_a_ditch_and_ends_with_the_ground() {
         let g = ground(&[[-5.0, 1.0], [-0.2, 1.0], [0.0, -3.0], [0.2, 1.0], [5.0, 1.0]]);
-        assert_eq!(g.stand(0.0, 0.6), Some(Stand { y: 1.0, pitch: 0.0 }));
+        assert_eq!(g.stand(0.0, 0.6), Some(Stand { height: 1.0, pitch: 0.0 }));
         assert_eq!(g.stand(4.9, 0.6), None);
         assert_eq!(Ground::default().stand(0.0, 1.0), None);
     }
@@ -212,7 +212,7 @@ mod tests {
             let points: Vec<Point> = heights.iter().enumerate().map(|(k, h)| [k as f64, *h]).collect();
             let g = ground(&points);
             let s = g.stand(x, 2.5).unwrap();
-            let gap = |at: f64| s.y + s.pitch.tan() * (at - x) - g.height(at).unwrap();
+            let gap = |at: f64| s.height + s.pitch.tan() * (at - x) - g.height(at).unwrap();
             let places: Vec<f64> = points.iter().map(|p| p[0]).chain([x - 2.5, x + 2.5]).filter(|at| (at - x).abs() < 2.5 + 1e-9).collect();
             prop_assert!(places.iter().all(|at| gap(*at) > -1e-9));
             prop_assert!(places.iter().any(|at| *at <= x && gap(*at) < 1e-9));

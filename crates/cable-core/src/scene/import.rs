@@ -23,7 +23,7 @@ pub struct Line {
     pub closed: bool,
 }
 
-/// The scene that was read and the changes made to it.
+/// The lines that were read, and the changes that the import made to them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Import {
     /// The lines, those of the ground from left to right.
@@ -55,6 +55,7 @@ pub enum ImportChange {
 
 /// The reason why a text is not imported.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ImportFault {
     /// The unit has no length.
     Unit,
@@ -148,7 +149,7 @@ fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// The digits before the decimals of a number.
+/// The character before the decimals of a number.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DecimalMark {
     Comma,

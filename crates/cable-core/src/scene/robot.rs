@@ -106,7 +106,7 @@ impl Robot {
     #[must_use]
     pub(crate) fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
         let stand = ground.stand(x_m, preset.track_half_length_m())?;
-        Some(Pose { at_m: [x_m, stand.y], pitch: stand.pitch, heading: self.heading })
+        Some(Pose { at_m: [x_m, stand.height], pitch: stand.pitch, heading: self.heading })
     }
 }
 

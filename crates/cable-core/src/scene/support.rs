@@ -9,6 +9,7 @@ use crate::math::{Point, vec2};
 /// Kind of a support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum SupportKind {
     /// Held at a point, free to turn.
     Fixed,

@@ -29,7 +29,7 @@ const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
 #[derive(Clone, Copy, Debug)]
 struct CoupledStep<'a> {
     /// Its length, s.
-    h: f64,
+    step_s: f64,
     inertia: Inertia,
     /// Cable and support of everything that hangs on the robot.
     hitches: &'a [(usize, usize)],
@@ -58,7 +58,7 @@ impl Simulation {
             };
             let pieces = (left / longest - 1e-9).ceil().max(1.0);
             let h = left / pieces;
-            let iterations = self.couple(&CoupledStep { h, inertia, hitches: &hitches })?;
+            let iterations = self.couple(&CoupledStep { step_s: h, inertia, hitches: &hitches })?;
             left = if pieces > 1.0 { left - h } else { 0.0 };
             cost = Cost {
                 iterations: cost.iterations + iterations,
@@ -76,7 +76,7 @@ impl Simulation {
     fn couple(&mut self, step: &CoupledStep<'_>) -> Result<usize, SolveError> {
         let begun = self.pulls(step.hitches);
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
-        let drive = vehicle.begin(step.h, begun);
+        let drive = vehicle.begin(step.step_s, begun);
         let start = vehicle.clone();
         let kept: Vec<BreakableCable> = self.cables.iter().map(BreakableCable::checkpoint).collect();
         let (mut speed, mut search, mut iterations) = (start.foreseen(drive), SpeedSearch::new(), 0);
@@ -100,7 +100,7 @@ impl Simulation {
                     vehicle.stop(drive, begun, going);
                     self.lead(vehicle.hitch(), vehicle.pose().placement(), step.hitches);
                     self.vehicle = Some(vehicle);
-                    self.for_each_cable(|c| c.advance(step.h, step.inertia))?;
+                    self.for_each_cable(|c| c.advance(step.step_s, step.inertia))?;
                     return Ok(iterations + self.cost.iterations);
                 }
             }
@@ -119,7 +119,7 @@ impl Simulation {
         let Some(to) = start.pose_at_speed(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
         self.lead(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
-        if self.for_each_cable(|c| c.advance(step.h, step.inertia)).is_err() {
+        if self.for_each_cable(|c| c.advance(step.step_s, step.inertia)).is_err() {
             // The cable cannot get out of its way.
             return TrialOutcome::Stuck(Going::Jammed);
         }
@@ -127,7 +127,8 @@ impl Simulation {
         let balance = start.balance(drive, pulls);
         let excess_speed = balance.speed - speed;
         // A break is no force that a speed could be found for.
-        let even = (excess_speed * start.mass() / step.h).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
+        let even =
+            (excess_speed * start.mass() / step.step_s).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
         if !even
             && !(self.left_m() > 0.0)
             && let Some(next) = search.next(Trial { speed, excess_speed })

@@ -72,7 +72,7 @@ pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolut
         let at = Vec2::new(reaction.x_m, reaction.y_m);
         let Some(inward) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
         for direction in [-inward, inward] {
-            let found = move_and_return(cable, (k, at), direction, &sound);
+            let found = move_and_return(cable, k, at, direction, &sound);
             left.extend(found.iter().map(|f| f.tensions));
             moves.extend(found.last().map(|furthest| EndMove {
                 support: support.name.clone(),
@@ -94,7 +94,8 @@ pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolut
 /// direction and put back, further each time, until that makes no difference any more.
 fn move_and_return(
     cable: &BreakableCable,
-    (support, place): (usize, Vec2),
+    support: usize,
+    place: Vec2,
     direction: Vec2,
     sound: impl Fn(&CableSolution) -> bool,
 ) -> Vec<ResidualTensions> {

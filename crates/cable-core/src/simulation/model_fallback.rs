@@ -5,7 +5,7 @@
 use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
-use crate::model::auto::{self, Question};
+use crate::model::auto;
 use crate::model::{Model, ModelSource};
 use crate::solution::ModelReason;
 
@@ -58,7 +58,7 @@ impl Simulation {
         for cable in &mut self.cables {
             other |= cable.fall_back(why);
         }
-        if other || self.requested != Model::Auto {
+        if other || !self.requested.is_automatic() {
             return other;
         }
         let next =
@@ -77,9 +77,7 @@ impl Simulation {
     /// will move: `spans`, from which `fem` takes over as they begin to. None where another would
     /// have to, which cannot move, and once time has run: the cable is no longer on its route.
     fn model_at_rest(&self) -> Option<Model> {
-        let at_rest = |cable: &BreakableCable| auto::choose(cable.problem(), Question::Rest).0;
         let begins = self.reason == ModelReason::Inertia && self.time_s() <= 0.0;
-        let moves_on = begins && self.cables.iter().all(|c| at_rest(c) == Model::Spans);
-        moves_on.then_some(Model::Spans)
+        if begins { auto::before_motion(self.cables.iter().map(BreakableCable::problem)) } else { None }
     }
 }

@@ -5,6 +5,7 @@
 //! | room | content |
 //! |---|---|
 //! | `mod.rs` | [`CableSummary`] |
+//! | `places.rs` | tensions, depths and touchdowns with their places |
 //! | `shape.rs` | sag, heights, lengths, touchdowns |
 //! | `balance.rs` | the sum of all forces on a cable |
 //! | `stiffness.rs` | change of force per metre that an end is moved |
@@ -17,6 +18,7 @@
 
 mod balance;
 mod neglected_bending;
+mod places;
 mod settings_compared;
 mod shape;
 pub mod stiffness;
@@ -31,6 +33,7 @@ use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution}
 
 pub use balance::ForceBalance;
 pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
+pub use places::{CablePlace, Sag, TensionAt, TouchKind, Touchdown};
 pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};
@@ -95,69 +98,6 @@ pub struct EndForce {
     pub angle_deg: Option<f64>,
     /// The same above the horizontal, °: from −90, straight down, to 90, straight up.
     pub elevation_deg: Option<f64>,
-}
-
-/// A point of the cable.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct CablePlace {
-    /// Arc length, m.
-    pub arc_length_m: f64,
-    /// Its place, m.
-    pub x_m: f64,
-    /// Its place, m.
-    pub y_m: f64,
-}
-
-impl CablePlace {
-    pub(super) fn of(n: &Node) -> Self {
-        Self { arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m }
-    }
-}
-
-/// A tension and its place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TensionAt {
-    /// Tension, N.
-    pub tension_n: f64,
-    /// Its place.
-    #[serde(flatten)]
-    pub at: CablePlace,
-}
-
-/// A depth and its place.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sag {
-    /// Depth, m.
-    pub sag_m: f64,
-    /// Its place.
-    #[serde(flatten)]
-    pub at: CablePlace,
-}
-
-/// Side of a touchdown that lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum TouchKind {
-    /// It lies from here on, along growing arc length.
-    Begins,
-    /// It lies up to here.
-    Ends,
-    /// It touches in this point alone.
-    Point,
-}
-
-/// A place at which the cable comes down on something.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Touchdown {
-    /// Name of the obstacle it touches.
-    pub obstacle: String,
-    /// The side that lies.
-    pub touch: TouchKind,
-    /// Tension there, N.
-    pub tension_n: f64,
-    /// Its place.
-    #[serde(flatten)]
-    pub at: CablePlace,
 }
 
 /// Figures over their limits: 1 = the limit.

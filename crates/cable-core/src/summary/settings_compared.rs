@@ -26,12 +26,13 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// All that are compared: `catenary`, `spans`, and `fem` and `mass-spring` on five meshes.
+    /// All that are compared: every model, those with a mesh on five of them.
     pub fn all() -> impl Iterator<Item = Self> {
-        let without = [Model::Catenary, Model::Spans].map(|model| Self { model, elements: None });
-        let with = [Model::Fem, Model::MassSpring].into_iter();
-        let meshes = with.flat_map(|model| COMPARED_ELEMENTS.map(|n| Self { model, elements: Some(n) }));
-        without.into_iter().chain(meshes)
+        Model::SOLVERS.into_iter().flat_map(|model| {
+            let has_mesh = model.capabilities().mesh;
+            let meshes = if has_mesh { COMPARED_ELEMENTS.map(Some).to_vec() } else { vec![None] };
+            meshes.into_iter().map(move |elements| Self { model, elements })
+        })
     }
 }
 

@@ -49,7 +49,7 @@ pub struct EndStiffness {
 /// As [`Simulation::settle`] and [`Simulation::step_quasi_static`].
 pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<Vec<EndStiffness>, Error> {
     let still = frozen_scene(scene);
-    let question = if model == Model::Auto { Question::History(Inertia::QuasiStatic) } else { Question::Rest };
+    let question = if model.is_automatic() { Question::History(Inertia::QuasiStatic) } else { Question::Rest };
     let settings = Settings { histories: false, ..settings };
     let mut rest = Simulation::for_question(still.clone(), model, settings, question)?;
     let answer = rest.settle()?;

@@ -38,7 +38,7 @@ pub(super) struct AppliedForce {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CheckedBar<'a> {
     /// Index of the first node.
-    pub k: usize,
+    pub index: usize,
     pub from: &'a Node,
     pub to: &'a Node,
     /// Arc length, m.
@@ -160,7 +160,14 @@ impl CheckedCable<'_> {
             let [from, to] = [&pair[0], &pair[1]];
             let forces = [first, to.force().norm()];
             first = forces[1];
-            CheckedBar { k, from, to, length: to.arc_length_m - from.arc_length_m, way: to.at() - from.at(), forces }
+            CheckedBar {
+                index: k,
+                from,
+                to,
+                length: to.arc_length_m - from.arc_length_m,
+                way: to.at() - from.at(),
+                forces,
+            }
         })
     }
 

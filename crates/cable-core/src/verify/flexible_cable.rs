@@ -31,8 +31,13 @@ pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verificatio
         before = Some(bar);
     }
     if let Some(bar) = before {
-        let (k, from, forces) = (bar.k + 1, bar.to, [bar.forces[1]; 2]);
-        check_tension(checked, found, before, &CheckedBar { k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar });
+        let (k, from, forces) = (bar.index + 1, bar.to, [bar.forces[1]; 2]);
+        check_tension(
+            checked,
+            found,
+            before,
+            &CheckedBar { index: k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar },
+        );
     }
 }
 
@@ -55,12 +60,12 @@ fn check_tension(
     let beside = bar.length + before.map_or(0.0, |b| b.length);
     let limit = limit + LUMPED_WEIGHT_TURN * checked.spread_load() * beside;
     let after = bar.from.force();
-    let before = before.map_or(after, |_| checked.force_before(bar.k));
+    let before = before.map_or(after, |_| checked.force_before(bar.index));
     let most = larger(before.norm(), bar.forces[0]);
     let least = distance(before, after, Vec2::zeros(), Vec2::zeros());
     let value = larger(tension - most, least - tension);
     if !(value <= limit) {
-        found.report(checked.finding(Law::Tension, bar.k, value, limit));
+        found.report(checked.finding(Law::Tension, bar.index, value, limit));
     }
 }
 
@@ -79,13 +84,13 @@ fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, bar: 
     let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
     let (value, limit) = (larger(pushes, -least), COMPRESSION * checked.scale);
     if !(value <= limit) {
-        found.report(checked.finding(Law::Compression, bar.k, value, limit));
+        found.report(checked.finding(Law::Compression, bar.index, value, limit));
     }
 }
 
 /// The way of a bar is what its material and force make of it.
 fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
-    let touches = checked.touches(near, bar.k);
+    let touches = checked.touches(near, bar.index);
     let [spread, at_end] = checked.forces_at_end(bar);
     let spread = strained(checked, bar, spread, bar.forces[1], touches);
     if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
@@ -114,7 +119,7 @@ pub(super) fn report_length(
 ) {
     found.folded_m += lengths.folded;
     if !(lengths.value <= lengths.limit) {
-        found.report(checked.finding(Law::Length, bar.k, lengths.value, lengths.limit));
+        found.report(checked.finding(Law::Length, bar.index, lengths.value, lengths.limit));
     }
 }
 
@@ -144,7 +149,7 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
         + end * (1.0 / q + compliance);
     let material = checked.thermal * bar.length;
     // Weight that a bar carries beyond its straight part turns it by as much.
-    let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.k) / most } else { 0.0 };
+    let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.index) / most } else { 0.0 };
     if lumped > FOLD_TURN {
         return None;
     }
@@ -185,7 +190,7 @@ fn check_slack(
     let left_out = bow - across(bar.from.force());
     let allowed = larger(lumped, REPORTED_BALANCE * checked.scale);
     if left_out > allowed && hangs_in_air(checked, bar, near, missing) {
-        found.report(checked.finding(Law::Slack, bar.k, left_out, allowed));
+        found.report(checked.finding(Law::Slack, bar.index, left_out, allowed));
     }
 }
 
@@ -198,11 +203,11 @@ const BOW_PARTS: usize = 8;
 fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbours, missing: f64) -> bool {
     let Some(down) = checked.body.try_normalize(0.0) else { return false };
     let touches = |bar: usize| !near.of(bar).is_empty();
-    let last = bar.k + 2 == checked.answer.nodes.len();
+    let last = bar.index + 2 == checked.answer.nodes.len();
     // Cable that hangs free beside the bar would give way.
-    let held = (bar.k == 0 || touches(bar.k - 1)) && (last || touches(bar.k + 1));
+    let held = (bar.index == 0 || touches(bar.index - 1)) && (last || touches(bar.index + 1));
     let on_itself = || checked.self_contact_forces().next().is_some();
-    if !held || checked.floor_rubs() || touches(bar.k) || checked.is_at_wheel(bar.k) || on_itself() {
+    if !held || checked.floor_rubs() || touches(bar.index) || checked.is_at_wheel(bar.index) || on_itself() {
         return false;
     }
     let depth = (0.375 * bar.way.norm() * missing).sqrt();

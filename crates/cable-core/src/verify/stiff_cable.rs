@@ -25,7 +25,7 @@ pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) 
         let off = checked.forces_at_end(&bar).map(|end| cross(bar.way, (bar.from.force() + end) * 0.5) + change);
         let value = smaller(off[0].abs(), off[1].abs());
         if !(value <= limit) {
-            found.report(checked.finding(Law::Moment, bar.k, value, limit));
+            found.report(checked.finding(Law::Moment, bar.index, value, limit));
         }
     }
 }

@@ -39,8 +39,8 @@ pub(crate) const FOLD_TURN: f64 = 0.5;
 
 /// Depth inside an obstacle, of the diameter …
 pub(crate) const DEPTH_DIAMETERS: f64 = 0.02;
-/// … and at most this, m (RELIABILITY: what a picture to scale does not show, and less than the
-/// cable's own roundness).
+/// … and at most this, m (a picture to scale does not show it, and it is less than the cable's own
+/// roundness).
 pub const DEPTH_M: f64 = 1e-3;
 /// … or this part of the cable's length, whichever is more: arcs of cables of kilometres are drawn
 /// to their own scale. By as much at most a straight line between nodes may cut more, where the

@@ -1,6 +1,5 @@
 //! Scenes of one cable, starts away from rest, and what is read off a motion.
 
-use cable_core::model::fem::system::mass::Spread;
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Model, Settings, Simulation, Vec2};
@@ -88,6 +87,27 @@ pub fn masses(scene: &Scene, state: &State) -> Vec<f64> {
     mass
 }
 
+/// Mass of nodes beyond half of the bars beside them, and mass that couples the nodes of each bar,
+/// both in m of arc length, of stretches of so many bars of a length: the mean of lumped and
+/// consistent mass with end weights (docs/notes/mass-matrix.md).
+fn spread(stretches: &[(usize, f64)]) -> (Vec<f64>, Vec<f64>) {
+    let alpha = 167.75f64.sqrt() - 13.0;
+    let (mut more, mut coupling) = (vec![0.0], Vec::new());
+    for &(count, bar) in stretches {
+        let first = coupling.len();
+        coupling.resize(first + count, bar / 12.0);
+        more.resize(coupling.len() + 1, 0.0);
+        let last = coupling.len();
+        let ends = [([first, first + 1, first + 2], first), ([last, last - 1, last.saturating_sub(2)], last - 1)];
+        for (nodes, end_bar) in ends.into_iter().filter(|_| count > 1) {
+            let weights = [-3.0 - 2.0 * alpha, 4.0 + 4.0 * alpha, -1.0 - 2.0 * alpha];
+            nodes.iter().zip(weights).for_each(|(k, weight)| more[*k] += weight * bar / 48.0);
+            coupling[end_bar] = (1.0 - alpha) * bar / 12.0;
+        }
+    }
+    (more, coupling)
+}
+
 /// The mass of a cable of `fem` that can touch nothing: of each node, and what couples the nodes of
 /// each bar, kg.
 pub struct Mass {
@@ -108,12 +128,12 @@ impl Mass {
         };
         let breaks: Vec<usize> = (0..s.len()).filter(|k| is_break(*k)).collect();
         let even = |pair: &[usize]| (pair[1] - pair[0], (s[pair[1]] - s[pair[0]]) / (pair[1] - pair[0]) as f64);
-        let spread = Spread::of(&breaks.windows(2).map(even).collect::<Vec<_>>());
+        let (more, beside) = spread(&breaks.windows(2).map(even).collect::<Vec<_>>());
         let density = cable.linear_density_kg_per_m;
         let lumped = masses(scene, state);
         Self {
-            node: lumped.iter().zip(&spread.more).map(|(m, more)| m + density * more).collect(),
-            coupling: spread.coupling.iter().map(|l| density * l).collect(),
+            node: lumped.iter().zip(&more).map(|(m, more)| m + density * more).collect(),
+            coupling: beside.iter().map(|l| density * l).collect(),
         }
     }
 

@@ -25,7 +25,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 ui.add_space(6.0);
                 format(ui, path, &[CSV, SVG, PNG]);
                 let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
-                if let Some(path) = ask(ui, ("", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
+                if let Some(path) = ask(ui, &save("Ends in .csv, .svg or .png", note), path, commands) {
                     commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
                 }
             }
@@ -34,20 +34,22 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 ui.heading("Export the canvas as a picture");
                 ui.add_space(6.0);
                 format(ui, path, &[PNG, SVG]);
-                if let Some(path) = ask(ui, ("", "Save"), ("Ends in .png or .svg", note), path, commands) {
+                if let Some(path) = ask(ui, &save("Ends in .png or .svg", note), path, commands) {
                     commands.push(Command::File(FileCommand::ExportPicture(path)));
                 }
             }
             Dialog::SaveRun { path } => {
                 let note = "The scene and the tables history.csv, nodes.csv and events.csv, in a folder that is new, empty or of an earlier run, which is replaced once the new one is whole";
-                if let Some(path) = ask(ui, ("Save what was recorded", "Save"), ("A folder", note), path, commands) {
+                let question = PathQuestion { title: "Save what was recorded", ..save("A folder", note) };
+                if let Some(path) = ask(ui, &question, path, commands) {
                     commands.push(Command::File(FileCommand::SaveRun(path)));
                 }
             }
             Dialog::OpenRun { path, hold } => {
                 let title = if *hold { "Pin a recorded run to compare with" } else { "Open a run" };
                 let note = "A folder with scene.toml, history.csv, nodes.csv and events.csv, as this window and cable run write them";
-                if let Some(path) = ask(ui, (title, "Open"), ("A folder", note), path, commands) {
+                let question = PathQuestion { title, purpose: Purpose::Open, hint: "A folder", note };
+                if let Some(path) = ask(ui, &question, path, commands) {
                     let command = if *hold { FileCommand::AddReferenceRun(path) } else { FileCommand::OpenRun(path) };
                     commands.push(Command::File(command));
                 }
@@ -110,32 +112,42 @@ fn format(ui: &mut Ui, path: &mut String, formats: &[Format]) {
     });
 }
 
+/// A question for a path.
+struct PathQuestion<'a> {
+    /// Its heading; empty: none.
+    title: &'a str,
+    /// The use of the path.
+    purpose: Purpose,
+    /// Help in the empty field.
+    hint: &'a str,
+    /// A sentence below it.
+    note: &'a str,
+}
+
+/// A question for a path to save at, without a heading.
+fn save<'a>(hint: &'a str, note: &'a str) -> PathQuestion<'a> {
+    PathQuestion { title: "", purpose: Purpose::Save, hint, note }
+}
+
 /// A path to type; some once it is entered.
-fn ask(
-    ui: &mut Ui,
-    (title, does): (&str, &str),
-    (hint, note): (&str, &str),
-    path: &mut String,
-    commands: &mut Vec<Command>,
-) -> Option<PathBuf> {
-    if !title.is_empty() {
-        ui.heading(title);
+fn ask(ui: &mut Ui, question: &PathQuestion<'_>, path: &mut String, commands: &mut Vec<Command>) -> Option<PathBuf> {
+    if !question.title.is_empty() {
+        ui.heading(question.title);
         ui.add_space(6.0);
     }
     let mut done = false;
     ui.horizontal(|ui| {
         let label = ui.label("Path");
-        let field = egui::TextEdit::singleline(path).desired_width(320.0).hint_text(hint);
-        let field = ui.add(field).labelled_by(label.id).on_hover_text(hint);
+        let field = egui::TextEdit::singleline(path).desired_width(320.0).hint_text(question.hint);
+        let field = ui.add(field).labelled_by(label.id).on_hover_text(question.hint);
         typed_at_once(ui, &field);
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     });
-    let purpose = if does == "Save" { Purpose::Save } else { Purpose::Open };
-    path_picker::list(ui, path, &[], purpose);
-    ui.weak(note);
+    path_picker::list(ui, path, &[], question.purpose);
+    ui.weak(question.note);
     ui.add_space(10.0);
     ui.horizontal(|ui| {
-        done |= ui.button(does).clicked();
+        done |= ui.button(question.purpose.verb()).clicked();
         if ui.button("Cancel").clicked() {
             commands.push(close());
         }

@@ -29,26 +29,46 @@ pub struct State {
     scene: fn() -> Scene,
     prepare: fn(&mut ViewerApp, &Context),
     /// Frames before the picture: time runs in them, where it does.
-    frames: usize,
+    frames: Frames,
+}
+
+/// The frames before a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Frames {
+    /// Nothing moves, and nothing is computed beside the window.
+    Still,
+    /// Nothing moves; a computation beside the window has to end.
+    AfterJob,
+    /// Time runs in so many frames.
+    Moving(usize),
+}
+
+impl Frames {
+    fn count(self) -> usize {
+        match self {
+            Self::Still | Self::AfterJob => STILL_FRAMES,
+            Self::Moving(count) => count,
+        }
+    }
 }
 
 /// All of them, in the order of the page.
 pub const STATES: [State; 8] = [
-    State { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: STILL_FRAMES },
-    State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: STILL_FRAMES },
-    State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: STILL_FRAMES },
-    State { name: "motion", scene: catalog::tank, prepare: motion, frames: 8 * RATE },
-    State { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: 5 * RATE },
-    State { name: "break", scene: weak, prepare: motion, frames: 2 * RATE / 3 },
-    State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: STILL_FRAMES },
-    State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: STILL_FRAMES },
+    State { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: Frames::Still },
+    State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: Frames::Still },
+    State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: Frames::Still },
+    State { name: "motion", scene: catalog::tank, prepare: motion, frames: Frames::Moving(8 * RATE) },
+    State { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: Frames::Moving(5 * RATE) },
+    State { name: "break", scene: weak, prepare: motion, frames: Frames::Moving(2 * RATE / 3) },
+    State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: Frames::AfterJob },
+    State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: Frames::Still },
 ];
 
 impl State {
     /// True if nothing moves in it and nothing is computed beside the window: it is drawn at once.
     #[must_use]
     pub fn rests(&self) -> bool {
-        self.frames <= STILL_FRAMES && self.name != "safe-reach"
+        self.frames == Frames::Still
     }
 
     /// Draws it.
@@ -56,7 +76,7 @@ impl State {
     /// # Errors
     /// In words: a computation takes too long.
     pub fn draw(&self) -> Result<RgbaImage, String> {
-        screenshot::draw_after((self.scene)(), SIZE, self.frames, self.prepare)
+        screenshot::draw_after((self.scene)(), SIZE, self.frames.count(), self.prepare)
     }
 }
 

@@ -11,32 +11,87 @@ use crate::widgets::highlight;
 use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
-type Section = (&'static str, PanelUi);
 
-/// The outline of the scene, and in a small window the form of the selected thing.
-const EDIT_SECTIONS: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
-/// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on the
-/// cable is marked its tension stands above the readouts, else at the end.
-const RESULT_SECTIONS: &[Section] = &[
-    (WARNINGS, panels::warnings::ui),
-    (SELECTED, panels::selected::ui),
-    (MARKED_PLACE_TITLE, panels::analysis::tension_budget::ui),
-    (READOUTS, panels::readouts::ui),
-    (SAFE_REACH, panels::analysis::safe_reach::ui),
-    (COMPARE, panels::analysis::compare::ui),
-    (UNMARKED_PLACE_TITLE, panels::analysis::tension_budget::ui),
-    ("Friction range", panels::analysis::friction_range::ui),
-];
+/// A part of a panel under a heading that folds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Section {
+    Outline,
+    Selected,
+    Warnings,
+    MarkedPlace,
+    Readouts,
+    SafeReach,
+    Compare,
+    UnmarkedPlace,
+    FrictionRange,
+}
 
-/// Where there is a panel of their own for them, their head stands above what scrolls
-/// there.
-const READOUTS: &str = "Readouts";
-const WARNINGS: &str = "Warnings";
-const SAFE_REACH: &str = "Safe reach";
-const COMPARE: &str = "Compare";
-const SELECTED: &str = "Selected";
-const MARKED_PLACE_TITLE: &str = "Tension at the marked place";
-const UNMARKED_PLACE_TITLE: &str = "Tension at a place";
+impl Section {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Outline => "Outline",
+            Self::Selected => "Selected",
+            Self::Warnings => "Warnings",
+            Self::MarkedPlace => "Tension at the marked place",
+            Self::Readouts => "Readouts",
+            Self::SafeReach => "Safe reach",
+            Self::Compare => "Compare",
+            Self::UnmarkedPlace => "Tension at a place",
+            Self::FrictionRange => "Friction range",
+        }
+    }
+
+    /// The contents. Where there is a panel on the right, the head of the readouts stands above
+    /// what scrolls there.
+    fn panel(self, has_head_above: bool) -> PanelUi {
+        match self {
+            Self::Outline => panels::scene::outline::ui,
+            Self::Selected => panels::selected::ui,
+            Self::Warnings => panels::warnings::ui,
+            Self::MarkedPlace | Self::UnmarkedPlace => panels::analysis::tension_budget::ui,
+            Self::Readouts if has_head_above => panels::readouts::rest,
+            Self::Readouts => panels::readouts::ui,
+            Self::SafeReach => panels::analysis::safe_reach::ui,
+            Self::Compare => panels::analysis::compare::ui,
+            Self::FrictionRange => panels::analysis::friction_range::ui,
+        }
+    }
+}
+
+/// A list of sections that scrolls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    /// The outline of the scene, and in a small window the form of the selected thing.
+    Edit,
+    /// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on
+    /// the cable is marked its tension stands above the readouts, else at the end.
+    Results,
+}
+
+impl Column {
+    fn id(self) -> &'static str {
+        match self {
+            Self::Edit => "edit",
+            Self::Results => "read",
+        }
+    }
+
+    fn sections(self) -> &'static [Section] {
+        match self {
+            Self::Edit => &[Section::Outline, Section::Selected],
+            Self::Results => &[
+                Section::Warnings,
+                Section::Selected,
+                Section::MarkedPlace,
+                Section::Readouts,
+                Section::SafeReach,
+                Section::Compare,
+                Section::UnmarkedPlace,
+                Section::FrictionRange,
+            ],
+        }
+    }
+}
 
 /// Room for the bar beside what scrolls, points.
 const SCROLL_BAR_WIDTH: f32 = 6.0;
@@ -49,16 +104,26 @@ const MIN_GRAPHS_WINDOW_HEIGHT: f32 = 520.0;
 /// Width of the outline as a part of the window's, and the least and greatest, points: what is in
 /// the panels never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower:
 /// the kind of a thing does not fit beside its name.
-const OUTLINE_WIDTH: (f32, [f32; 2]) = (0.142, [164.0, 250.0]);
+const OUTLINE_WIDTH: WindowShare = WindowShare { fraction: 0.142, least: 164.0, most: 250.0 };
 /// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
 /// fit in a line.
-const INSPECTOR_WIDTH: (f32, [f32; 2]) = (0.2, [250.0, 340.0]);
+const INSPECTOR_WIDTH: WindowShare = WindowShare { fraction: 0.2, least: 250.0, most: 340.0 };
 /// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
 /// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
 const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
 
-fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
-    (fraction * of).clamp(least, most).round()
+/// A size as a part of the window's, within limits (points).
+#[derive(Clone, Copy, Debug)]
+struct WindowShare {
+    fraction: f32,
+    least: f32,
+    most: f32,
+}
+
+impl WindowShare {
+    fn of(self, window: f32) -> f32 {
+        (self.fraction * window).clamp(self.least, self.most).round()
+    }
 }
 
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
@@ -78,13 +143,13 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     state.ui.legend_beside = wide && open.results;
     if wide && open.results {
-        side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
+        side(ui, Panel::right("read"), INSPECTOR_WIDTH.of(width), |ui| {
             legend::beside(ui, state);
             safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
             panels::warnings::worst(ui, state, commands);
             ui.separator();
-            scroll(ui, "read", RESULT_SECTIONS, state, commands);
+            scroll(ui, Column::Results, state, commands);
         });
     }
     if !wide && (open.edit || open.results) {
@@ -107,9 +172,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
     if wide && open.edit {
-        side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| {
-            scroll(ui, "edit", EDIT_SECTIONS, state, commands)
-        });
+        side(ui, Panel::left("edit"), OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
@@ -158,8 +221,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         ui.separator();
         match tab {
             Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
-            Tab::Read => scroll(ui, "read", RESULT_SECTIONS, state, commands),
-            Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT_SECTIONS, state, commands),
+            Tab::Read => scroll(ui, Column::Results, state, commands),
+            Tab::Edit | Tab::Graphs => scroll(ui, Column::Edit, state, commands),
         }
     });
 }
@@ -167,84 +230,88 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 /// The section to scroll to, since something else is marked or selected than in the frame before:
 /// where a tension comes from, a search that was begun elsewhere, a result that was pinned, or the
 /// form of the selected thing. Warnings stay in sight above it.
-fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -> Option<&'static str> {
-    let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
-    let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
-    let holds = |title: &str| sections.iter().any(|(t, _)| *t == title);
+fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
+    let id = column.id();
+    let marked = is_new(ui, Id::unique((id, "marked")), state.analysis.tension_marker)
+        && state.analysis.tension_marker.is_some();
+    let selected =
+        is_new(ui, Id::unique((id, "selected")), state.selection.selected) && state.selection.selected.is_some();
+    let holds = |section: Section| column.sections().contains(&section);
     // A thing that is changed within the panel stays under the pointer.
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
-    if marked && from_elsewhere && holds(MARKED_PLACE_TITLE) {
-        return Some(MARKED_PLACE_TITLE);
+    if marked && from_elsewhere && holds(Section::MarkedPlace) {
+        return Some(Section::MarkedPlace);
     }
-    let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
-    if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(SAFE_REACH) {
-        return Some(SAFE_REACH);
+    let searches = is_new(ui, Id::unique((id, "searches")), state.analysis.safe_reach.began);
+    if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(Section::SafeReach) {
+        return Some(Section::SafeReach);
     }
     let pins = state.analysis.references.len();
-    let pinned = is_new(ui, (id, "pinned"), pins) && pins > 0;
-    if pinned && from_elsewhere && holds(COMPARE) {
-        return Some(COMPARE);
+    let pinned = is_new(ui, Id::unique((id, "pinned")), pins) && pins > 0;
+    if pinned && from_elsewhere && holds(Section::Compare) {
+        return Some(Section::Compare);
     }
     // The form stands on the right where there is such a panel, else below the outline.
-    match (selected, id == "read", state.ui.legend_beside) {
-        (true, true, true) if panels::warnings::has_more(state) => Some(WARNINGS),
-        (true, true, true) => Some(SELECTED),
-        (true, false, false) => Some(SELECTED),
+    match (selected, column, state.ui.legend_beside) {
+        (true, Column::Results, true) if panels::warnings::has_more(state) => Some(Section::Warnings),
+        (true, Column::Results, true) => Some(Section::Selected),
+        (true, Column::Edit, false) => Some(Section::Selected),
         _ => None,
     }
 }
 
 /// Returns whether a value is another than in the frame before.
-fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str), now: T) -> bool {
-    let id = Id::unique(key);
+fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, id: Id, now: T) -> bool {
     let before = ui.data(|d| d.get_temp::<T>(id));
     ui.data_mut(|d| d.insert_temp(id, now));
     before != Some(now)
 }
 
-fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
-    let shown = newly_wanted(ui, (id, sections), state);
+fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Command>) {
+    let shown = newly_wanted(ui, column, state);
     // The bar stands beside figures, not over their last letters.
     let bar = &mut ui.spacing_mut().scroll;
     (bar.floating_allocated_width, bar.bar_width) = (SCROLL_BAR_WIDTH, SCROLL_BAR_WIDTH);
     // Contents that are too wide scroll: they must not push the canvas aside.
-    ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
+    ScrollArea::both().id_salt(column.id()).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
-        for (title, panel) in sections {
-            let hidden = match *title {
+        for &section in column.sections() {
+            let title = section.title();
+            let hidden = match section {
                 // On the right where there is such a panel, else below the outline.
-                SELECTED => state.selection.selected.is_none() || (id == "read") != state.ui.legend_beside,
-                MARKED_PLACE_TITLE => state.analysis.tension_marker.is_none(),
-                UNMARKED_PLACE_TITLE => state.analysis.tension_marker.is_some(),
-                WARNINGS => !panels::warnings::has_more(state),
+                Section::Selected => {
+                    state.selection.selected.is_none() || (column == Column::Results) != state.ui.legend_beside
+                }
+                Section::MarkedPlace => state.analysis.tension_marker.is_none(),
+                Section::UnmarkedPlace => state.analysis.tension_marker.is_some(),
+                Section::Warnings => !panels::warnings::has_more(state),
                 _ => false,
             };
             if hidden {
-                if *title == WARNINGS && id == "read" {
+                if section == Section::Warnings && column == Column::Results {
                     compensate_scroll(ui, ui.cursor().top());
                 }
                 continue;
             }
-            let panel =
-                if *title == READOUTS && state.ui.legend_beside { &(panels::readouts::rest as PanelUi) } else { panel };
+            let panel = section.panel(state.ui.legend_beside);
             let top = ui.cursor().top();
             // What comes and goes above changes no identity below: a drag in a section would end.
-            let named = UiBuilder::new().scope_id(ui.scope_id().with(*title));
-            let section = ui.scope_builder(named, |ui| {
-                CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
+            let named = UiBuilder::new().scope_id(ui.scope_id().with(title));
+            let drawn = ui.scope_builder(named, |ui| {
+                CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| {
                     // One section that is too wide does not widen the others.
                     ui.set_max_width(width);
                     panel(ui, state, commands);
                 })
             });
-            let section = section.inner;
-            if *title == WARNINGS && id == "read" {
+            let header = drawn.inner.header_response;
+            if section == Section::Warnings && column == Column::Results {
                 compensate_scroll(ui, top);
             }
-            if shown == Some(*title) {
-                section.header_response.scroll_to_me(Some(egui::Align::TOP));
+            if shown == Some(section) {
+                header.scroll_to_me(Some(egui::Align::TOP));
             }
-            highlight::register(&section.header_response, &format!("{title} section"));
+            highlight::register(&header, &format!("{title} section"));
         }
     });
 }

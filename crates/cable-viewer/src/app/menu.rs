@@ -164,10 +164,11 @@ fn file(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
         ("Quit", Some(&keys::QUIT), FileCommand::Quit),
     ] {
+        let opens = command == FileCommand::AskOpen;
         if entry(ui, text, shortcut) {
             commands.push(Command::File(command));
         }
-        if text == "Open…" {
+        if opens {
             recent(ui, state, commands);
         }
     }

@@ -32,7 +32,7 @@ use cable_core::Scene;
 
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
-use crate::io::autosave::Autosave;
+use crate::io::autosave::{Autosave, Changes};
 use crate::io::{first_steps as first_steps_file, recent_files};
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach, work_precision};
 use crate::render::theme;
@@ -156,11 +156,12 @@ impl ViewerApp {
     fn update_autosave(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         let state = &mut self.state;
-        let wait = autosave.update(
-            &state.document.scene,
-            [state.document.unsaved(), state.document.fault.is_none()],
-            Instant::now(),
-        );
+        let changes = match (state.document.unsaved(), &state.document.fault) {
+            (false, _) => Changes::None,
+            (true, None) => Changes::Readable,
+            (true, Some(_)) => Changes::Faulty,
+        };
+        let wait = autosave.update(&state.document.scene, changes, Instant::now());
         if let Some(wait) = wait {
             ctx.request_repaint_after(wait);
         }
@@ -441,7 +442,7 @@ impl eframe::App for ViewerApp {
         // The user closed the window on purpose, so unsaved changes are not wanted. Those that
         // another window left stay until they are decided on.
         if let Some(autosave) = &mut self.autosave {
-            autosave.update(&self.state.document.saved, [false, true], Instant::now());
+            autosave.update(&self.state.document.saved, Changes::None, Instant::now());
         }
     }
 

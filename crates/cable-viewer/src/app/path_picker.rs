@@ -25,6 +25,17 @@ pub enum Purpose {
     Save,
 }
 
+impl Purpose {
+    /// The word on the button that does it.
+    #[must_use]
+    pub fn verb(self) -> &'static str {
+        match self {
+            Self::Open => "Open",
+            Self::Save => "Save",
+        }
+    }
+}
+
 /// The list of a folder, and when it was read.
 type CachedListing = (Result<Listing, String>, Instant);
 

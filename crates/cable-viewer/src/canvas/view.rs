@@ -36,7 +36,7 @@ pub struct CanvasView<'a> {
 /// Points between two squares along a line that labels keep off.
 const AVOIDED_SQUARE_SPACING: f32 = 7.0;
 
-/// Whether a label may cover the cable or an arrow where there is no other room.
+/// The right of a label to cover the cable or an arrow where there is no other room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPriority {
     /// It may.

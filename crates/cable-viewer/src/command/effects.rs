@@ -6,7 +6,7 @@ use cable_core::Scene;
 
 use crate::jobs::safe_reach::ReachQuery;
 use crate::state::AppState;
-use crate::worker::request::{Edit, Request};
+use crate::worker::request::{Edit, EditStart, Request};
 
 /// The requests of applied commands to the world outside [`AppState`].
 #[derive(Debug, Default)]
@@ -33,24 +33,24 @@ pub struct Effects {
 
 /// Sends a change of the scene to the worker: the present simulation is carried over.
 pub fn submit_edit(state: &mut AppState, effects: &mut Effects) {
-    submit(state, [false, false], effects);
+    submit(state, EditStart::PresentState, effects);
 }
 
 /// Sends a scene of before to the worker: the cable lies as it did then.
 pub fn submit_undone(state: &mut AppState, effects: &mut Effects) {
-    submit(state, [false, true], effects);
+    submit(state, EditStart::Route, effects);
 }
 
 /// Sends another scene to the worker: nothing of the present simulation is carried over.
 pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
-    submit(state, [true, true], effects);
+    submit(state, EditStart::NewScene, effects);
 }
 
-fn submit(state: &mut AppState, [is_new_scene, starts_from_scene]: [bool; 2], effects: &mut Effects) {
+fn submit(state: &mut AppState, start: EditStart, effects: &mut Effects) {
     // An edit is of the present.
     state.live.show_time(None);
     let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);
-    let edit = Edit { scene, model, settings, is_new_scene, starts_from_scene };
+    let edit = Edit { scene, model, settings, start };
     effects.request.merge(Request {
         edit: Some(edit),
         playback: Some(state.live.playback),

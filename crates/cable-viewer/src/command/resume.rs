@@ -7,7 +7,7 @@ use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::live::MIN_MOVE_M;
 use crate::state::undo::EditKind;
-use crate::worker::request::{Edit, Request, Resume};
+use crate::worker::request::{Edit, EditStart, Request, Resume};
 
 /// Takes the last restart back.
 pub(super) fn undo_restart(state: &mut AppState, effects: &mut Effects) {
@@ -43,9 +43,7 @@ pub(super) fn resume_from_shown(state: &mut AppState, effects: &mut Effects) {
         }
     }
     if state.document.scene != before {
-        state.document.undo.close_entry();
-        state.document.undo.record(&before, EditKind("go on".to_owned()));
-        state.document.undo.close_entry();
+        state.document.undo.record(&before, EditKind::Single);
     }
     state.document.validate();
     state.live.show_time(None);
@@ -53,8 +51,7 @@ pub(super) fn resume_from_shown(state: &mut AppState, effects: &mut Effects) {
         scene: state.document.scene.clone(),
         model: state.solver.model,
         settings: state.solver.settings,
-        is_new_scene: false,
-        starts_from_scene: false,
+        start: EditStart::PresentState,
     };
     let resume = Some(Box::new(Resume { edit, answer }));
     effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });

@@ -113,7 +113,7 @@ pub enum SceneCommand {
 impl SceneCommand {
     /// Edits of one kind that follow each other are undone together.
     fn kind(&self) -> EditKind {
-        EditKind(match self {
+        EditKind::Series(match self {
             Self::SetName(_) => "name".to_owned(),
             Self::SetEnvironment(_) => "environment".to_owned(),
             Self::SetCable { cable, .. } => format!("cable {cable}"),
@@ -123,7 +123,7 @@ impl SceneCommand {
             Self::SetRobot(_) => "robot".to_owned(),
             Self::Move { item, .. } => format!("move {item:?}"),
             Self::MoveAll(moves) => format!("move {:?}", moves.iter().map(|(item, _)| item).collect::<Vec<_>>()),
-            _ => "once".to_owned(),
+            _ => return EditKind::Single,
         })
     }
 }
@@ -156,7 +156,6 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         _ => {}
     }
     let (before, kind) = (state.document.scene.clone(), command.kind());
-    let once = kind.0 == "once";
     let dragged = match command {
         SceneCommand::Move { item: Item::Support { cable, support }, to_m } => Some((cable, support, to_m)),
         _ => None,
@@ -172,13 +171,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     if state.document.scene == before {
         return;
     }
-    if once {
-        state.document.undo.close_entry();
-    }
     state.document.undo.record(&before, kind);
-    if once {
-        state.document.undo.close_entry();
-    }
     drop_lost_selection(state);
     state.live.reset_is_last = false;
     if let Some((cable, support, to_m)) = dragged

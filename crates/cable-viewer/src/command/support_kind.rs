@@ -62,7 +62,8 @@ pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: 
             new.mass_kg = support.mass_kg;
         }
         SupportKind::Free => new.mass_kg = support.mass_kg,
-        SupportKind::Fixed | SupportKind::Robot => {}
+        // Fixed ones, the robot, and kinds to come.
+        _ => {}
     }
     new
 }

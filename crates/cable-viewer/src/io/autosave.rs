@@ -11,6 +11,17 @@ use cable_core::{Scene, files};
 /// time.
 const PERIOD: Duration = Duration::from_secs(5);
 
+/// The changes of a scene since its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Changes {
+    /// There are none.
+    None,
+    /// The changed scene can be read again.
+    Readable,
+    /// It has a fault, and could not be read.
+    Faulty,
+}
+
 /// The file that holds unsaved changes, while there are any.
 #[derive(Debug)]
 pub struct Autosave {
@@ -61,11 +72,10 @@ impl Autosave {
         }
     }
 
-    /// Looks at the scene: `unsaved` if it differs from its file, `whole` if it can be read again.
-    /// Returns after how long to look again, if that matters.
-    pub fn update(&mut self, scene: &Scene, [unsaved, whole]: [bool; 2], now: Instant) -> Option<Duration> {
+    /// Looks at the scene; returns after how long to look again, if that matters.
+    pub fn update(&mut self, scene: &Scene, changes: Changes, now: Instant) -> Option<Duration> {
         self.take_result();
-        if !unsaved {
+        if changes == Changes::None {
             if self.written.is_some() {
                 self.forget();
             }
@@ -80,7 +90,7 @@ impl Autosave {
         if now < due {
             return Some(due - now);
         }
-        if whole && self.writer.is_none() {
+        if changes == Changes::Readable && self.writer.is_none() {
             self.write(scene.clone());
             self.changed = None;
             return None;
@@ -150,12 +160,12 @@ mod tests {
         let mut autosave = Autosave::new(folder.path().join("deep").join("recovery.toml"));
         let mut scene = catalog::tank();
         let began = Instant::now();
-        assert_eq!(autosave.update(&scene, [false, true], began), None);
+        assert_eq!(autosave.update(&scene, Changes::None, began), None);
         scene.name = "changed".to_owned();
-        let wait = autosave.update(&scene, [true, true], began).unwrap();
+        let wait = autosave.update(&scene, Changes::Readable, began).unwrap();
         assert!(wait <= Duration::from_secs(10));
         assert!(autosave.found().is_none());
-        assert_eq!(autosave.update(&scene, [true, true], began + wait), None);
+        assert_eq!(autosave.update(&scene, Changes::Readable, began + wait), None);
         autosave.finish();
         assert_eq!(autosave.fault(), None);
         assert_eq!(autosave.found().unwrap().unwrap(), scene);
@@ -163,11 +173,11 @@ mod tests {
         let whole = scene.clone();
         scene.name = "half typed".to_owned();
         let later = began + Duration::from_secs(60);
-        autosave.update(&scene, [true, false], later);
-        autosave.update(&scene, [true, false], later + Duration::from_secs(60));
+        autosave.update(&scene, Changes::Faulty, later);
+        autosave.update(&scene, Changes::Faulty, later + Duration::from_secs(60));
         autosave.finish();
         assert_eq!(autosave.found().unwrap().unwrap(), whole);
-        autosave.update(&scene, [false, true], later);
+        autosave.update(&scene, Changes::None, later);
         assert!(autosave.found().is_none());
     }
 
@@ -179,11 +189,11 @@ mod tests {
         let mut autosave = Autosave::new(file.join("recovery.toml"));
         let scene = catalog::tank();
         let began = Instant::now();
-        autosave.update(&scene, [true, true], began);
-        autosave.update(&scene, [true, true], began + PERIOD);
+        autosave.update(&scene, Changes::Readable, began);
+        autosave.update(&scene, Changes::Readable, began + PERIOD);
         autosave.finish();
         assert!(autosave.fault().is_some());
-        assert!(autosave.update(&scene, [true, true], began + PERIOD).is_some());
+        assert!(autosave.update(&scene, Changes::Readable, began + PERIOD).is_some());
     }
 
     #[test]

@@ -11,65 +11,77 @@ use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
-/// What the environment panel edits: how it is shown, its key, how it is read and written.
-type Entry = (Quantity, &'static str, fn(&Environment) -> f64, fn(&mut Environment, f64));
+/// A number of the environment that the panel edits.
+struct EnvironmentRow {
+    quantity: Quantity,
+    /// Its path in the scene.
+    path: &'static str,
+    /// True for a component of the wind, which gives way to a table where the wind changes with
+    /// time.
+    is_wind: bool,
+    get: fn(&Environment) -> f64,
+    set: fn(&mut Environment, f64),
+}
 
-const GRAVITY: Entry = (
-    Quantity {
+const GRAVITY: EnvironmentRow = EnvironmentRow {
+    quantity: Quantity {
         name: "Gravity",
         unit: Unit::M_PER_S2,
         usual: [0.0, 25.0],
         logarithmic: false,
         help: "Acceleration of free fall: down in a side view, into the page in a plan view. Standard is 9.80665 m/s², the Moon's 1.62 m/s².",
     },
-    "gravity_m_per_s2",
-    |e| e.gravity_m_per_s2,
-    |e, v| e.gravity_m_per_s2 = v,
-);
-const WIND_X: Entry = (
-    Quantity {
+    path: "environment.gravity_m_per_s2",
+    is_wind: false,
+    get: |e| e.gravity_m_per_s2,
+    set: |e, v| e.gravity_m_per_s2 = v,
+};
+const WIND_X: EnvironmentRow = EnvironmentRow {
+    quantity: Quantity {
         name: "Wind to the right",
         unit: Unit::N_PER_M,
         usual: [-50.0, 50.0],
         logarithmic: false,
         help: "Force of wind or stream on each metre of unstretched cable, to the right. Negative: to the left.",
     },
-    "wind_n_per_m",
-    |e| e.wind_n_per_m[0],
-    |e, v| e.wind_n_per_m[0] = v,
-);
-const WIND_Y: Entry = (
-    Quantity {
+    path: "environment.wind_n_per_m[0]",
+    is_wind: true,
+    get: |e| e.wind_n_per_m[0],
+    set: |e, v| e.wind_n_per_m[0] = v,
+};
+const WIND_Y: EnvironmentRow = EnvironmentRow {
+    quantity: Quantity {
         name: "Wind upwards",
         unit: Unit::N_PER_M,
         usual: [-50.0, 50.0],
         logarithmic: false,
         help: "Force of wind or stream on each metre of unstretched cable, upwards. Negative: downwards.",
     },
-    "wind_n_per_m",
-    |e| e.wind_n_per_m[1],
-    |e, v| e.wind_n_per_m[1] = v,
-);
-const TEMPERATURE: Entry = (
-    Quantity {
+    path: "environment.wind_n_per_m[1]",
+    is_wind: true,
+    get: |e| e.wind_n_per_m[1],
+    set: |e, v| e.wind_n_per_m[1] = v,
+};
+const TEMPERATURE: EnvironmentRow = EnvironmentRow {
+    quantity: Quantity {
         name: "Temperature rise",
         unit: Unit::K,
         usual: [-60.0, 120.0],
         logarithmic: false,
         help: "Degrees above the temperature at which the lengths are given. Changes each length by its thermal expansion.",
     },
-    "temperature_change_k",
-    |e| e.temperature_change_k,
-    |e, v| e.temperature_change_k = v,
-);
+    path: "environment.temperature_change_k",
+    is_wind: false,
+    get: |e| e.temperature_change_k,
+    set: |e, v| e.temperature_change_k = v,
+};
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     view(ui, state, commands);
     let environment = &state.document.scene.environment;
-    for (quantity, key, get, set) in [GRAVITY, WIND_X, WIND_Y, TEMPERATURE] {
-        let wind = key == "wind_n_per_m";
-        if wind && !environment.winds_n_per_m.is_empty() {
+    for EnvironmentRow { quantity, path, is_wind, get, set } in [GRAVITY, WIND_X, WIND_Y, TEMPERATURE] {
+        if is_wind && !environment.winds_n_per_m.is_empty() {
             continue;
         }
         let known = Provenance {
@@ -86,9 +98,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if change.done {
             commands.push(Command::Scene(SceneCommand::EditDone));
         }
-        let component = if quantity.name == WIND_X.0.name { "[0]" } else { "[1]" };
-        let path = format!("environment.{key}{}", if wind { component } else { "" });
-        scene_errors::inline(ui, state, &path, commands);
+        scene_errors::inline(ui, state, path, commands);
     }
     wind(ui, state, commands);
 }

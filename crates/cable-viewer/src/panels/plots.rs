@@ -143,7 +143,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
                 if !state.is_current() {
                     ui.multiply_opacity(DIMMED);
                 }
-                along::ui(ui, cable, (solved, ribbon), view, height)
+                along::ui(ui, cable, solved, ribbon, view, height)
             })
             .inner
         }

@@ -164,8 +164,8 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     ui.separator();
     ui.weak(if robot.path.is_empty() { "No path: it stands until it is driven" } else { "Path" });
     let mut faults = Vec::new();
-    for (k, task) in robot.path.iter().enumerate() {
-        ui.push_id(("leg", k), |ui| leg(ui, robot, (k, task), &mut faults, commands));
+    for k in 0..robot.path.len() {
+        ui.push_id(("leg", k), |ui| leg(ui, robot, k, &mut faults, commands));
     }
     for text in &faults {
         field::fault(ui, text);
@@ -189,13 +189,8 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     });
 }
 
-fn leg(
-    ui: &mut Ui,
-    robot: &Robot,
-    (k, task): (usize, &RobotTask),
-    faults: &mut Vec<String>,
-    commands: &mut Vec<Command>,
-) {
+fn leg(ui: &mut Ui, robot: &Robot, k: usize, faults: &mut Vec<String>, commands: &mut Vec<Command>) {
+    let Some(task) = robot.path.get(k) else { return };
     let number = k + 1;
     // Beside both numbers stand words and the button that takes the leg out.
     let width = (0.5 * (ui.available_width() - LEG_WORDS) - 8.0).clamp(44.0, WIDTH);

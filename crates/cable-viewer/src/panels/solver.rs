@@ -10,6 +10,7 @@ use crate::panels::analysis::work_precision;
 use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::format;
+use crate::units::labels;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
@@ -47,27 +48,6 @@ const HAND_STIFFNESS: Quantity = Quantity {
     help: "The spring by which the pointer holds a support while time runs. Stiffer: the support follows more exactly, and what is pulled beyond its length breaks sooner.",
 };
 
-const MODELS: [(Model, &str, &str); 5] = [
-    (Model::Auto, "Automatic", "The cheapest model that can answer the scene; the reason stands below"),
-    (
-        Model::Catenary,
-        "Catenary",
-        "Closed form between supports: no discretisation error. No contact, no bending stiffness; time runs without inertia",
-    ),
-    (
-        Model::Spans,
-        "Spans",
-        "Exact spans between contacts that are intervals of an obstacle's surface: friction without a mesh. No bending \
-         stiffness; time runs without inertia",
-    ),
-    (Model::Fem, "FEM", "Finite elements with contact, friction, bending and dynamics"),
-    (
-        Model::MassSpring,
-        "Mass-spring",
-        "Lumped masses and springs, explicit in time: a quick look at motion, a second opinion at rest",
-    ),
-];
-
 /// What is set when the user first fixes the number and nothing was solved yet.
 const FIRST_SEGMENTS: usize = 100;
 
@@ -78,8 +58,9 @@ const FIRST_STIFFNESS: f64 = 1000.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        for (model, name, help) in MODELS {
-            if ui.selectable_label(state.solver.model == model, name).on_hover_text(help).clicked() {
+        for model in [Model::Auto].into_iter().chain(Model::SOLVERS) {
+            let info = model.info();
+            if ui.selectable_label(state.solver.model == model, info.label).on_hover_text(info.help).clicked() {
                 commands.push(Command::SetModel(model));
             }
         }
@@ -87,8 +68,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let answer = state.live.snapshot.solution.as_deref();
     if let Some(answer) = answer {
         let why =
-            if state.solver.model == Model::Auto { format!(": {}", sentence(&answer.reason)) } else { String::new() };
-        ui.label(format!("Solved with {}{why}", model_name(answer.model)));
+            if state.solver.model.is_automatic() { format!(": {}", sentence(&answer.reason)) } else { String::new() };
+        ui.label(format!("Solved with {}{why}", labels::model(answer.model)));
         if let Some(next) = &answer.next_cheaper {
             ui.weak(format!("Next cheaper: {}", sentence(next)));
         } else if state.live.snapshot.seeks_histories {
@@ -210,8 +191,4 @@ fn cost(ui: &mut Ui, state: &AppState, answer: &Solution) {
             }
         });
     });
-}
-
-fn model_name(model: Model) -> &'static str {
-    MODELS.iter().find(|(m, _, _)| *m == model).map_or(model.name(), |(_, name, _)| name)
 }

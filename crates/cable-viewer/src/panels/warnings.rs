@@ -226,6 +226,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
         WarningKind::NotUnique => (Severity::Note, "Rest shape is not unique"),
+        _ => (Severity::Caution, "Warning"),
     };
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(", since {t:.2}\u{a0}s"));
@@ -299,13 +300,8 @@ fn figures(warning: &Warning) -> Option<Figures> {
             let [value, limit] = [value, limit].map(format::percent);
             Figures { words: format!("{value} estimated, target {limit}"), short: format!("{value} > {limit}") }
         }
-        WarningKind::Loop
-        | WarningKind::InitialPenetration
-        | WarningKind::NotUnique
-        | WarningKind::SupportHeld
-        | WarningKind::ClearOfWheel
-        | WarningKind::ThroughRobot
-        | WarningKind::Stabilised => return None,
+        // A loop, a second rest, a blocked support and the like have no figure.
+        _ => return None,
     })
 }
 

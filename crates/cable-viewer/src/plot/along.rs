@@ -19,7 +19,8 @@ pub const GROUP: &str = "along";
 pub fn ui(
     ui: &mut Ui,
     cable: &Cable,
-    (solved, ribbon): (&CableSolution, &[TensionRange]),
+    solved: &CableSolution,
+    ribbon: &[TensionRange],
     view: GraphView,
     height: f32,
 ) -> GraphResponse {

@@ -226,7 +226,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     }
     let figure = response.response.labelled_by(title);
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
-    set_accessible_text(&figure, (graph.title, ribbon), lines, ((symbol, si), cursor_text));
+    let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol, si, cursors: cursor_text };
+    set_accessible_text(&figure, &spoken);
     let sheet = || GraphInView {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
@@ -251,23 +252,34 @@ fn moved_mark(ui: &Ui, graph: &Graph<'_>) -> Option<f64> {
     graph.mark.filter(|mark| before != Some(*mark))
 }
 
+/// The contents of a graph that are read aloud.
+struct SpokenGraph<'a> {
+    title: &'a str,
+    /// Place, least and greatest at the end of the ribbon, in the unit shown.
+    ribbon: Option<[f64; 3]>,
+    /// The lines, SI.
+    lines: &'a [Series],
+    /// The unit shown, and how many SI units it holds.
+    symbol: &'a str,
+    si: f64,
+    /// The readings of the cursors.
+    cursors: Option<String>,
+}
+
 /// Says the last values of the lines, and what the cursors read.
-fn set_accessible_text(
-    figure: &egui::Response,
-    (title, ribbon): (&str, Option<[f64; 3]>),
-    lines: &[Series],
-    ((symbol, si), cursors): ((&str, f64), Option<String>),
-) {
+fn set_accessible_text(figure: &egui::Response, graph: &SpokenGraph<'_>) {
+    let SpokenGraph { title, ribbon, lines, symbol, si, cursors } = graph;
     figure.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Figure, true, title));
     field::name(figure, title);
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let values: Vec<String> =
-        last.map(|(l, p)| format!("{} {}", l.name, quantity(p[1] / si, DIGITS, symbol))).collect();
+        last.map(|(l, p)| format!("{} {}", l.name, quantity(p[1] / *si, DIGITS, symbol))).collect();
     let ribbon = ribbon.map_or_else(String::new, |[_, low, high]| {
         format!("; {RIBBON} {} to {} {symbol}", significant(low, DIGITS), significant(high, DIGITS))
     });
-    let spoken =
-        values.join(", ") + &ribbon + &cursors.map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
+    let spoken = values.join(", ")
+        + &ribbon
+        + &cursors.as_ref().map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
     figure.ctx.accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
 }
 

@@ -72,17 +72,14 @@ impl CableQuantity {
     }
 }
 
+/// The colours of [`Model::SOLVERS`], in their order.
+const OF_SOLVERS: [Color32; 4] = [LINES[1], LINES[0], LINES[2], LINES[3]];
+
 /// The colour of a model in every chart.
 #[must_use]
 pub fn of_model(model: Model) -> Color32 {
-    let [spans, catenary, fem, mass_spring] = LINES;
-    match model {
-        Model::Spans => spans,
-        Model::Catenary => catenary,
-        Model::Fem => fem,
-        Model::MassSpring => mass_spring,
-        Model::Auto | Model::External => Color32::GRAY,
-    }
+    let place = Model::SOLVERS.iter().position(|m| *m == model);
+    place.and_then(|place| OF_SOLVERS.get(place)).copied().unwrap_or(Color32::GRAY)
 }
 
 /// A perceptually even, colour-blind-safe sequence of colours.

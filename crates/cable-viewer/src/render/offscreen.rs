@@ -4,7 +4,7 @@ use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2, Viewpor
 use image::RgbaImage;
 
 use crate::render::svg;
-use crate::render::triangle_rasteriser::{self, Textures};
+use crate::render::triangle_rasteriser::{self, Frame, Textures};
 
 /// Time between two frames, s.
 const FRAME_S: f32 = 1.0 / 60.0;
@@ -71,7 +71,8 @@ impl Offscreen {
         let size = [self.size.x, self.size.y].map(|s| (s * self.pixels_per_point).round() as u32);
         let shapes = self.last.as_ref().map_or_else(Vec::new, |output| output.shapes.clone());
         let primitives = self.ctx.tessellate(shapes, self.pixels_per_point);
-        triangle_rasteriser::draw(&primitives, &self.textures, (size, self.pixels_per_point, background))
+        let frame = Frame { size, pixels_per_point: self.pixels_per_point, background };
+        triangle_rasteriser::draw(&primitives, &self.textures, frame)
     }
 }
 

@@ -82,7 +82,7 @@ impl egui::Plugin for SoftwarePainter {
         }
         let jobs = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         let screen = ctx.viewport_rect();
-        let picture = FrameGeometry::of(&jobs, screen, (self.format, Arc::clone(&self.font)));
+        let picture = FrameGeometry::of(&jobs, screen, self.format, Arc::clone(&self.font));
         let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
         output.shapes = vec![ClippedShape::new(screen, callback)];
     }
@@ -121,7 +121,8 @@ impl FrameGeometry {
     fn of(
         jobs: &[ClippedPrimitive],
         screen: Rect,
-        (format, font): (wgpu::TextureFormat, Arc<Mutex<Vec<ImageDelta>>>),
+        format: wgpu::TextureFormat,
+        font: Arc<Mutex<Vec<ImageDelta>>>,
     ) -> Self {
         let meshes = || {
             jobs.iter().filter_map(|job| match &job.primitive {
@@ -312,11 +313,11 @@ impl Device {
         });
         let screen = buffer_of(device, 16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
         let font = font_of(device, [1, 1]);
-        let bound = bind(device, &layout, (&screen, &font, &sampler));
+        let bound = bind(device, &layout, &screen, &font, &sampler);
         Self {
-            pipeline: pipeline(device, format, (&layout, ["corner", "pixel"])),
-            plain: pipeline(device, format, (&layout, ["corner", "plain"])),
-            solid: pipeline(device, format, (&layout, ["solid_corner", "solid"])),
+            pipeline: pipeline(device, format, &layout, Fill::Font),
+            plain: pipeline(device, format, &layout, Fill::Plain),
+            solid: pipeline(device, format, &layout, Fill::Solid),
             corners: buffer_of(device, 1 << 20, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),
             indices: buffer_of(device, 1 << 20, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST),
             layout,
@@ -335,7 +336,7 @@ impl Device {
             Some(at) => at.map(|v| v as u32),
             None => {
                 self.font = font_of(device, [width, height]);
-                self.bound = bind(device, &self.layout, (&self.screen, &self.font, &self.sampler));
+                self.bound = bind(device, &self.layout, &self.screen, &self.font, &self.sampler);
                 [0, 0]
             }
         };
@@ -382,7 +383,9 @@ fn font_of(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
 fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    (screen, font, sampler): (&wgpu::Buffer, &wgpu::Texture, &wgpu::Sampler),
+    screen: &wgpu::Buffer,
+    font: &wgpu::Texture,
+    sampler: &wgpu::Sampler,
 ) -> wgpu::BindGroup {
     let view = font.create_view(&wgpu::TextureViewDescriptor::default());
     device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -399,8 +402,15 @@ fn bind(
 fn pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
-    (layout, [vertex, fragment]): (&wgpu::BindGroupLayout, [&str; 2]),
+    layout: &wgpu::BindGroupLayout,
+    fill: Fill,
 ) -> wgpu::RenderPipeline {
+    // The entry points of the shader.
+    let [vertex, fragment] = match fill {
+        Fill::Font => ["corner", "pixel"],
+        Fill::Plain => ["corner", "plain"],
+        Fill::Solid => ["solid_corner", "solid"],
+    };
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("software drawing"),
         source: wgpu::ShaderSource::Wgsl(SHADER.into()),
@@ -418,7 +428,7 @@ fn pipeline(
         alpha: part(wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One),
     };
     // What is opaque covers what is below it: nothing is read back.
-    let blend = (fragment != "solid").then_some(blend);
+    let blend = (fill != Fill::Solid).then_some(blend);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("software drawing"),
         layout: Some(&layout),

@@ -87,20 +87,36 @@ fn parts(colour: Color32) -> Colour {
     colour.to_array().map(f32::from)
 }
 
-/// Draws what a frame is made of on a background of one opaque colour; `size` in pixels.
+/// The picture that a frame is drawn on.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+    /// Pixels per point.
+    pub pixels_per_point: f32,
+    /// Its colour, which counts as opaque.
+    pub background: Color32,
+}
+
+/// The part of a picture that a mesh may draw in.
+#[derive(Clone, Copy, Debug)]
+struct Clip {
+    /// Left, top, right and bottom, pixels; right and bottom are not within.
+    pixels: [u32; 4],
+    pixels_per_point: f32,
+}
+
+/// Draws what a frame is made of.
 #[must_use]
-pub fn draw(
-    primitives: &[ClippedPrimitive],
-    textures: &Textures,
-    (size, pixels_per_point, background): ([u32; 2], f32, Color32),
-) -> RgbaImage {
+pub fn draw(primitives: &[ClippedPrimitive], textures: &Textures, frame: Frame) -> RgbaImage {
+    let Frame { size, pixels_per_point, background } = frame;
     let mut picture = RgbaImage::from_pixel(size[0], size[1], Rgba(background.to_opaque().to_array()));
     for ClippedPrimitive { clip_rect, primitive } in primitives {
         if let Primitive::Mesh(mesh) = primitive
             && let Some(texture) = textures.known.get(&mesh.texture_id)
         {
-            let clip = pixels(*clip_rect, pixels_per_point, size);
-            draw_mesh(&mut picture, (mesh, texture), (clip, pixels_per_point));
+            let clip = Clip { pixels: pixels(*clip_rect, pixels_per_point, size), pixels_per_point };
+            draw_mesh(&mut picture, mesh, texture, clip);
         }
     }
     picture
@@ -112,11 +128,11 @@ fn pixels(clip: Rect, pixels_per_point: f32, size: [u32; 2]) -> [u32; 4] {
     [pixel(clip.min.x, size[0]), pixel(clip.min.y, size[1]), pixel(clip.max.x, size[0]), pixel(clip.max.y, size[1])]
 }
 
-fn draw_mesh(picture: &mut RgbaImage, (mesh, texture): (&Mesh, &Texture), (clip, scale): ([u32; 4], f32)) {
+fn draw_mesh(picture: &mut RgbaImage, mesh: &Mesh, texture: &Texture, clip: Clip) {
     for triangle in mesh.indices.chunks_exact(3) {
         let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
         if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) {
-            draw_triangle(picture, texture, ([a, b, c], clip, scale));
+            draw_triangle(picture, texture, [a, b, c], clip);
         }
     }
 }
@@ -136,7 +152,8 @@ fn top_or_left(from: Pos2, to: Pos2) -> bool {
     to.y < from.y || (to.y == from.y && to.x > from.x)
 }
 
-fn draw_triangle(picture: &mut RgbaImage, texture: &Texture, (corners, clip, scale): ([&Vertex; 3], [u32; 4], f32)) {
+fn draw_triangle(picture: &mut RgbaImage, texture: &Texture, corners: [&Vertex; 3], clip: Clip) {
+    let Clip { pixels: clip, pixels_per_point: scale } = clip;
     let [mut a, mut b, c] = corners;
     let at = |v: &Vertex| Pos2::new(v.pos.x * scale, v.pos.y * scale);
     let area = side(at(a), at(b), at(c).x, at(c).y);
@@ -228,7 +245,11 @@ mod tests {
         let white = textures(vec![Color32::WHITE; 4]);
         // Either way round, and with the shared edge through the middles of pixels.
         for of in [[[1.0, 1.0], [7.0, 1.0], [7.0, 7.0], [1.0, 7.0]], [[1.0, 1.0], [1.0, 7.0], [7.0, 7.0], [7.0, 1.0]]] {
-            let picture = draw(&[square(of, half)], &white, ([8, 8], 1.0, Color32::BLACK));
+            let picture = draw(
+                &[square(of, half)],
+                &white,
+                Frame { size: [8, 8], pixels_per_point: 1.0, background: Color32::BLACK },
+            );
             for (x, y, pixel) in picture.enumerate_pixels() {
                 let inside = (1..5).contains(&x) && (1..5).contains(&y);
                 assert_eq!(pixel.0, if inside { [64, 64, 64, 255] } else { [0, 0, 0, 255] }, "{x}, {y}");

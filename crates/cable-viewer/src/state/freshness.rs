@@ -8,7 +8,7 @@ use crate::state::app_state::AppState;
 /// new ones.
 const GRACE_S: f64 = 0.12;
 
-/// Whether what is on screen answers the scene as it is.
+/// The relation of what is on screen to the scene as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freshness {
     /// It does.

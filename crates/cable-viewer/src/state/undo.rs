@@ -11,9 +11,14 @@ pub struct Undo {
     last: Option<EditKind>,
 }
 
-/// Edits that join into one entry while they follow each other.
+/// A relation of an edit to the one before it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EditKind(pub String);
+pub enum EditKind {
+    /// It is an entry of its own.
+    Single,
+    /// It joins those of the same name that it follows at once: a drag, a slider.
+    Series(String),
+}
 
 /// Most entries kept; the oldest are forgotten.
 const DEPTH: usize = 200;
@@ -22,10 +27,11 @@ impl Undo {
     /// Keeps `scene`, about to be changed by an edit of a kind.
     pub fn record(&mut self, scene: &Scene, kind: EditKind) {
         self.redo_stack.clear();
-        if self.last.as_ref() == Some(&kind) {
+        let is_single = kind == EditKind::Single;
+        if !is_single && self.last.as_ref() == Some(&kind) {
             return;
         }
-        self.last = Some(kind);
+        self.last = (!is_single).then_some(kind);
         if self.undo_stack.len() == DEPTH {
             self.undo_stack.remove(0);
         }
@@ -56,9 +62,7 @@ impl Undo {
     pub fn go_to(&mut self, mut present: Scene, scene: &Scene) -> Scene {
         let forward = self.redo_stack.contains(scene);
         if !forward && !self.undo_stack.contains(scene) {
-            self.close_entry();
-            self.record(&present, EditKind("restart".to_owned()));
-            self.close_entry();
+            self.record(&present, EditKind::Single);
             return scene.clone();
         }
         while present != *scene {

@@ -73,12 +73,5 @@ pub fn solving(seconds: f64) -> String {
 /// A model as the window calls it.
 #[must_use]
 pub fn model(model: Model) -> &'static str {
-    match model {
-        Model::Auto => "Automatic",
-        Model::Catenary => "Catenary",
-        Model::Spans => "Spans",
-        Model::Fem => "FEM",
-        Model::MassSpring => "Mass-spring",
-        Model::External => "External model",
-    }
+    model.info().label
 }

@@ -38,7 +38,7 @@ pub fn name(response: &Response, label: &str) {
 /// Escape drops it.
 pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> FieldOutput<f64> {
     let shown = [unit.text(value), unit.exact(value)];
-    let entry = text_field(ui, label, &shown, (width, Align2::RIGHT_CENTER), |text| unit.parse(text));
+    let entry = text_field(ui, label, &shown, width, Align2::RIGHT_CENTER, |text| unit.parse(text));
     // Text shown with fewer digits than the value has must not round it when it is entered
     // unchanged.
     let value = entry.value.filter(|&v| unit.exact(v) != shown[1]);
@@ -52,7 +52,7 @@ pub fn text(ui: &mut Ui, label: &str, value: &str, width: f32) -> FieldOutput<St
         "" => Err("a name must not be empty".to_owned()),
         name => Ok(name.to_owned()),
     };
-    let entry = text_field(ui, label, &shown, (width, Align2::LEFT_CENTER), read);
+    let entry = text_field(ui, label, &shown, width, Align2::LEFT_CENTER, read);
     FieldOutput { value: entry.value.filter(|v| v != value), ..entry }
 }
 
@@ -61,7 +61,8 @@ fn text_field<T>(
     ui: &mut Ui,
     label: &str,
     shown: &[String; 2],
-    (width, align): (f32, Align2),
+    width: f32,
+    align: Align2,
     read: impl FnOnce(&str) -> Result<T, String>,
 ) -> FieldOutput<T> {
     let id = ui.scope_id().with(("field", label));

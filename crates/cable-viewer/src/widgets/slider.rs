@@ -55,7 +55,8 @@ pub fn drag_help(logarithmic: bool) -> String {
 #[derive(Clone, Copy, Debug, Default)]
 struct Anchor {
     value: f64,
-    x: f32,
+    /// Place of the pointer then, points.
+    pointer_x: f32,
     fine: bool,
     /// Where the pointer was last, and when it last moved, s.
     last: (f32, f64),
@@ -130,16 +131,16 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: O
         let from = pressed.map_or(x, |p| p.x);
         if (from - knob).abs() > radius {
             let value = asked.unwrap_or(value);
-            ui.data_mut(|d| d.insert_temp(response.id, Anchor { value, x, fine, last: (x, now_s) }));
+            ui.data_mut(|d| d.insert_temp(response.id, Anchor { value, pointer_x: x, fine, last: (x, now_s) }));
             return asked;
         }
-        Anchor { value, x: from, fine, last: (from, now_s) }
+        Anchor { value, pointer_x: from, fine, last: (from, now_s) }
     };
     let (last_x, moved_s) = anchor.last;
     if fine != anchor.fine || (x != last_x && now_s - moved_s > POINTER_REST_S) {
-        anchor = Anchor { value, x: last_x, fine, ..anchor };
+        anchor = Anchor { value, pointer_x: last_x, fine, ..anchor };
     }
-    let points = f64::from(x - anchor.x) * if fine { SHIFT } else { 1.0 };
+    let points = f64::from(x - anchor.pointer_x) * if fine { SHIFT } else { 1.0 };
     let half = 0.5 * if fine { SHIFT } else { 1.0 };
     let moves = x != last_x;
     anchor.last = (x, if moves { now_s } else { moved_s });
@@ -147,7 +148,7 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: O
     if !moves {
         return None;
     }
-    if x == anchor.x {
+    if x == anchor.pointer_x {
         return Some(anchor.value);
     }
     // The roundest number that a point of movement covers.

@@ -92,9 +92,9 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     let area = ScrollArea::vertical().id_salt(("times", table.of)).max_height(HEIGHT).auto_shrink([false, true]);
     area.show_rows(ui, height, knots.times_s.len(), |ui, rows| {
         for k in rows {
-            ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, table, k, width, &mut changed, faults)).inner)
-                .inner
-                .apply(k, [&mut doubled, &mut gone]);
+            let clicked = ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, table, k, width, &mut changed, faults)).inner);
+            doubled = if clicked.inner.add { Some(k) } else { doubled };
+            gone = if clicked.inner.remove { Some(k) } else { gone };
         }
     });
     if let Some(k) = gone.filter(|_| changed.times_s.len() > table.least) {
@@ -107,17 +107,12 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     (changed != *knots).then_some(changed)
 }
 
-/// What the buttons of a row ask for: another after it, or that it goes.
-struct RowButtons([bool; 2]);
-
-impl RowButtons {
-    fn apply(&self, k: usize, wishes: [&mut Option<usize>; 2]) {
-        for (asked, wish) in self.0.iter().zip(wishes) {
-            if *asked {
-                *wish = Some(k);
-            }
-        }
-    }
+/// The buttons of a row that were clicked.
+struct RowButtons {
+    /// Another row is asked for after it.
+    add: bool,
+    /// It is to go.
+    remove: bool,
 }
 
 fn row(
@@ -149,7 +144,7 @@ fn row(
     let add = add.on_hover_text("Adds a time halfway to the next").clicked();
     let remove = icon::plain_button(ui, Icon::Remove, true);
     field::name(&remove, &of("Remove time"));
-    RowButtons([add, remove.on_hover_text("Removes this row").clicked()])
+    RowButtons { add, remove: remove.on_hover_text("Removes this row").clicked() }
 }
 
 /// A box that says whether something changes with time; what it is to be once it was clicked.

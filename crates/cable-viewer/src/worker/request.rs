@@ -42,11 +42,20 @@ pub struct Edit {
     pub model: Model,
     /// Mesh and accuracy.
     pub settings: Settings,
-    /// Another scene, not a change of the present one: nothing is carried over.
-    pub is_new_scene: bool,
-    /// The cable lies as the scene says, wherever it is now: an undo leads back to the answer that
-    /// was, even where the cable passes an obstacle on the way.
-    pub starts_from_scene: bool,
+    /// The shape that the cables start from.
+    pub start: EditStart,
+}
+
+/// The shape from which cables start after an edit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EditStart {
+    /// They go on from where they are.
+    PresentState,
+    /// They lie as the scene says, wherever they are now: an undo leads back to the answer that
+    /// was, even where a cable passes an obstacle on the way.
+    Route,
+    /// It is another scene, not a change of the present one: nothing is carried over.
+    NewScene,
 }
 
 /// An earlier instant to go on from.
@@ -82,14 +91,15 @@ impl Request {
         // What is asked after it is to be solved.
         self.cancel = later.cancel || (self.cancel && !later.solves());
         if let Some(edit) = later.edit {
-            let is_new_scene = edit.is_new_scene || self.edit.as_ref().is_some_and(|e| e.is_new_scene);
-            if edit.is_new_scene {
+            let follows_new_scene = self.edit.as_ref().is_some_and(|e| e.start == EditStart::NewScene);
+            if edit.start == EditStart::NewScene {
                 self.reset = false;
                 self.steps = 0;
             }
             self.drag = None;
             self.resume = None;
-            self.edit = Some(Edit { is_new_scene, ..edit });
+            let start = if follows_new_scene { EditStart::NewScene } else { edit.start };
+            self.edit = Some(Edit { start, ..edit });
         }
         if let Some(drag) = later.drag {
             if let Some(edit) = &mut self.edit {
@@ -140,23 +150,20 @@ mod tests {
     #[test]
     fn later_requests_win_and_steps_are_bounded() {
         let scene = cable_core::scene::catalog::hanging_span();
-        let edit = |is_new_scene, name: &str| {
+        let edit = |start, name: &str| {
             let mut scene = scene.clone();
             scene.name = name.to_owned();
             let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
-            Request {
-                edit: Some(Edit { scene, model, settings, is_new_scene, starts_from_scene: false }),
-                ..Request::default()
-            }
+            Request { edit: Some(Edit { scene, model, settings, start }), ..Request::default() }
         };
-        let mut waiting = edit(true, "first");
+        let mut waiting = edit(EditStart::NewScene, "first");
         for _ in 0..1000 {
             waiting.merge(Request { steps: 1, ..Request::default() });
         }
-        waiting.merge(edit(false, "last"));
+        waiting.merge(edit(EditStart::PresentState, "last"));
         let merged = waiting.edit.expect("an edit");
         assert_eq!(merged.scene.name, "last");
-        assert!(merged.is_new_scene, "the new scene must not inherit the old one's state");
+        assert_eq!(merged.start, EditStart::NewScene, "the new scene must not inherit the old one's state");
         assert!(waiting.steps <= 60);
     }
 }

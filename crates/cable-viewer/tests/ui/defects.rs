@@ -10,7 +10,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, SceneCommand};
 use cable_viewer::state::{AppState, Freshness, Item, Playback};
 use cable_viewer::worker::engine::Engine;
-use cable_viewer::worker::request::{Edit, Request};
+use cable_viewer::worker::request::{Edit, EditStart, Request};
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -134,8 +134,7 @@ fn time_goes_on_from_the_answer_and_not_from_a_draft_of_it() {
             scene: scene.clone(),
             model: cable_core::Model::Fem,
             settings: cable_core::Settings::default(),
-            is_new_scene,
-            starts_from_scene: false,
+            start: if is_new_scene { EditStart::NewScene } else { EditStart::PresentState },
         }),
         came_during_solve: !is_new_scene,
         ..Request::default()

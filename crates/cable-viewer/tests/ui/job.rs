@@ -49,7 +49,7 @@ fn a_first_robot_stands_in_the_tank_with_the_cable_on_its_hitch() {
             let at = scene.robot.as_ref().unwrap_or_else(|| panic!("{what}: none")).at_m;
             let stand = Ground::of(scene).stand(at[0], robot.track_half_length_m());
             let stand = stand.unwrap_or_else(|| panic!("{what}: no ground at {at:?}"));
-            assert!(stand.pitch.abs() < 0.21 && (stand.y - at[1]).abs() < 1e-9, "{what}: {stand:?}, {at:?}");
+            assert!(stand.pitch.abs() < 0.21 && (stand.height - at[1]).abs() < 1e-9, "{what}: {stand:?}, {at:?}");
             assert!(at[1] < end[1] && at[0].abs() < 0.5 * map.inside_width_m.value, "{what}: on the wall, {at:?}");
             // One step back for all of it.
             harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);

@@ -65,6 +65,12 @@ pub struct RunFolder {
     _locks: Vec<fs::File>,
 }
 
+impl std::fmt::Debug for RunFolder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("RunFolder").field("folder", &self.folder).field("place", &self.place).finish_non_exhaustive()
+    }
+}
+
 impl RunFolder {
     /// Begins a run in a folder that is new, empty, or a run's own (those above it are made):
     /// writes its scene and that it is partial.

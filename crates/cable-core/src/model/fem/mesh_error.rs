@@ -44,7 +44,7 @@ pub(in crate::model::fem) struct TwoMeshes {
     pub errors: ErrorEstimates,
 }
 
-/// True if the comparison may change the mesh.
+/// The permission of the comparison to change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
     /// The scene leaves the number of bars open.

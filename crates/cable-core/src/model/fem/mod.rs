@@ -30,7 +30,7 @@ mod remesh;
 mod results;
 pub mod settings;
 mod state;
-pub mod system;
+pub(crate) mod system;
 #[cfg(test)]
 mod tests;
 mod time;

@@ -27,6 +27,17 @@ use crate::model::spans::slack::{self, LooseShapes};
 /// A force that differs by less than this part is the same.
 const FORCE_TOLERANCE: f64 = 1e-9;
 
+/// Factor of the drag on a cable that runs away after a step that was solved … Smaller: the next
+/// step fails more often; larger: more steps until the cable rests without a drag. A choice, tuned
+/// on no campaign, as are the two below.
+const DRAG_DECREASE: f64 = 0.25;
+/// … and after one that was solved only when the drag had been raised. Smaller and larger: as
+/// above.
+const DRAG_DECREASE_AFTER_RAISE: f64 = 0.5;
+/// Factor of the drag after a step that failed. Smaller: more steps fail; larger: more follow until
+/// it has faded.
+const DRAG_INCREASE: f64 = 8.0;
+
 /// Part of the way at which a step goes to its end: rounding.
 const END_ROUNDING: f64 = 1.000_001;
 
@@ -145,9 +156,9 @@ impl CableEquilibrium {
             taken.missing_friction = point_load::unremembered_friction(&self.sections[k], &self.context);
         }
         for c in &mut self.sections[k].contacts {
-            let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.p[0]);
+            let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.place[0]);
             if c.is_load() {
-                c.ends.p[1] = c.ends.p[0];
+                c.ends.place[1] = c.ends.place[0];
             }
             c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
             // Contacts that route down in this step rub from now on.
@@ -298,7 +309,7 @@ impl CableEquilibrium {
                 Ok(t) => {
                     pushed = None;
                     taken = taken.and(t);
-                    drag *= if raised > 0 { 0.5 } else { 0.25 };
+                    drag *= if raised > 0 { DRAG_DECREASE_AFTER_RAISE } else { DRAG_DECREASE };
                     raised = 0;
                     if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
                         && let Ok(t) = self.step(layout, to, workspace)
@@ -308,7 +319,7 @@ impl CableEquilibrium {
                 }
                 Err(failure) => {
                     pushed = matches!(failure, Failure::Compressed { .. }).then_some(failure);
-                    drag *= 8.0;
+                    drag *= DRAG_INCREASE;
                     raised += 1;
                 }
             }

@@ -44,7 +44,7 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
                 greatest = if t > greatest { t } else { greatest };
             }
         }
-        for t in section.contacts.iter().flat_map(|c| c.ends.t) {
+        for t in section.contacts.iter().flat_map(|c| c.ends.tension) {
             greatest = if t > greatest { t } else { greatest };
         }
         if let Some(loose) = &section.loose {
@@ -68,8 +68,8 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
                 section.shapes(context, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
             if let Some(c) = section.contacts.get(k) {
-                let contact_path = context.contact_path(c).with_cached_piece(c.ends.p[0]);
-                let stretches = stretches(&contact_path, layout.problem.radius, &c.history, c.ends.p);
+                let contact_path = context.contact_path(c).with_cached_piece(c.ends.place[0]);
+                let stretches = stretches(&contact_path, layout.problem.radius, &c.history, c.ends.place);
                 if c.is_load() {
                     load_nodes(&mut nodes, section, context, k, &contact_path);
                 } else {
@@ -179,17 +179,17 @@ fn contact_nodes(nodes: &mut Nodes<'_>, contact_path: &ContactPath<'_>, c: &Cont
             if place.stretch > 0.0 { place.turn * contact_path.law.stretch(tension) / place.stretch } else { 0.0 };
         nodes.push(Point { arc_length: s, at: place.at, force: place.tangent * tension, curvature });
     };
-    push(&contact_path.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
+    push(&contact_path.place(c.ends.place[0]), (c.ends.tension[0], c.ends.material[0]));
     for stretch in stretches {
         let (a, b) = (stretch.from, stretch.to);
         let count = stretch.nodes();
-        let last = if b < c.ends.p[1] { count } else { count - 1 };
+        let last = if b < c.ends.place[1] { count } else { count - 1 };
         for i in 1..=last {
             let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
             push(&stretch.cached_piece.place(p), stretch.at(contact_path, p));
         }
     }
-    push(&contact_path.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
+    push(&contact_path.place(c.ends.place[1]), (c.ends.tension[1], c.ends.material[1]));
 }
 
 /// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
@@ -202,14 +202,14 @@ fn load_nodes(
     contact_path: &ContactPath<'_>,
 ) {
     let c = &section.contacts[j];
-    let place = contact_path.place(c.ends.p[0]);
+    let place = contact_path.place(c.ends.place[0]);
     let pulls = |side: usize| section.force_at_contact(context, j, side);
     for side in 0..2 {
         // Beyond an end there is nothing: it has what comes to it.
         let ends = (j + side == 0 || j + side == section.contacts.len()) && !section.has_span(j + side);
-        let along = || place.tangent * c.ends.t[side];
+        let along = || place.tangent * c.ends.tension[side];
         let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
-        nodes.push(Point { arc_length: c.ends.s[side], at: place.at, force, curvature: 0.0 });
+        nodes.push(Point { arc_length: c.ends.material[side], at: place.at, force, curvature: 0.0 });
     }
 }
 
@@ -241,15 +241,15 @@ fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64
 fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &[ContactStretch]) -> ContactReport {
     let friction = contact_path.friction;
     let (normal_n, push, along, turned) = pressed(contact_path, stretches);
-    let middle = contact_path.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
+    let middle = contact_path.place(0.5 * (c.ends.place[0] + c.ends.place[1]));
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
-    let [t1, t2] = c.ends.t;
+    let [t1, t2] = c.ends.tension;
     let slips = friction <= 0.0 || matches!(c.mode, Mode::Slip(_));
     let mut report = ContactReport {
         obstacle: name.to_owned(),
         x_m: middle.at.x,
         y_m: middle.at.y,
-        arc_length_m: 0.5 * (c.ends.s[0] + c.ends.s[1]),
+        arc_length_m: 0.5 * (c.ends.material[0] + c.ends.material[1]),
         normal: [unit.x, unit.y],
         normal_n,
         friction_n: t1 - t2 - along,
@@ -258,8 +258,8 @@ fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &
         turn_deg: turned.to_degrees(),
         tension_before_n: t1,
         tension_after_n: t2,
-        begins_m: c.ends.s[0],
-        ends_m: c.ends.s[1],
+        begins_m: c.ends.material[0],
+        ends_m: c.ends.material[1],
         parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
         ..ContactReport::default()
     };
@@ -293,14 +293,15 @@ fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<
 /// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
 /// both ends leave over.
 fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
-    let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.p[side]).tangent * c.ends.t[side]);
-    before - after - contact_path.law.load * (c.ends.s[1] - c.ends.s[0])
+    let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.place[side]).tangent * c.ends.tension[side]);
+    before - after - contact_path.law.load * (c.ends.material[1] - c.ends.material[0])
 }
 
 /// The material that lies loose in the kink behind contact j, m.
 pub(in crate::model::spans) fn loose(section: &CableSection, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (section.contacts.get(j)?, section.contacts.get(j + 1)?);
-    (c.next == Connection::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+    (c.next == Connection::Pocket && next.ends.material[0] > c.ends.material[1])
+        .then_some([c.ends.material[1], next.ends.material[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
@@ -310,7 +311,7 @@ pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) ->
         let section = section?;
         let outer = if side == 0 { section.contacts.first() } else { section.contacts.last() };
         Some(match (section.end_conditions[side], outer) {
-            (EndCondition::Loose(_), Some(c)) => c.ends.t[side],
+            (EndCondition::Loose(_), Some(c)) => c.ends.tension[side],
             _ => end_force(cable_equilibrium, section, side).norm(),
         })
     };
@@ -324,7 +325,7 @@ pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) ->
             greatest = larger(greatest, larger(ends[0], ends[1]));
         }
         let of_loose = section.loose.iter().flat_map(|l| &l.parts).flat_map(|part| part.tension);
-        greatest = section.contacts.iter().flat_map(|c| c.ends.t).chain(of_loose).fold(greatest, larger);
+        greatest = section.contacts.iter().flat_map(|c| c.ends.tension).chain(of_loose).fold(greatest, larger);
     }
     [start, last, greatest]
 }
@@ -376,7 +377,7 @@ fn load(
 ) -> ContactReport {
     let c = &section.contacts[j];
     let load_balance = load_balance(section, context, j);
-    let at = contact_path.place(c.ends.p[0]).at;
+    let at = contact_path.place(c.ends.place[0]).at;
     // The obstacle holds what all else does to the point.
     let held =
         load_balance.normal * load_balance.press() - load_balance.tangent * load_balance.sum.dot(&load_balance.tangent);
@@ -385,18 +386,18 @@ fn load(
         obstacle: name.to_owned(),
         x_m: at.x,
         y_m: at.y,
-        arc_length_m: c.ends.s[0],
+        arc_length_m: c.ends.material[0],
         normal: [load_balance.normal.x, load_balance.normal.y],
         normal_n: load_balance.press(),
         friction_n: -load_balance.sum.dot(&load_balance.tangent),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
         turn_deg: 0.0,
-        tension_before_n: c.ends.t[0],
-        tension_after_n: c.ends.t[1],
-        begins_m: c.ends.s[0],
-        ends_m: c.ends.s[0],
+        tension_before_n: c.ends.tension[0],
+        tension_after_n: c.ends.tension[1],
+        begins_m: c.ends.material[0],
+        ends_m: c.ends.material[0],
         force_n: [held.x, held.y],
-        samples: vec![ContactSample::new(c.ends.s[0], held)],
+        samples: vec![ContactSample::new(c.ends.material[0], held)],
         ..ContactReport::default()
     }
 }
@@ -405,7 +406,9 @@ fn load(
 /// of it.
 fn heap(section: &CableSection, context: &SolveContext, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&section.contacts[j], section.contacts.get(j + 1)) {
-        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], context.contact_path(c).place(c.ends.p[1]).at),
+        (c, Some(next)) => {
+            ([c.ends.material[1], next.ends.material[0]], context.contact_path(c).place(c.ends.place[1]).at)
+        }
         (_, None) => return Vec::new(),
     };
     let edge = |b: slack_pocket::BearingContact| {
@@ -440,11 +443,11 @@ fn parts(c: &Contact, friction: f64, stretches: &[ContactStretch]) -> Vec<Contac
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
         return Vec::new();
     };
-    let mut out = vec![ContactPart { begins_m: c.ends.s[0], ends_m: c.ends.s[1], state: first }];
+    let mut out = vec![ContactPart { begins_m: c.ends.material[0], ends_m: c.ends.material[1], state: first }];
     for s in stretches {
         if let Some(last) = out.last_mut().filter(|last| last.state != state(s)) {
             last.ends_m = s.arc_length;
-            out.push(ContactPart { begins_m: s.arc_length, ends_m: c.ends.s[1], state: state(s) });
+            out.push(ContactPart { begins_m: s.arc_length, ends_m: c.ends.material[1], state: state(s) });
         }
     }
     out
@@ -461,7 +464,7 @@ fn end_force(cable_equilibrium: &CableEquilibrium, section: &CableSection, side:
         EndCondition::Fixed(_) | EndCondition::Hangs(_) => section.force(context, k, s),
         EndCondition::Lies(p) => {
             let c = if side == 0 { section.contacts.first() } else { section.contacts.last() };
-            c.map_or(Vec2::zeros(), |c| context.contact_path(c).place(p).tangent * c.ends.t[side])
+            c.map_or(Vec2::zeros(), |c| context.contact_path(c).place(p).tangent * c.ends.tension[side])
         }
         EndCondition::Loose(_) => Vec2::zeros(),
     }
@@ -513,7 +516,7 @@ fn wheel(r: &mut SupportReaction, cable_equilibrium: &CableEquilibrium, section:
     let j = section.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
     let (sum, [before, after]) = wheel_force(&cable_equilibrium.context, section, j);
     (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
-    r.arc_length_m = 0.5 * (c.ends.s[0] + c.ends.s[1]);
+    r.arc_length_m = 0.5 * (c.ends.material[0] + c.ends.material[1]);
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
 }
 
@@ -521,6 +524,6 @@ fn wheel(r: &mut SupportReaction, cable_equilibrium: &CableEquilibrium, section:
 /// after it, N.
 fn wheel_force(context: &SolveContext, section: &CableSection, j: usize) -> (Vec2, [Vec2; 2]) {
     let [before, after] = [0, 1].map(|side| section.force_at_contact(context, j, side).unwrap_or_default());
-    let [from, to] = section.contacts[j].ends.s;
+    let [from, to] = section.contacts[j].ends.material;
     (after - before + context.load_between(from, to), [before, after])
 }

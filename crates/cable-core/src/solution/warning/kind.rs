@@ -7,6 +7,7 @@ use crate::units::Quantity;
 /// The kinds of warning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum WarningKind {
     /// Tension above the service tension.
     ServiceTension,

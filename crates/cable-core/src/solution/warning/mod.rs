@@ -41,6 +41,14 @@ pub struct Warning {
 }
 
 impl Warning {
+    /// Returns whether it is about the same cause at the same place as another; their values may
+    /// differ.
+    pub(crate) fn has_cause_of(&self, other: &Self) -> bool {
+        self.cause == other.cause
+            && self.cable == other.cable
+            && (self.arc_length_m, self.at_m) == (other.arc_length_m, other.at_m)
+    }
+
     /// A warning about the last step, or about an answer at rest; its kind is that of its cause.
     #[must_use]
     pub fn new(cause: WarningCause, cable: &str, arc_length_m: f64, [value, limit]: [f64; 2]) -> Self {

@@ -29,7 +29,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2
         }
         if state.view.layers.forces {
             if current {
-                reactions(view, state, cable, (&scale, figures));
+                reactions(view, state, cable, &scale, figures);
             }
             loads(view, state, k, cable, figures);
         }
@@ -114,7 +114,8 @@ fn reactions(
     view: &mut CanvasView<'_>,
     state: &AppState,
     cable: &CableSolution,
-    (scale, figures): (&impl Fn(Point) -> Vec2, &mut Vec<(Pos2, String, Color32)>),
+    scale: &impl Fn(Point) -> Vec2,
+    figures: &mut Vec<(Pos2, String, Color32)>,
 ) {
     for s in &cable.supports {
         let along = scale([s.reaction_x_n, s.reaction_y_n]);

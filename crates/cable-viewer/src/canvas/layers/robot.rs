@@ -1,6 +1,7 @@
 //! The robot is drawn to scale: body, tracks, hitch.
 
 use cable_core::math::Point;
+use cable_core::problem::OUTLINE_NAME;
 use cable_core::robot::Going;
 use cable_core::scene::preset::RobotPreset;
 use cable_core::scene::robot::{Heading, Pose};
@@ -60,7 +61,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
 /// out.
 fn touched(view: &CanvasView<'_>, state: &AppState, pose: &Pose, preset: &RobotPreset) {
     let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
-    if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == "robot") {
+    if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == OUTLINE_NAME) {
         return;
     }
     // In its own axes, looking right: the pose turns it to where it looks.

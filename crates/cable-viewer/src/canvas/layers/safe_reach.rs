@@ -166,7 +166,7 @@ pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, St
             hatch(view, [a.0, b.0], height);
         }
     }
-    ends(view, (map, back), height, figures);
+    ends(view, map, if back { Trip::ThereAndBack } else { Trip::There }, height, figures);
 }
 
 /// Strokes across what is above the service tension.
@@ -179,13 +179,8 @@ fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
 }
 
 /// Marks from where to where the service tension is not passed.
-fn ends(
-    view: &CanvasView<'_>,
-    (map, back): (&ReachMap, bool),
-    height: f32,
-    figures: &mut Vec<(Pos2, String, Color32)>,
-) {
-    let Some(ends) = map.safe_m(map.service_n, if back { Trip::ThereAndBack } else { Trip::There }) else { return };
+fn ends(view: &CanvasView<'_>, map: &ReachMap, trip: Trip, height: f32, figures: &mut Vec<(Pos2, String, Color32)>) {
+    let Some(ends) = map.safe_m(map.service_n, trip) else { return };
     for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
         let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };
         let at = view.at(place.at_m);

@@ -80,7 +80,8 @@ fn sign(view: &CanvasView<'_>, p: Pos2, s: &Support) {
         SupportKind::Robot => {
             painter.rect(egui::Rect::from_center_size(p, vec2(13.0, 10.0)), 2.0, paper, line, egui::StrokeKind::Middle);
         }
-        SupportKind::Load | SupportKind::Free => {
+        // Loads, free ends, and kinds to come.
+        _ => {
             painter.circle(p, 4.0, paper, line);
         }
     }

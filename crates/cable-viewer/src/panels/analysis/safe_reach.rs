@@ -153,16 +153,32 @@ fn set(choice: SafeReachOptions) -> Command {
     Command::View(ViewCommand::SetSafeReachOptions(choice))
 }
 
+/// A tension that a place is judged by; below that of service it is safe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limit {
+    Service,
+    Breaking,
+}
+
+impl Limit {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Service => "service",
+            Self::Breaking => "breaking",
+        }
+    }
+}
+
 /// The map in words.
 #[must_use]
 pub fn describe(maps: &ReachMaps, back: bool) -> Vec<String> {
-    let limits = ["service", "breaking"].into_iter().zip(maps.limits_n());
+    let limits = [Limit::Service, Limit::Breaking].into_iter().zip(maps.limits_n());
     limits
-        .map(|(name, tension_n)| match maps {
-            ReachMaps::Line(map) => of_line(map, back, name, tension_n),
-            ReachMaps::Area(there, None) if !back => of_area(there, name, tension_n),
+        .map(|(limit, tension_n)| match maps {
+            ReachMaps::Line(map) => of_line(map, back, limit, tension_n),
+            ReachMaps::Area(there, None) if !back => of_area(there, limit, tension_n),
             ReachMaps::Area(_, None) => "The way back has not been computed yet".to_owned(),
-            ReachMaps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
+            ReachMaps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, limit, tension_n),
         })
         .collect()
 }
@@ -171,7 +187,8 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
-fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
+fn of_line(map: &ReachMap, back: bool, limit: Limit, tension_n: f64) -> String {
+    let name = limit.name();
     let Some([left, right]) = map.safe_m(tension_n, if back { Trip::ThereAndBack } else { Trip::There }) else {
         return format!("Above {name} tension ({}) at its present position", format::force(tension_n));
     };
@@ -186,12 +203,15 @@ fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
             Some(_) => "",
         }
     };
-    // The first line is of the service tension, which is what safe means.
-    let from = if name == "service" { "Safe from" } else { "No break from" };
+    let from = match limit {
+        Limit::Service => "Safe from",
+        Limit::Breaking => "No break from",
+    };
     format!("{from} x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
-fn of_area(area: &Area, name: &str, tension_n: f64) -> String {
+fn of_area(area: &Area, limit: Limit, tension_n: f64) -> String {
+    let name = limit.name();
     let force = format::force(tension_n);
     match area.below(tension_n) {
         Some((_, [low, high])) => format!(

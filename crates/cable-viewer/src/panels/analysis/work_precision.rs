@@ -120,7 +120,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
         plot.set_plot_bounds(PlotBounds::from_min_max([left - 0.4, low - 0.8], [right + 0.4, high + 0.8]));
         let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(SERVICE).width(1.5);
         plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
-        for (model, shape) in SHAPES {
+        for (model, shape) in Model::SOLVERS.into_iter().zip(SHAPES) {
             let of_model = found.entries.iter().filter(|e| e.setting.model == model);
             let points: Vec<[f64; 2]> = of_model.filter_map(place).collect();
             let (colour, label) = (colour::of_model(model), labels::model(model));
@@ -135,13 +135,8 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_description(spoken.join("; ").as_str()));
 }
 
-/// Marks that tell the models apart besides their colour.
-const SHAPES: [(Model, MarkerShape); 4] = [
-    (Model::Catenary, MarkerShape::Diamond),
-    (Model::Spans, MarkerShape::Square),
-    (Model::Fem, MarkerShape::Circle),
-    (Model::MassSpring, MarkerShape::Up),
-];
+/// Marks that tell the models apart besides their colour, in the order of [`Model::SOLVERS`].
+const SHAPES: [MarkerShape; 4] = [MarkerShape::Diamond, MarkerShape::Square, MarkerShape::Circle, MarkerShape::Up];
 
 /// A setting in words: what it differs by and takes, and the error that it states.
 fn spoken(entry: &Entry) -> Option<String> {
@@ -154,7 +149,7 @@ fn spoken(entry: &Entry) -> Option<String> {
 fn legend(ui: &mut Ui, found: &Outcome) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
-        for (model, _) in SHAPES {
+        for model in Model::SOLVERS {
             let own: Vec<&Entry> = found.entries.iter().filter(|e| e.setting.model == model).collect();
             if own.iter().all(|e| e.result.is_err()) {
                 continue;

@@ -8,7 +8,7 @@ mod condition_number;
 mod kinetic_peaks;
 
 use cable_core::solution::Node;
-use cable_core::{Model, Scene, Solution};
+use cable_core::{Scene, Solution};
 use egui::Ui;
 
 use crate::command::Command;
@@ -59,8 +59,8 @@ fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
 
 fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     let name = "Condition estimate";
-    if answer.model != Model::Fem {
-        return readout::row(ui, name, "no mesh", "Only FEM solves one large system of equations", |_| {});
+    if !answer.model.capabilities().mesh {
+        return readout::row(ui, name, "no mesh", "A model without a mesh solves no large system of equations", |_| {});
     }
     let all = scene.cables.iter().zip(&answer.cables).filter_map(|(cable, solved)| estimated(cable, solved));
     let Some(worst) = all.reduce(f64::max) else {

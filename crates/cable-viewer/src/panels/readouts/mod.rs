@@ -11,11 +11,11 @@ use cable_core::solution::{CableSolution, ContactState, Node};
 use cable_core::summary::{CablePlace, CableSummary, EndForce, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
 use cable_core::{Cable, Scene};
-use egui::{Color32, Label, ProgressBar, RichText, Ui};
+use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::render::theme::{self, Palette};
+use crate::render::theme;
 use crate::state::questions::{bending_query, bending_query_fits};
 use crate::state::{AppState, Freshness};
 use crate::units::sentence::sentence;
@@ -106,7 +106,7 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             greatest_so_far(ui, run);
         }
         accuracy(ui, solved, &first);
-        bending_stiffness(ui, state, (cable, solved), commands);
+        bending_stiffness(ui, state, cable, solved, commands);
     });
     ui.separator();
     reactions::ui(ui, cable, solved, commands);
@@ -125,15 +125,16 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
     });
     let at = format!("at {} along the cable", along(&node));
     ui.weak(at).on_hover_text(format::position([node.x_m, node.y_m]));
-    for (name, limit_n, help) in [
-        ("service", cable.service_tension_n, "Share of the tension of the first warning"),
-        ("break", cable.breaking_tension_n, "Share of the tension at which it breaks"),
+    let [calm, service, breaking] = theme::palette(ui.visuals()).bars;
+    for (name, limit_n, above, help) in [
+        ("service", cable.service_tension_n, service, "Share of the tension of the first warning"),
+        ("break", cable.breaking_tension_n, breaking, "Share of the tension at which it breaks"),
     ] {
         let share = tension_n / limit_n;
         let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
             // No verdict on what is not the answer.
-            .fill(bar_colour(if current { share } else { 0.0 }, name == "break", theme::palette(ui.visuals())))
+            .fill(if current && share > 1.0 { above } else { calm })
             .text(text.clone())
             .desired_height(16.0)
             .corner_radius(2);
@@ -144,15 +145,6 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
 }
 
 /// Calm below the limit, amber above service, red above break.
-fn bar_colour(share: f64, breaking: bool, palette: &Palette) -> Color32 {
-    let [calm, service, break_] = palette.bars;
-    match (share > 1.0, breaking) {
-        (true, true) => break_,
-        (true, false) => service,
-        _ => calm,
-    }
-}
-
 /// A row of the grid: name, value, and a button that shows the place or nothing.
 fn figure(ui: &mut Ui, name: &str, value: String, help: &str, at: Option<(&Node, &mut Vec<Command>)>) {
     readout::row(ui, name, &value, help, |ui| {
@@ -328,7 +320,8 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
 fn bending_stiffness(
     ui: &mut Ui,
     state: &AppState,
-    (cable, solved): (&Cable, &CableSolution),
+    cable: &Cable,
+    solved: &CableSolution,
     commands: &mut Vec<Command>,
 ) {
     let (used, likely) = (solved.assumptions.bending_stiffness_n_m2, cable.likely_bending_stiffness_n_m2());

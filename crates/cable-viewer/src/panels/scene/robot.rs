@@ -84,7 +84,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let stands = |x: f64| {
         // No part of it in a wall, and not on top of one.
         let level = |half: f64| ground.stand(x, half).filter(|s| s.pitch.abs() < MAX_START_SLOPE);
-        let place = level(0.5 * p.length_m.value).and(level(half)).map(|s| [x, s.y]);
+        let place = level(0.5 * p.length_m.value).and(level(half)).map(|s| [x, s.height]);
         place.filter(|place| place[1] <= at[1] + p.height_m.value)
     };
     // Its back is turned to where the cable comes from.

@@ -179,7 +179,8 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
         }
         SupportKind::Pulley => pulley(ui, row, commands, &mut faults),
         SupportKind::Load => load(ui, row, commands, &mut faults),
-        SupportKind::Fixed | SupportKind::Robot | SupportKind::Free => {}
+        // Fixed ones, the robot, free ends, and kinds to come.
+        _ => {}
     }
     if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
         let text = ["Mass", "Lumped mass on the point; its weight counts too"];

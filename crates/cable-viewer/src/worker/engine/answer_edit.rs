@@ -9,7 +9,7 @@ use cable_core::{Error, Model, Scene, Settings, Simulation};
 use super::{Engine, MOTION, Phase, is_quasi_static};
 use crate::state::NoAnswer;
 use crate::worker::draft;
-use crate::worker::request::Edit;
+use crate::worker::request::{Edit, EditStart};
 use crate::worker::timing::{DRAFT_AFTER_S, DRAFT_FIRST_S};
 use crate::worker::tunnelling;
 
@@ -18,7 +18,7 @@ impl Engine {
     /// single edit is answered at once: a draft from an answer takes 0.1 s itself.
     pub(super) fn show_draft(&mut self, edit: &Edit, came_during_solve: bool) -> bool {
         let Some(last) = &self.edit else { return false };
-        let same = !edit.is_new_scene && last.model == edit.model && last.settings == edit.settings;
+        let same = edit.start != EditStart::NewScene && last.model == edit.model && last.settings == edit.settings;
         let slow = self.solve_s > if came_during_solve || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
         let (true, Some(old)) = (self.drafts && same && slow, &self.simulation) else {
             return false;
@@ -49,8 +49,8 @@ impl Engine {
 
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
-        let old = if edit.is_new_scene { None } else { self.simulation.take() };
-        if edit.is_new_scene {
+        let old = if edit.start == EditStart::NewScene { None } else { self.simulation.take() };
+        if edit.start == EditStart::NewScene {
             self.simulation = None;
             self.snapshot.solution = None;
             self.last_answer = None;
@@ -100,7 +100,9 @@ impl Engine {
         let settings = Settings { histories, ..edit.settings };
         let of = |scene: &Scene| laid(scene, edit.model, settings);
         let laid = of(&edit.scene);
-        let Some(old) = old.filter(|o| !edit.starts_from_scene && draft::same_cables(edit, o)) else { return laid };
+        let Some(old) = old.filter(|o| edit.start == EditStart::PresentState && draft::same_cables(edit, o)) else {
+            return laid;
+        };
         let tunnelled_cables = match &laid {
             Ok(laid) => tunnelling::tunnelled_cables(old, laid),
             // Only a scene that could be solved from where the cable is gets a second look.

@@ -19,7 +19,7 @@ use cable_core::{Error, Model, Scene, Simulation, Solution};
 
 use crate::state::{NoAnswer, Playback, Snapshot};
 use crate::worker::draft;
-use crate::worker::request::{Edit, Request, Resume};
+use crate::worker::request::{Edit, EditStart, Request, Resume};
 use crate::worker::timing::FRAME_S;
 
 /// The question to `auto` once time runs.
@@ -318,7 +318,7 @@ impl Engine {
     /// The scene stays without an answer.
     fn cancel(&mut self, edit: Option<Edit>) {
         if let Some(edit) = edit {
-            self.history_restarts |= edit.is_new_scene;
+            self.history_restarts |= edit.start == EditStart::NewScene;
             self.edit = Some(edit);
         }
         self.phase = Phase::Refused { reason: NoAnswer::Cancelled };

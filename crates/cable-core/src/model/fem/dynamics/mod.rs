@@ -92,7 +92,7 @@ impl Dynamics {
         let end = self.cable.motion.time + dt_s;
         self.time_control.due = end;
         if let (Some(outline), Some(at)) = (&mut self.cable.outline, self.cable.motion.placement) {
-            outline.begin_way((self.cable.motion.time, at), end);
+            outline.begin_way(self.cable.motion.time, at, end);
         }
         match inertia {
             Inertia::Dynamic => {
@@ -203,7 +203,7 @@ impl Dynamics {
 
     /// Moves the cable to the unknowns of a step, and its history on by that step.
     fn move_to(&mut self, unknowns: &Unknowns, weights: Weights) {
-        let Weights { now, past, a, .. } = weights;
+        let Weights { now, past, rate: a, .. } = weights;
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
         for k in 0..unknowns.positions.len() {
             let v = (unknowns.positions[k] - weights.place(m, k)) * a;
@@ -229,7 +229,7 @@ impl Dynamics {
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
         let weights = self.begin_step(h, dragged);
-        let a = weights.a;
+        let a = weights.rate;
         let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
         self.cable.contacts.prepare(
             &self.cable.problem,

@@ -11,7 +11,7 @@ use crate::model::fem::results;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, load_scale, tolerance};
-use crate::model::fem::transfer::initial_guess::{bow, depenetrate};
+use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, bow, depenetrate};
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
@@ -19,6 +19,12 @@ use crate::state::State;
 /// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
 /// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
 const LENGTH_ROUNDINGS: f64 = 2.0;
+
+/// Depth of the centre line's touching distance, in radii of the cable, from which it is said to
+/// run through an obstacle: one that touches it has a depth of 0. Smaller: cables that press on an
+/// obstacle are said to run through it; larger: none that a corner cuts off is. A choice, tuned on
+/// no campaign.
+const MAX_DEPTH_RADII: f64 = 0.9;
 
 /// Returns why a cable that nothing but friction holds does not rest where it was brought: the
 /// forces that each node alone may leave unbalanced add up.
@@ -39,7 +45,7 @@ fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium>
         return None;
     }
     // The centre line is in the obstacle itself, or nearly: a cable that touches it is outside.
-    let least = -0.9 * cable.problem.radius;
+    let least = -MAX_DEPTH_RADII * cable.problem.radius;
     let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
     let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
     let [a, b] = mesh.straight(e, x);
@@ -210,7 +216,12 @@ impl Dynamics {
         self.cable.motion.hands.fill(None);
         if !self.rested && put_outline(&mut self.cable) {
             let mut x = std::mem::take(&mut self.cable.motion.positions);
-            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
+            depenetrate(
+                &self.cable.problem,
+                &self.cable.mesh,
+                &mut x,
+                PUSHED_OUT_REACHES * self.cable.contacts.barrier.reach,
+            );
             self.cable.motion.positions = x;
             self.forget_history();
         }

@@ -14,6 +14,10 @@ use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
+/// Tilt from the top of a wheel (tangent, below it from the bottom) of the contact points to begin
+/// with: the wrap is then about twice as much, rad. Smaller: at 0 the arc has no length and no
+/// side; larger: more rounds for wheels that are hardly wrapped. A choice, tuned on no campaign.
+const FIRST_TILT: f64 = 0.05;
 /// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to
 /// span.
 const WHEEL_ROUNDS: usize = 80;
@@ -83,7 +87,7 @@ impl PulleyNetwork {
             if wheel.radius > 0.0 {
                 let clockwise = self.clockwise_at(k, &wheel);
                 let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
-                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
+                let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { FIRST_TILT } else { -FIRST_TILT };
                 wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
                 self.layout.stations[k].restraint = Restraint::Pulley(wheel);
             }

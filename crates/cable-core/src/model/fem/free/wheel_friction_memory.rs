@@ -127,6 +127,6 @@ impl PulleyNetwork {
 
     /// The ends of the cable on a wheel, as its friction remembers them.
     pub(super) fn ends_at(&self, k: usize, r: &PulleyState) -> WheelEnds {
-        WheelEnds { p: r.angles, s: r.material, t: self.forces[k].map(|f| f.norm()) }
+        WheelEnds { place: r.angles, material: r.material, tension: self.forces[k].map(|f| f.norm()) }
     }
 }

@@ -135,13 +135,14 @@ impl PulleyNetwork {
                         let (i, off) = (row + 2 * side, cross(t, u));
                         e.residual[i] = off;
                         e.own[(i, i)] = -cross(n, u);
-                        let slope = (perp(t) - u * off) / ends.t[side];
+                        let slope = (perp(t) - u * off) / ends.tension[side];
                         e.by_force.push((i, k, side, slope));
                     }
                     let rows = w.rows(&on, &ends);
                     for j in 0..2 {
                         let i = row + 2 * j + 1;
-                        let scale = if rows.of_tension[j] { 1.0 / larger(ends.t[0], ends.t[1]) } else { unit };
+                        let scale =
+                            if rows.of_tension[j] { 1.0 / larger(ends.tension[0], ends.tension[1]) } else { unit };
                         e.residual[i] = rows.residual[j] * scale;
                         for side in 0..2 {
                             e.own[(i, row + 2 * side)] = rows.by[j][3 * side] * scale;
@@ -157,9 +158,9 @@ impl PulleyNetwork {
                 }
                 FrictionState::Point { mode: PointFriction::Slides(m), .. } => {
                     let turn = turn_between(before, after);
-                    e.residual[row] = (ends.t[1] / ends.t[0]).ln() - *m * turn.abs();
+                    e.residual[row] = (ends.tension[1] / ends.tension[0]).ln() - *m * turn.abs();
                     for (side, sign) in [(0, -1.0), (1, 1.0)] {
-                        let (u, t) = (unit_vectors[side], ends.t[side]);
+                        let (u, t) = (unit_vectors[side], ends.tension[side]);
                         let slope = (u - perp(u) * (*m * turn.signum())) * (sign / t);
                         e.by_force.push((row, k, side, slope));
                     }
@@ -317,7 +318,7 @@ impl PulleyNetwork {
             changed |= match &mut r.friction {
                 FrictionState::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
                 FrictionState::Point { friction, mode, held } if *friction > 0.0 => {
-                    let ratio = (ends.t[1] / ends.t[0]).ln();
+                    let ratio = (ends.tension[1] / ends.tension[0]).ln();
                     let over = ratio.abs() - *friction * turn_between(before, after).abs();
                     let slid = r.material[0] - *held;
                     let next = match *mode {

@@ -38,6 +38,8 @@ pub struct PredictedContacts {
     order: SortedNodes,
     right: Vec<f64>,
     step: Vec<f64>,
+    /// The direction before contacts ahead were looked at.
+    pub(in crate::model::fem) plain: Vec<f64>,
 }
 
 /// The linear equations of a Newton iteration, pinned at held nodes.
@@ -61,6 +63,7 @@ impl PredictedContacts {
             order: SortedNodes::default(),
             right: Vec::with_capacity(2 * nodes),
             step: Vec::with_capacity(2 * nodes),
+            plain: Vec::with_capacity(2 * nodes),
         }
     }
 

@@ -10,13 +10,13 @@
 //! whose rest length is the one predicted.
 
 use crate::contact::barrier::Barrier;
-use crate::contact::friction;
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
+use crate::model::fem::newton::mixed_iterate::MixedIterate;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact::contact_energy::{add_barrier, add_floor, add_friction};
@@ -36,6 +36,43 @@ const ENERGY_NOISE: f64 = 1e-13;
 /// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
 /// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
+/// cut short, and the next are cut shorter; larger: it outlives its need, and iterations creep.
+/// A choice, tuned on no campaign, as are the five below.
+const LONG_STEP_FRACTION: f64 = 0.5;
+
+/// Fraction of a Newton step below which a shift that was asked for grows. Smaller: iterations are
+/// spent on short steps; larger: steps that would do are made slow.
+const SHORT_STEP_FRACTION: f64 = 0.1;
+
+/// Factor of the shift after a long step. Smaller: the shift is lost at once and has to be found
+/// again; larger: more iterations until the steps are Newton's.
+const SHIFT_DECREASE: f64 = 0.25;
+
+/// Factor of the shift after a short step, and where the matrix is not definite. Smaller: more
+/// factorisations until it is; larger: steps shorter than they need to be.
+const SHIFT_INCREASE: f64 = 4.0;
+
+/// Part of the first shift below which it becomes 0. Smaller: a few more iterations with a shift
+/// that has no effect; larger: the last iterations lose the shift while they need it.
+const MIN_SHIFT_FRACTION: f64 = 1e-3;
+
+/// Growth of the shift over the first one at which no direction is said to lead down. Smaller:
+/// cables fail that would have found one; larger: more assemblies before a failure.
+const MAX_SHIFT_GROWTH: f64 = 1e12;
+
+/// First shift (N/m, by the scale of a node) from which that growth counts where none was asked
+/// for. Smaller and larger: as of the growth.
+const MIN_FIRST_SHIFT: f64 = 1e-6;
+
+/// Times the shift grows until the matrix is definite: 4^40 covers all of double precision.
+/// Smaller: folded cables fail; larger: nothing.
+const MAX_SHIFT_TRIES: usize = 40;
+
+/// Fraction of a step below which it counts as a failed push of a support. Smaller: a support that
+/// is stuck is pushed longer; larger: one is said to be stuck that comes on.
+const SHORT_PUSH_FRACTION: f64 = 0.5;
 
 /// The unbalanced force at the worst node.
 #[derive(Clone, Copy, Debug)]
@@ -81,8 +118,6 @@ pub struct Workspace {
     pub(in crate::model::fem) system: System,
     pub(in crate::model::fem) factor: BandFactor,
     pub(in crate::model::fem) direction: Vec<f64>,
-    /// The direction before contacts ahead were looked at.
-    pub(in crate::model::fem) plain: Vec<f64>,
     pub(in crate::model::fem) trial: Unknowns,
     /// The contacts of the last assembly.
     pub(in crate::model::fem) touches: Vec<ContactPair>,
@@ -96,19 +131,9 @@ pub struct Workspace {
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(in crate::model::fem) coupling: Coupling,
     pub(in crate::model::fem) predicted_contacts: PredictedContacts,
-    /// Pulls carried as unknowns; empty: those of the present lengths.
-    pub(in crate::model::fem) carried: Vec<bar_energy::BarIterate>,
-    /// Branches of the friction of contacts, where that is being found out; empty: those of the
-    /// present unknowns.
-    pub(in crate::model::fem) branches: Vec<friction::Branch>,
-    /// Slide of each node before an iteration, m.
-    pub(in crate::model::fem) slid: Vec<f64>,
-    pub(in crate::model::fem) begun: Unknowns,
-    pub(in crate::model::fem) near_enough: bool,
+    pub(in crate::model::fem) mixed: MixedIterate,
     /// Iterations times nodes that may still be spent.
     pub(in crate::model::fem) work_left: WorkBudget,
-    /// Iterations of the undamped Newton in this step.
-    pub(in crate::model::fem) undamped_iterations: usize,
 }
 
 /// The start of a line search.
@@ -132,7 +157,6 @@ impl Workspace {
         let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
-            plain: Vec::with_capacity(2 * mesh.nodes()),
             trial: Unknowns { positions: vec![Vec2::zeros(); mesh.nodes()], slides: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
@@ -142,13 +166,8 @@ impl Workspace {
             order: SortedNodes::default(),
             coupling: Coupling::new(),
             predicted_contacts: PredictedContacts::new(mesh.nodes()),
-            carried: Vec::with_capacity(mesh.nodes()),
-            branches: Vec::with_capacity(mesh.nodes()),
-            slid: Vec::with_capacity(mesh.nodes()),
-            begun: Unknowns::default(),
-            near_enough: false,
+            mixed: MixedIterate::new(mesh.nodes()),
             work_left: WorkBudget::Unlimited,
-            undamped_iterations: 0,
             system,
             factor,
         })
@@ -183,8 +202,8 @@ impl Workspace {
         s.gradient.fill(0.0);
         let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
-        let measured = self.carried.is_empty();
-        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.carried);
+        let measured = self.mixed.carried.is_empty();
+        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.mixed.carried);
         self.magnitude = size;
         if !input.coupling.is_empty() {
             value += add_coupling(s, input, x);
@@ -225,7 +244,7 @@ impl Workspace {
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_friction(s, mesh, input, contacts, &self.branches, x);
+        value += add_friction(s, mesh, input, contacts, &self.mixed.branches, x);
         value += add_floor(s, mesh, input, contacts, unknowns);
         self.touches = touches;
         if contacts.self_contacts.shape.is_on() {
@@ -396,7 +415,7 @@ impl Workspace {
                     }
                     shift = grow(shift, input);
                     tries += 1;
-                    if tries > 40 {
+                    if tries > MAX_SHIFT_TRIES {
                         return failed(FailureCause::TangentIndefinite);
                     }
                 }
@@ -411,15 +430,15 @@ impl Workspace {
             match self.search(step, unknowns, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
-                    if fraction > 0.5 {
-                        shift *= 0.25;
-                        if shift < 1e-3 * input.shift {
+                    if fraction > LONG_STEP_FRACTION {
+                        shift *= SHIFT_DECREASE;
+                        if shift < MIN_SHIFT_FRACTION * input.shift {
                             shift = 0.0;
                         }
-                    } else if fraction < 0.1 && input.shift > 0.0 {
+                    } else if fraction < SHORT_STEP_FRACTION && input.shift > 0.0 {
                         shift = grow(shift, input);
                     }
-                    if left && fraction < 0.5 {
+                    if left && fraction < SHORT_PUSH_FRACTION {
                         pushes += 1;
                         if pushes > mesh.tuning.newton.max_pushes && !input.may_lag {
                             return failed(FailureCause::SupportShort);
@@ -433,7 +452,7 @@ impl Workspace {
                     if enough {
                         return Ok(done);
                     }
-                    if shift > 1e12 * input.shift.max(1e-6) {
+                    if shift > MAX_SHIFT_GROWTH * input.shift.max(MIN_FIRST_SHIFT) {
                         return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, input);
@@ -455,15 +474,15 @@ impl Workspace {
             return free;
         }
         // The undamped Newton does not use the energy.
-        let needs_descent = self.carried.is_empty();
+        let needs_descent = self.mixed.carried.is_empty();
         let downhill = if needs_descent { self.slope() } else { 0.0 };
         if needs_descent {
-            self.plain.clone_from(&self.direction);
+            self.predicted_contacts.plain.clone_from(&self.direction);
         }
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.predicted_contacts.solve(step, equations, &unknowns.positions, &mut self.direction);
         if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
-            self.direction.clone_from(&self.plain);
+            self.direction.clone_from(&self.predicted_contacts.plain);
             return free;
         }
         self.step_bound_from_assembly(step, unknowns, 1.0)
@@ -524,5 +543,5 @@ fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
 
 fn grow(shift: f64, input: &StepInput) -> f64 {
     let least = if input.shift > 0.0 { input.shift } else { 1.0 };
-    if shift > 0.0 { 4.0 * shift } else { least }
+    if shift > 0.0 { SHIFT_INCREASE * shift } else { least }
 }

@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-12;
 /// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
-/// True if a solve goes on where the cable comes within reach of itself.
+/// The reaction of a solve to a cable that comes within reach of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum SelfTouch {
     /// It gives up.
@@ -54,9 +54,9 @@ impl Workspace {
         if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, unknowns) {
             return Ok(done);
         }
-        let mut undamped = self.undamped_iterations;
+        let mut undamped = self.mixed.undamped_iterations;
         let mut done = self.minimise_by_line_search(step, unknowns);
-        if done.is_err() && self.near_enough {
+        if done.is_err() && self.mixed.near_enough {
             self.go_back(unknowns);
             done = self.minimise_by_line_search(step, unknowns);
         }
@@ -65,7 +65,7 @@ impl Workspace {
             if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, unknowns) {
                 done = Ok(found);
             } else {
-                undamped += self.undamped_iterations;
+                undamped += self.mixed.undamped_iterations;
             }
         }
         done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
@@ -80,14 +80,14 @@ impl Workspace {
         self_touch: SelfTouch,
         unknowns: &mut Unknowns,
     ) -> Option<Converged> {
-        self.begun.positions.clone_from(&unknowns.positions);
-        self.begun.slides.clone_from(&unknowns.slides);
+        self.mixed.begun.positions.clone_from(&unknowns.positions);
+        self.mixed.begun.slides.clone_from(&unknowns.slides);
         self.goal.clone_from(&step.input.target);
         self.init_bar_iterates(step.mesh, unknowns);
         let done = self.iterate_undamped(step, self_touch, unknowns);
-        self.carried.clear();
-        self.branches.clear();
-        if done.is_none() && !self.near_enough {
+        self.mixed.carried.clear();
+        self.mixed.branches.clear();
+        if done.is_none() && !self.mixed.near_enough {
             self.go_back(unknowns);
         }
         done
@@ -95,17 +95,17 @@ impl Workspace {
 
     /// To where the step began.
     fn go_back(&self, unknowns: &mut Unknowns) {
-        unknowns.positions.clone_from(&self.begun.positions);
-        unknowns.slides.clone_from(&self.begun.slides);
+        unknowns.positions.clone_from(&self.mixed.begun.positions);
+        unknowns.slides.clone_from(&self.mixed.begun.slides);
     }
 
     fn init_bar_iterates(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
-        self.carried.clear();
+        self.mixed.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
             let strain = (unknowns.positions[e + 1] - unknowns.positions[e]).norm() / l - 1.0;
             let taut = strain >= 0.0;
             let pull = bar_energy::stiffness(mesh, taut) * strain;
-            self.carried.push(bar_energy::BarIterate { pull, taut });
+            self.mixed.carried.push(bar_energy::BarIterate { pull, taut });
         }
     }
 
@@ -138,17 +138,17 @@ impl Workspace {
     ) -> Option<Converged> {
         let StepContext { mesh, contacts, input, .. } = *step;
         self.move_on(step, unknowns);
-        self.branches.clear();
-        self.branches.extend(
+        self.mixed.branches.clear();
+        self.mixed.branches.extend(
             contacts.friction_contacts.iter().map(|r| Branch::at(r.sliding(&unknowns.positions), contacts.slip)),
         );
         let mut first = f64::NAN;
-        self.near_enough = false;
+        self.mixed.near_enough = false;
         for iterations in 0..=mesh.tuning.newton.mixed_iterations {
-            self.undamped_iterations = iterations;
+            self.mixed.undamped_iterations = iterations;
             let value = self.assemble(step, unknowns, Curvature::Exact);
             if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
-                self.near_enough = false;
+                self.mixed.near_enough = false;
                 return None;
             }
             let residual = self.residual(mesh, input).force;
@@ -160,7 +160,7 @@ impl Workspace {
             if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.positions) {
                 return Some(Converged { iterations, residual });
             }
-            self.near_enough = sound && residual < mesh.tuning.newton.handed_on_residual_fraction * first;
+            self.mixed.near_enough = sound && residual < mesh.tuning.newton.handed_on_residual_fraction * first;
             if iterations == mesh.tuning.newton.mixed_iterations || !sound {
                 return None;
             }
@@ -174,10 +174,12 @@ impl Workspace {
             }
             let free = self.predict_contacts(step, unknowns);
             let whole = self.max_step_fraction(input);
-            self.slid.clear();
-            self.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.positions)));
+            self.mixed.slid.clear();
+            self.mixed.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.positions)));
             self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
-            for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.friction_contacts)) {
+            for (b, (from, r)) in
+                self.mixed.branches.iter_mut().zip(self.mixed.slid.iter().zip(&contacts.friction_contacts))
+            {
                 *b = b.next([*from, r.sliding(&unknowns.positions)], contacts.slip);
             }
         }
@@ -194,7 +196,7 @@ impl Workspace {
         }
         let mut counted = 1.0;
         for part in mesh.tuning.newton.push_fractions {
-            for (e, carried) in self.carried.iter().enumerate().filter(|(_, c)| c.pull < 0.0) {
+            for (e, carried) in self.mixed.carried.iter().enumerate().filter(|(_, c)| c.pull < 0.0) {
                 let d = x[e + 1] - x[e];
                 let p = d.norm();
                 if !(p > 0.0) || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
@@ -228,11 +230,11 @@ impl Workspace {
     /// True if the bars that count as stretched are those that are, and friction holds and slips
     /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
-        let rubs = contacts.friction_contacts.iter().zip(&self.branches);
+        let rubs = contacts.friction_contacts.iter().zip(&self.mixed.branches);
         let slip = contacts.slip;
         let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
         rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
-            && self.carried.iter().enumerate().all(|(e, carried)| {
+            && self.mixed.carried.iter().enumerate().all(|(e, carried)| {
                 let strain = (x[e + 1] - x[e]).norm() / mesh.rest_length[e] - 1.0;
                 carried.taut == (strain >= 0.0) || strain.abs() <= ROUNDING
             })
@@ -242,7 +244,7 @@ impl Workspace {
     fn walk(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns, part: f64) {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
-        for (e, carried) in self.carried.iter_mut().enumerate() {
+        for (e, carried) in self.mixed.carried.iter_mut().enumerate() {
             let d = unknowns.positions[e + 1] - unknowns.positions[e];
             let p = d.norm();
             let (now, slope) = bar_energy::pull(mesh, input, e, carried.taut, p);

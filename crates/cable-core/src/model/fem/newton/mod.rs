@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `minimize.rs` | minimiser of the step energy: banded Newton, line search, no crossing |
 //! | `mixed_contact.rs` | Newton's method in contact with bar pulls as unknowns, no line search |
+//! | `mixed_iterate.rs` | pulls and friction branches that the iteration in contact carries |
 //! | `mixed_free.rs` | Newton's method without contact, with bar pulls as unknowns |
 //! | `active_set.rs` | contacts predicted ahead of a Newton step, as constraints of the step |
 //! | `gap_constraint.rs` | one such constraint: linearised gap, second-order correction, stiff spring |
@@ -16,5 +17,6 @@ pub(in crate::model::fem) mod gap_constraint;
 pub mod minimize;
 pub(in crate::model::fem) mod mixed_contact;
 pub(in crate::model::fem) mod mixed_free;
+pub(in crate::model::fem) mod mixed_iterate;
 pub(in crate::model::fem) mod solver_memory;
 pub(in crate::model::fem) mod step_bound;

@@ -48,7 +48,7 @@ const NONE: f64 = 1e-13;
 fn is_passed_by(geometry: &Geometry, part: ObstaclePart, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
     let Some(body) = geometry.bodies().get(part.body) else { return false };
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
-    let heights = [from[0], from[1], to[0], to[1]].map(|p| (p - edge.p).dot(&edge.normal()));
+    let heights = [from[0], from[1], to[0], to[1]].map(|p| (p - edge.from).dot(&edge.normal()));
     heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
 }
 
@@ -203,7 +203,7 @@ impl<'a> OutlineStep<'a> {
         let r = Vec2::repeat(within + body.offset);
         let reach = within + body.offset;
         body.candidates(a.inf(&b) - r, a.sup(&b) + r)
-            .any(|k| body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.p, e.q) < reach))
+            .any(|k| body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.from, e.to) < reach))
     }
 
     /// Gives back the gaps that were lost; see the module.

@@ -23,6 +23,17 @@ use crate::model::fem::state::moving_mass::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::contact::floor_friction;
 
+/// Arc of a bar on its rounds below which it is unwound, rad: its tangent points have passed each
+/// other. Nearer to 0: bars that graze a round are not cut; farther: one that runs backwards is. A
+/// choice, tuned on no campaign, as are the two below.
+const UNWOUND_ARC: f64 = -0.1;
+/// Straight part of a bar that is cut, in the longest allowed length. Smaller: bars that lie on a
+/// round are cut beside it; larger: long bars between rounds stay.
+const MIN_CUT_STRAIGHT: f64 = 0.8;
+/// Part of the straight stretch at either end in which a bar is not cut. Smaller: pieces too short
+/// for their neighbours; larger: pieces less even than they could be.
+const UNCUT_END_FRACTION: f64 = 0.1;
+
 /// The effect of a change of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::fem) struct Remeshed {
@@ -270,9 +281,9 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
         let length = cable.mesh.material_between(e, e + 1);
         let x = &cable.motion.positions;
         let path = cable.mesh.path(e, x);
-        let unwound = path.arcs.iter().any(|&a| a < -0.1);
+        let unwound = path.arcs.iter().any(|&a| a < UNWOUND_ARC);
         if length > cable.mesh.tuning.remesh.max_bar * even
-            && path.straight > 0.8 * cable.mesh.tuning.remesh.max_bar * even
+            && path.straight > MIN_CUT_STRAIGHT * cable.mesh.tuning.remesh.max_bar * even
             && !unwound
         {
             // Even pieces, the straight part permitting; beside a sliding node the odd piece is
@@ -285,7 +296,11 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
             };
             let lead = path.arcs[0] * cable.mesh.end(e, x).radius / path.length;
             let straight = path.straight / path.length;
-            let fraction = bounded(part / length, lead + 0.1 * straight, lead + 0.9 * straight);
+            let fraction = bounded(
+                part / length,
+                lead + UNCUT_END_FRACTION * straight,
+                lead + (1.0 - UNCUT_END_FRACTION) * straight,
+            );
             let arc_length = cable.mesh.arc_length[e] + fraction * length;
             insert(cable, e + 1, arc_length, None);
             changed = true;

@@ -14,7 +14,8 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 /// half of mgL in a fold of 41 bars.
 const STEPS_BEFORE_BDF3: usize = 3;
 
-/// The parts of the state that a step may change, kept to go back to.
+/// Positions, velocities and forces with memory at the present instant, and those of the steps
+/// before that the time integrator looks back to.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct NodalMotion {
     /// Position of each node, m; of a sliding one its mark.

@@ -61,7 +61,7 @@ impl MovingOutline {
 
     /// Its way for an advance from the time `now` (s), at which it is at a pose, to the time `end`
     /// (s).
-    pub(in crate::model::fem) fn begin_way(&mut self, (now, at): (f64, RigidPose), end: f64) {
+    pub(in crate::model::fem) fn begin_way(&mut self, now: f64, at: RigidPose, end: f64) {
         self.from = (now, at);
         self.to.0 = end;
         self.waits = false;

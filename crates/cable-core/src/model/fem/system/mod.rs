@@ -18,7 +18,7 @@ pub(in crate::model::fem) mod bar_energy;
 pub(in crate::model::fem) mod bar_weight;
 pub(in crate::model::fem) mod contact;
 pub(in crate::model::fem) mod loss_branches;
-pub mod mass;
+pub(in crate::model::fem) mod mass;
 pub(in crate::model::fem) mod mesh;
 pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;

@@ -13,6 +13,15 @@ pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 /// Unbalanced force accepted, part of the whole load.
 const TOLERANCE: f64 = 1e-6;
 
+/// Roundings of the strain of a bar that may stay in its axial force. Smaller: steps of stiff
+/// cables never end; larger: their forces are known worse than they could be. A choice, tuned on no
+/// campaign.
+const STRAIN_ROUNDINGS: f64 = 64.0;
+
+/// Size of coordinates in lengths of a bar, by which the rounding of a strain is that much larger.
+/// Smaller and larger: as of the roundings.
+const COORDINATE_BARS: f64 = 100.0;
+
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
 /// are coarse.
 const INERTIA_ROUNDINGS: f64 = 16.0;
@@ -211,6 +220,6 @@ pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
 
 /// Unbalanced force to reach, N: not below the rounding of the axial forces.
 pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
-    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
+    let rounding = STRAIN_ROUNDINGS * f64::EPSILON * problem.axial_stiffness * COORDINATE_BARS;
     (TOLERANCE * whole).max(rounding)
 }

@@ -26,8 +26,8 @@ pub(in crate::model::fem) struct Weights {
     pub(in crate::model::fem) now: f64,
     pub(in crate::model::fem) past: f64,
     pub(in crate::model::fem) older: f64,
-    /// 1/s.
-    pub(in crate::model::fem) a: f64,
+    /// The factor a of the velocity, 1/s.
+    pub(in crate::model::fem) rate: f64,
 }
 
 impl Weights {
@@ -36,7 +36,7 @@ impl Weights {
         let omega = if before > 0.0 { h / before } else { 0.0 };
         let alpha = (1.0 + 2.0 * omega) / (1.0 + omega);
         let past = omega * omega / (1.0 + omega) / alpha;
-        Self { now: (1.0 + omega) / alpha, past, older: 0.0, a: alpha / h }
+        Self { now: (1.0 + omega) / alpha, past, older: 0.0, rate: alpha / h }
     }
 
     /// The third of steps of `h` (s) with a part of BDF3.
@@ -46,7 +46,7 @@ impl Weights {
             now: (2.0 + BDF3_PART) / alpha,
             past: (0.5 + BDF3_PART) / alpha,
             older: BDF3_PART / 3.0 / alpha,
-            a: alpha / h,
+            rate: alpha / h,
         }
     }
 

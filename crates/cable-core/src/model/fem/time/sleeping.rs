@@ -10,6 +10,11 @@ use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
 
+/// Way of a hand that wakes a sleeping cable, in distances by which its nodes may have moved.
+/// Smaller: the lag of a hand's filter keeps it awake; larger: a slow hand moves nothing and then
+/// by a jerk. A choice, tuned on no campaign.
+const WAKING_HAND_FRACTION: f64 = 1e-3;
+
 /// Distance (m) by which a node of a sleeping cable may have moved.
 fn sleep_distance(cable: &CableState) -> f64 {
     cable.mesh.tuning.step.sleep_distance_reaches * cable.mesh.tuning.contact.reach_m
@@ -86,10 +91,12 @@ impl Sleep {
             // A hand that takes hold, lets go, or goes on.
             (_, Some(_)) if pulled[k] != motion.hands[k].is_some() => true,
             (_, Some(to)) if pulled[k] => {
-                motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > distance * 1e-3)
+                motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > distance * WAKING_HAND_FRACTION)
             }
-            (Some(f), Some(to)) => (f.position() - to).norm() > distance * 1e-3,
-            (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > distance * 1e-3),
+            (Some(f), Some(to)) => (f.position() - to).norm() > distance * WAKING_HAND_FRACTION,
+            (None, Some(to)) => {
+                cable.support_position(k).is_none_or(|at| (at - to).norm() > distance * WAKING_HAND_FRACTION)
+            }
             _ => false,
         });
         prepare_input(cable, to, Some(dragged));

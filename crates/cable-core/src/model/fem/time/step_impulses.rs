@@ -48,7 +48,7 @@ pub(in crate::model::fem) fn account_for_step(
     }
     let account = &mut cable.motion.account;
     for (k, force) in forces.into_iter().enumerate() {
-        let Weights { past, older, a, .. } = weights;
+        let Weights { past, older, rate: a, .. } = weights;
         let given = force / a + account.last[k] * (past - older) - account.older[k] * older;
         account.older[k] = account.last[k];
         account.last[k] = given;

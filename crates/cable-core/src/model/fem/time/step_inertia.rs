@@ -14,7 +14,7 @@ use crate::model::fem::time::loss_memory;
 /// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
 /// small force, ¾ τ/h of that which BDF2 makes of a vibration.
 pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
-    let Weights { now, past, a, .. } = weights;
+    let Weights { now, past, rate: a, .. } = weights;
     let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);

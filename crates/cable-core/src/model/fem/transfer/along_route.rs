@@ -18,7 +18,7 @@ use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
 use crate::model::fem::transfer::from_state::thread_pulleys;
-use crate::model::fem::transfer::initial_guess::{depenetrate, place_nodes, route};
+use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, depenetrate, place_nodes, route};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 
@@ -110,7 +110,7 @@ pub(in crate::model::fem) fn cable_along_route(
     }
     thread_pulleys(&mut cable, None);
     let mut x = std::mem::take(&mut cable.motion.positions);
-    depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * contact.reach_m);
+    depenetrate(&cable.problem, &cable.mesh, &mut x, PUSHED_OUT_REACHES * contact.reach_m);
     cable.motion.positions = x;
     cable.forget_history();
     cable

@@ -13,12 +13,28 @@ use crate::scene::SupportKind;
 /// diameter.
 const MAX_PASSES: usize = 60;
 
+/// Gap to which a shape is pushed out of obstacles, in reaches of the barrier. Smaller: nodes begin
+/// with a larger barrier force; larger: at 1 they are out of contact and fall back into it. A
+/// choice, tuned on no campaign; the landing gap of predicted contacts is half of the reach.
+pub(in crate::model::fem) const PUSHED_OUT_REACHES: f64 = 0.9;
+
 /// Depth (m) inside an obstacle to which a first shape is found and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 
 /// Steps of the half turn by which an end is leaned to either side until it is clear of what is
 /// below it. More: the same at more cost; fewer: it begins higher than it needs to.
 const LEANS: i32 = 36;
+
+/// Clearance of a route over a corner or circle, in distances of the centre line of a touching
+/// cable … Smaller: the route is pushed out of the obstacle once more; larger: it begins farther
+/// from its rest. A choice, tuned on no campaign, as are the two below.
+const TOP_CLEARANCE: f64 = 1.05;
+/// … and this much more, m, for cables so thin that the factor is nothing. Smaller and larger: as
+/// above.
+const TOP_CLEARANCE_M: f64 = 2e-3;
+/// Radius of the polygon round a circle in clearances, so that its sides are clear as well: 1/cos
+/// of half a side, 5.6°, is 1.005. Smaller: sides cut into the circle; larger: as of the clearance.
+const CIRCLE_POLYGON: f64 = 1.02;
 
 /// Halvings in the search for the angle of an arc: rounding.
 const ARC_HALVINGS: usize = 52;
@@ -200,7 +216,7 @@ fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
 fn obstacle_tops(problem: &Problem) -> Vec<Vec2> {
     let mut out = Vec::new();
     for body in problem.world.geometry().bodies() {
-        let clear = 1.05 * body.offset + 2e-3;
+        let clear = TOP_CLEARANCE * body.offset + TOP_CLEARANCE_M;
         for k in 0..=body.edges.len() {
             if let Some(c) = body.corner(k) {
                 out.extend([-clear, 0.0, clear].map(|dx| c.at + Vec2::new(dx, clear)));
@@ -209,7 +225,7 @@ fn obstacle_tops(problem: &Problem) -> Vec<Vec2> {
         if let Some(c) = body.center {
             out.extend((0..=16).map(|k| {
                 let angle = std::f64::consts::PI * f64::from(k) / 16.0;
-                c + Vec2::new(angle.cos(), angle.sin()) * (1.02 * clear)
+                c + Vec2::new(angle.cos(), angle.sin()) * (CIRCLE_POLYGON * clear)
             }));
         }
     }

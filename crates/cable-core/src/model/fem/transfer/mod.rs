@@ -37,7 +37,7 @@ use crate::model::fem::transfer::from_solution::{
     state_of_solution,
 };
 use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes, thread_pulleys};
-use crate::model::fem::transfer::initial_guess::depenetrate;
+use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, depenetrate};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -119,7 +119,12 @@ impl Dynamics {
         restore_positions(&mut self.cable, &state);
         adopt_sliding_nodes(&mut self.cable, &curve);
         let mut x = std::mem::take(&mut self.cable.motion.positions);
-        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
+        depenetrate(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &mut x,
+            PUSHED_OUT_REACHES * self.cable.contacts.barrier.reach,
+        );
         self.cable.motion.positions = x;
         adopt_stretch(&mut self.cable, &curve);
         renew_input(&mut self.cable);
@@ -175,7 +180,12 @@ impl Dynamics {
         }
         if !same || IntersectionCheck::of(&self.cable).refuse_buried().is_err() {
             let mut x = std::mem::take(&mut self.cable.motion.positions);
-            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
+            depenetrate(
+                &self.cable.problem,
+                &self.cable.mesh,
+                &mut x,
+                PUSHED_OUT_REACHES * self.cable.contacts.barrier.reach,
+            );
             self.cable.motion.positions = x;
         }
         IntersectionCheck::of(&self.cable).refuse_buried()?;

@@ -61,13 +61,13 @@ impl BoundingTriangle {
     /// from its ends tell.
     fn misses_edge(&self, e: &Edge, r: f64) -> bool {
         let (n, t) = (e.normal(), e.tangent);
-        self.sides.iter().any(|(at, n)| (e.p - at).dot(n) <= -r && (e.q - at).dot(n) <= -r)
-            || self.beyond(e.p, n, r)
-            || self.beyond(e.p, -n, r)
-            || self.beyond(e.p, -t, r)
-            || self.beyond(e.q, t, r)
-            || self.aside(e.p, |n| n.dot(&t) <= 0.0, r)
-            || self.aside(e.q, |n| n.dot(&t) >= 0.0, r)
+        self.sides.iter().any(|(at, n)| (e.from - at).dot(n) <= -r && (e.to - at).dot(n) <= -r)
+            || self.beyond(e.from, n, r)
+            || self.beyond(e.from, -n, r)
+            || self.beyond(e.from, -t, r)
+            || self.beyond(e.to, t, r)
+            || self.aside(e.from, |n| n.dot(&t) <= 0.0, r)
+            || self.aside(e.to, |n| n.dot(&t) >= 0.0, r)
     }
 
     /// True if a point is nowhere nearer than r, as far as the sides and the ways to the corners
@@ -137,10 +137,10 @@ pub(in crate::model::spans) fn verify(
 
 /// The place at which a contact is inside something.
 fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, Vec2)> {
-    let contact_path = context.contact_path(c).with_cached_piece(c.ends.p[0]);
-    let mut p = c.ends.p[0];
-    while p < c.ends.p[1] {
-        let border = contact_path.next_border(p, c.ends.p[1]);
+    let contact_path = context.contact_path(c).with_cached_piece(c.ends.place[0]);
+    let mut p = c.ends.place[0];
+    while p < c.ends.place[1] {
+        let border = contact_path.next_border(p, c.ends.place[1]);
         let arc = contact_path.turns(0.5 * (p + border));
         let q = if arc && border > p + TURN { p + TURN } else { border };
         let piece = contact_path.curve.piece(contact_path.curve.locate(0.5 * (p + q), c.chain_range));
@@ -150,7 +150,7 @@ fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, V
         };
         let found = inside_on(world, &point, [p, q], piece.feature.filter(|_| arc));
         if let Some((_, at)) = found {
-            return Some((c.ends.s[0], at));
+            return Some((c.ends.material[0], at));
         }
         p = q;
     }

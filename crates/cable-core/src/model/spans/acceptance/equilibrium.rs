@@ -38,7 +38,7 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     let greatest = section
         .contacts
         .iter()
-        .flat_map(|c| c.ends.t)
+        .flat_map(|c| c.ends.tension)
         .chain(
             (0..section.spans())
                 .filter(|&k| section.has_span(k))
@@ -138,45 +138,52 @@ fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f6
 /// tangent.
 fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &section.contacts[j];
-    let (contact_path, e) = (context.contact_path(c).with_cached_piece(c.ends.p[0]), &c.ends);
+    let (contact_path, e) = (context.contact_path(c).with_cached_piece(c.ends.place[0]), &c.ends);
     let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: contact_path.place(p).at };
     let (first, last) = (contact_path.curve.origin(c.chain_range.first), contact_path.curve.end(c.chain_range.last));
-    if !(contact_path.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE)
+    if !(contact_path.curve.is_round()
+        || e.place[0] >= first - CHAIN_END_TOLERANCE && e.place[1] <= last + CHAIN_END_TOLERANCE)
     {
-        return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.p[0], e.s[0]));
+        return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.place[0], e.material[0]));
     }
     if c.is_load() {
         return point_load::verify(section, context, j);
     }
     for side in 0..2 {
         if let Some(force) = section.force_at_contact(context, j, side) {
-            let tangent = contact_path.place(e.p[side]).tangent;
+            let tangent = contact_path.place(e.place[side]).tangent;
             if !(cross(force, tangent).abs() <= BALANCE_TOLERANCE * force.norm() && force.dot(&tangent) > 0.0) {
-                return Err(unsound(EquilibriumFault::SpanNotTangent, e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::SpanNotTangent, e.place[side], e.material[side]));
             }
         } else if section.in_pocket(j, side) {
-            if e.t[side] != 0.0 {
-                return Err(unsound(EquilibriumFault::SlackUnderTension, e.p[side], e.s[side]));
+            if e.tension[side] != 0.0 {
+                return Err(unsound(EquilibriumFault::SlackUnderTension, e.place[side], e.material[side]));
             }
             if side == 1 && slack_pocket::heap(section, context, j + 1).is_none() {
-                return Err(unsound(EquilibriumFault::LooseCableSlides, e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::LooseCableSlides, e.place[side], e.material[side]));
             }
         } else if section.is_joined(j, side) {
             // The load beside it is looked at by itself.
         } else if let EndCondition::Loose(force) = section.end_conditions[side] {
-            let lifts = force.dot(&contact_path.place(e.p[side]).normal);
-            if !((e.t[side] - context.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
+            let lifts = force.dot(&contact_path.place(e.place[side]).normal);
+            if !((e.tension[side] - context.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
                 && lifts <= BALANCE_TOLERANCE * force.norm())
             {
-                return Err(unsound(EquilibriumFault::EndTension, e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::EndTension, e.place[side], e.material[side]));
             }
         }
-        if !(e.t[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
-            return Err(Failure::Compressed { s: e.s[side], at: contact_path.place(e.p[side]).at, tension: e.t[side] });
+        if !(e.tension[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
+            return Err(Failure::Compressed {
+                s: e.material[side],
+                at: contact_path.place(e.place[side]).at,
+                tension: e.tension[side],
+            });
         }
     }
-    if let Some(l) =
-        context.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0)
+    if let Some(l) = context
+        .loads
+        .iter()
+        .find(|l| l.arc_length > e.material[0] && l.arc_length < e.material[1] && l.force.norm() > 0.0)
     {
         return Err(Failure::LoadInContact { s: l.arc_length });
     }
@@ -197,7 +204,7 @@ fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (contact_path.drag, c.history.breakpoints())
-        && (lost(first.arc_length, c.ends.s[0]) || lost(last.arc_length, c.ends.s[1]))
+        && (lost(first.arc_length, c.ends.material[0]) || lost(last.arc_length, c.ends.material[1]))
     {
         return Err(Failure::Unsound {
             what: EquilibriumFault::MaterialAtContactEnd,
@@ -265,7 +272,7 @@ fn firm(contact_path: &ContactPath<'_>, p: f64, q: f64, t: f64, m: f64) -> bool 
 /// sticks has changed by less than friction takes up.
 fn sampled(contact_path: &ContactPath<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
-    let [first, last] = c.ends.p;
+    let [first, last] = c.ends.place;
     let (mut p, mut t) = (first, past.at(contact_path, first).0);
     for i in 1..=SAMPLES {
         let q = first + (last - first) * i as f64 / SAMPLES as f64;

@@ -78,7 +78,7 @@ impl<'a> SpanArc<'a> {
         self.sides.iter().flatten().any(|(at, normal)| {
             edges.iter().flatten().all(|e| {
                 let far = |v: Vec2| (at - v).dot(normal) >= by;
-                far(e.p) && far(e.q) && perp(e.tangent).dot(normal) > 0.0
+                far(e.from) && far(e.to) && perp(e.tangent).dot(normal) > 0.0
             })
         })
     }
@@ -202,7 +202,7 @@ fn search(arc: &SpanArc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64,
             continue;
         }
         if let Some(s) = arc.along(e.tangent) {
-            let d = arc.point(s) - e.p;
+            let d = arc.point(s) - e.from;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
             // A deep point is nearest to an edge, or to the kink beside it, that it does not lie
             // straight below.

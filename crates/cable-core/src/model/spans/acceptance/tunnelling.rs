@@ -20,7 +20,7 @@ pub(in crate::model::spans) fn is_clear(
 ) -> bool {
     let (load, unchecked) = (context.law.load, context.settings.verify.unchecked_move);
     let same = |(a, b): (&Contact, &Contact)| {
-        let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
+        let moved = |side: usize| (a.ends.place[side] - b.ends.place[side]).abs();
         (a.curve, a.chain_range, a.wheel, a.next == Connection::Pocket, a.is_load())
             == (b.curve, b.chain_range, b.wheel, b.next == Connection::Pocket, b.is_load())
             && moved(0) < unchecked
@@ -92,7 +92,7 @@ pub(in crate::model::spans) fn shape(section: &CableSection, context: &SolveCont
         }
         if let Some(c) = section.contacts.get(k) {
             let contact_path = context.contact_path(c);
-            let [a, b] = c.ends.p;
+            let [a, b] = c.ends.place;
             out.extend((0..=points).map(|i| contact_path.place(a + (b - a) * i as f64 / points as f64).at));
         }
     }

@@ -425,12 +425,12 @@ impl Curve {
 fn boundary(body: &Body, c: f64) -> (Vec<BoundaryPiece>, bool) {
     let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
     edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));
-    let loops = body.edges.first().zip(body.edges.last()).is_some_and(|(a, b)| a.p == b.q);
+    let loops = body.edges.first().zip(body.edges.last()).is_some_and(|(a, b)| a.from == b.to);
     let closed = !body.is_ground();
     if closed && !loops {
         // A thin line is gone round: there and back.
         let back = body.edges.iter().enumerate().rev();
-        edges.extend(back.map(|(k, e)| (Edge { p: e.q, q: e.p, tangent: -e.tangent }, k)));
+        edges.extend(back.map(|(k, e)| (Edge { from: e.to, to: e.from, tangent: -e.tangent }, k)));
     }
     let n = edges.len();
     // The turn at the start of edge k: negative = convex.
@@ -453,18 +453,18 @@ fn boundary(body: &Body, c: f64) -> (Vec<BoundaryPiece>, bool) {
         let kink_before = kink(k) > 0.0;
         let first = out.len();
         if arc > 0.0 {
-            let form = PieceShape::Arc { center: e.p, radius: c, from: direction(arc_from) };
+            let form = PieceShape::Arc { center: e.from, radius: c, from: direction(arc_from) };
             out.push(BoundaryPiece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
         }
         // A kink takes c tan(δ/2) of both its edges.
         let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
-        let form = PieceShape::Edge { from: e.p + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
+        let form = PieceShape::Edge { from: e.from + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
         let extent = e.length() - cut[0] - cut[1];
         let extent = if extent > 0.0 { extent } else { 0.0 };
         let kink_before = kink_before && out.len() == first;
         out.push(BoundaryPiece { form, extent, kink_before, feature: Some(body.first + 2 * index) });
         if !closed && k + 1 == n && angle > -up {
-            let form = PieceShape::Arc { center: e.q, radius: c, from: direction(angle) };
+            let form = PieceShape::Arc { center: e.to, radius: c, from: direction(angle) };
             out.push(BoundaryPiece {
                 form,
                 extent: angle + up,

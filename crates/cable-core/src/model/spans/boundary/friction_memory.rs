@@ -51,16 +51,16 @@ pub(in crate::model::spans) struct TensionProfile {
 /// Ends of a contact: place, material (m), tension (N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Ends {
-    pub p: [f64; 2],
-    pub s: [f64; 2],
-    pub t: [f64; 2],
+    pub place: [f64; 2],
+    pub material: [f64; 2],
+    pub tension: [f64; 2],
 }
 
 impl Ends {
     /// The end from which a contact that slides with m is drawn: without friction the one with the
     /// greater tension.
     pub fn drawn_side(&self, m: f64) -> usize {
-        usize::from(if m == 0.0 { self.t[1] > self.t[0] } else { m > 0.0 })
+        usize::from(if m == 0.0 { self.tension[1] > self.tension[0] } else { m > 0.0 })
     }
 }
 
@@ -219,15 +219,15 @@ impl TensionProfile {
     /// down on both sides of a crest is held there.
     pub fn laid_from_middle(contact_path: &ContactPath<'_>, e: &Ends, tension: f64) -> Self {
         let middle = Breakpoint {
-            coordinate: contact_path.middle(e.p),
-            arc_length: 0.5 * (e.s[0] + e.s[1]),
+            coordinate: contact_path.middle(e.place),
+            arc_length: 0.5 * (e.material[0] + e.material[1]),
             tension,
             mobilised: 0.0,
         };
-        let mut laid = Self::laid(contact_path, middle, e.p);
+        let mut laid = Self::laid(contact_path, middle, e.place);
         let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
         if missing > 0.0 {
-            laid = Self::laid(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.p);
+            laid = Self::laid(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.place);
         }
         let off = laid.ends().map_or(0.0, |[a, b]| middle.arc_length - 0.5 * (a.arc_length + b.arc_length));
         laid.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.arc_length += off);
@@ -415,8 +415,8 @@ impl TensionProfile {
     /// The stick zone of a contact under its end tensions.
     pub fn hold(&self, contact_path: &ContactPath<'_>, e: &Ends) -> StickZone {
         let friction = contact_path.friction;
-        let [p1, p2] = e.p;
-        let [t1, t2] = e.t;
+        let [p1, p2] = e.place;
+        let [t1, t2] = e.tension;
         let left = self.front(contact_path, p1, t1, p2);
         let right = self.front(contact_path, p2, t2, p1);
         if left.met && right.met && left.coordinate <= right.coordinate {
@@ -470,8 +470,12 @@ impl TensionProfile {
         held: Option<StickZone>,
         old: &mut Self,
     ) {
-        let [first, last] =
-            [0, 1].map(|k| Breakpoint { coordinate: e.p[k], arc_length: e.s[k], tension: e.t[k], mobilised: 0.0 });
+        let [first, last] = [0, 1].map(|k| Breakpoint {
+            coordinate: e.place[k],
+            arc_length: e.material[k],
+            tension: e.tension[k],
+            mobilised: 0.0,
+        });
         if last.coordinate <= first.coordinate {
             self.clear();
             self.breakpoints.push(first);
@@ -539,7 +543,7 @@ impl TensionProfile {
                     self.push(last);
                 }
                 StickZone::Meet([left, right]) => {
-                    let (tension, s) = (left.way.tension, e.s[0] + left.way.material);
+                    let (tension, s) = (left.way.tension, e.material[0] + left.way.material);
                     self.clear();
                     self.push(Breakpoint { mobilised: left.mobilised, ..first });
                     self.push(Breakpoint {

@@ -50,7 +50,7 @@ fn are_alike(a: &Contact, b: &Contact, within: f64) -> bool {
     (a.curve, a.chain_range, a.wheel, a.next, a.load, a.smooth)
         == (b.curve, b.chain_range, b.wheel, b.next, b.load, b.smooth)
         && sticks(a) == sticks(b)
-        && (0..2).all(|k| near(a.ends.s[k], b.ends.s[k]) && near(a.ends.p[k], b.ends.p[k]))
+        && (0..2).all(|k| near(a.ends.material[k], b.ends.material[k]) && near(a.ends.place[k], b.ends.place[k]))
 }
 
 #[cfg(test)]
@@ -65,7 +65,7 @@ mod tests {
         let contact = |s: &f64| Contact {
             curve: 0,
             chain_range: ChainRange { first: 0, last: 0 },
-            ends: Ends { p: [0.0; 2], s: [*s, s + 0.1], t: [1.0; 2] },
+            ends: Ends { place: [0.0; 2], material: [*s, s + 0.1], tension: [1.0; 2] },
             mode: Mode::Stick,
             held: None,
             history: TensionProfile::default(),

@@ -19,7 +19,7 @@ pub(super) fn follow_edges(section: &mut CableSection, context: &SolveContext) -
         for side in 0..2 {
             let c = &section.contacts[j];
             let curve = &context.curves[c.curve];
-            let p = c.ends.p[side];
+            let p = c.ends.place[side];
             let i = curve.locate(p, c.chain_range);
             let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
             if c.wheel.is_none()
@@ -27,7 +27,7 @@ pub(super) fn follow_edges(section: &mut CableSection, context: &SolveContext) -
                 && section.has_span(j + side)
                 && (border(curve.origin(i)) || border(curve.end(i)))
             {
-                let s = section.contacts[j].ends.s[side];
+                let s = section.contacts[j].ends.material[side];
                 let leans = section.force(context, j + side, s).try_normalize(0.0);
                 any |= move_end_over_edges(section, context, j, side, None)
                     || move_end_back_over_edge(section, context, j, side)
@@ -56,12 +56,13 @@ fn move_end_over_edges(
 ) -> bool {
     let far = section.span_ends(context, j + side)[side];
     let c = &mut section.contacts[j];
-    let p = beyond_edges(&context.curves[c.curve], c.chain_range, c.ends.p[side], side, far, leans);
-    if p == c.ends.p[side] {
+    let p = beyond_edges(&context.curves[c.curve], c.chain_range, c.ends.place[side], side, far, leans);
+    if p == c.ends.place[side] {
         return false;
     }
-    let way = context.curves[c.curve].length(c.ends.p[side], p, c.chain_range) / context.law.stretch(c.ends.t[side]);
-    (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+    let way = context.curves[c.curve].length(c.ends.place[side], p, c.chain_range)
+        / context.law.stretch(c.ends.tension[side]);
+    (c.ends.place[side], c.ends.material[side]) = (p, c.ends.material[side] + way);
     true
 }
 
@@ -70,7 +71,7 @@ fn move_end_over_edges(
 fn move_end_back_over_edge(section: &mut CableSection, context: &SolveContext, j: usize, side: usize) -> bool {
     let Some(far) = section.span_ends(context, j + side)[side] else { return false };
     let c = &mut section.contacts[j];
-    let (curve, p) = (&context.curves[c.curve], c.ends.p[side]);
+    let (curve, p) = (&context.curves[c.curve], c.ends.place[side]);
     let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
     let i = curve.locate(p, c.chain_range);
     let arc = if curve.is_arc(i) { i } else { i - back };
@@ -84,10 +85,10 @@ fn move_end_back_over_edge(section: &mut CableSection, context: &SolveContext, j
         return false;
     }
     let q = curve.with_tangent(near, way);
-    let other = c.ends.p[1 - side];
+    let other = c.ends.place[1 - side];
     let q = if (q - other) * forward > 0.0 { q } else { other };
-    let moved = curve.length(p, q, c.chain_range) / context.law.stretch(c.ends.t[side]);
-    (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
+    let moved = curve.length(p, q, c.chain_range) / context.law.stretch(c.ends.tension[side]);
+    (c.ends.place[side], c.ends.material[side]) = (q, c.ends.material[side] + moved);
     moved != 0.0
 }
 

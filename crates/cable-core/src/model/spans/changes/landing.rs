@@ -145,7 +145,7 @@ fn lay_down_span(
     let same =
         |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
-        j.and_then(|j| section.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
+        j.and_then(|j| section.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.place[side])
     };
     let p = match end(k.checked_sub(1), 1).or_else(|| end(Some(k), 0)).filter(|_| curve.is_round()) {
         Some(end) => release_below::nearest_turn(p, end),
@@ -162,18 +162,20 @@ fn lay_down_span(
     if let Some(c) = k
         .checked_sub(1)
         .and_then(|j| section.contacts.get_mut(j))
-        .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
+        .filter(|c| same(c) && p > c.ends.place[1] && bears(c, (c.ends.place[1], p)))
     {
         let p = beyond_edges(curve, chain_range, p, 1, ends[1], None);
-        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.arc_length, force);
+        (c.ends.place[1], c.ends.material[1], c.ends.tension[1]) = (p, hit.arc_length, force);
         return Ok(());
     }
-    if let Some(c) = section.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
+    if let Some(c) =
+        section.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.place[0] && bears(c, (p, c.ends.place[0])))
+    {
         let p = beyond_edges(curve, chain_range, p, 0, ends[0], None);
-        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.arc_length, force);
+        (c.ends.place[0], c.ends.material[0], c.ends.tension[0]) = (p, hit.arc_length, force);
         return Ok(());
     }
-    let new = NewContact { curve_index, chain_range, p, force };
+    let new = NewContact { curve_index, chain_range, place: p, force };
     insert_contact(section, context, k, hit, new, purpose);
     Ok(())
 }
@@ -184,7 +186,7 @@ struct NewContact {
     curve_index: usize,
     chain_range: ChainRange,
     /// Its boundary coordinate.
-    p: f64,
+    place: f64,
     /// Tension there, N.
     force: f64,
 }
@@ -199,12 +201,12 @@ fn insert_contact(
     new: NewContact,
     purpose: Purpose,
 ) {
-    let NewContact { curve_index, chain_range, p, force } = new;
+    let NewContact { curve_index, chain_range, place: p, force } = new;
     let curve = &context.curves[curve_index];
     let mut contact = Contact {
         curve: curve_index,
         chain_range,
-        ends: Ends { p: [p, p], s: [hit.arc_length, hit.arc_length], t: [force, force] },
+        ends: Ends { place: [p, p], material: [hit.arc_length, hit.arc_length], tension: [force, force] },
         mode: if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Stick } else { Mode::Slip(0.0) },
         history: TensionProfile::default(),
         wheel: None,
@@ -224,17 +226,17 @@ fn insert_contact(
         {
             let s = if side == 0 { section.from } else { section.to };
             held_ends[side] = Some(end);
-            (contact.ends.p[side], contact.ends.s[side]) = (end, s);
+            (contact.ends.place[side], contact.ends.material[side]) = (end, s);
             // The length that is laid from the held end to the other.
             let laid = contact_path.slide(end, p, force, 0.0).material;
             if held_ends[1 - side].is_none() {
-                contact.ends.s[1 - side] = s + laid;
+                contact.ends.material[1 - side] = s + laid;
             }
         }
     }
     let breakpoint = |side: usize| Breakpoint {
-        coordinate: contact.ends.p[side],
-        arc_length: contact.ends.s[side],
+        coordinate: contact.ends.place[side],
+        arc_length: contact.ends.material[side],
         tension: force,
         mobilised: 0.0,
     };

@@ -93,7 +93,7 @@ pub(in crate::model::spans) fn touch(
     let mut c = Contact {
         curve: index,
         chain_range,
-        ends: Ends { p: [p; 2], s: [l.arc_length, l.arc_length.next_up()], t: [tension; 2] },
+        ends: Ends { place: [p; 2], material: [l.arc_length, l.arc_length.next_up()], tension: [tension; 2] },
         mode: Mode::Slip(0.0),
         held: None,
         history: TensionProfile::new(breakpoint(p, l.arc_length, tension), breakpoint(p, l.arc_length, tension)),
@@ -109,7 +109,7 @@ pub(in crate::model::spans) fn touch(
         section.forces.insert(k + 1, g);
         return Ok(());
     };
-    c.ends.s = [l.arc_length; 2];
+    c.ends.material = [l.arc_length; 2];
     if !pressed {
         let place = curve.place(p, chain_range);
         let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
@@ -124,13 +124,16 @@ pub(in crate::model::spans) fn touch(
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let (inner, tension) = (1 - side, rate * below);
         (c.load, c.smooth) = (None, false);
-        c.ends.p[side] += sign * below;
-        c.ends.s[inner] -= sign * below;
-        (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);
+        c.ends.place[side] += sign * below;
+        c.ends.material[inner] -= sign * below;
+        (c.ends.tension[side], c.ends.tension[inner]) = (0.0, tension);
         c.mode = Mode::Slip(sign * curve.friction);
         let e = c.ends;
-        c.history = TensionProfile::new(breakpoint(e.p[0], e.s[0], e.t[0]), breakpoint(e.p[1], e.s[1], e.t[1]));
-        section.forces[k] = place.tangent * tension + context.load_between(section.from, e.s[inner]);
+        c.history = TensionProfile::new(
+            breakpoint(e.place[0], e.material[0], e.tension[0]),
+            breakpoint(e.place[1], e.material[1], e.tension[1]),
+        );
+        section.forces[k] = place.tangent * tension + context.load_between(section.from, e.material[inner]);
     }
     section.end_conditions[side] = EndCondition::Loose(drawn);
     section.contacts.insert(k, c);

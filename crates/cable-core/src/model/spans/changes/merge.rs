@@ -11,13 +11,14 @@ pub(super) fn merge_contacts(section: &mut CableSection, context: &SolveContext)
         let (a, b) = (&section.contacts[j - 1], &section.contacts[j]);
         let loads = a.is_load() || b.is_load();
         let apart = |contact_path: &ContactPath<'_>| {
-            contact_path.curve.is_round() && release_below::hangs_between(contact_path, a.ends.p[1], b.ends.p[0])
+            contact_path.curve.is_round()
+                && release_below::hangs_between(contact_path, a.ends.place[1], b.ends.place[0])
         };
         if a.curve == b.curve
             && a.chain_range == b.chain_range
             && a.wheel.is_none()
             && !loads
-            && b.ends.p[1] >= a.ends.p[0]
+            && b.ends.place[1] >= a.ends.place[0]
             && !apart(&context.contact_path(a))
         {
             let b = section.contacts.remove(j);
@@ -26,7 +27,8 @@ pub(super) fn merge_contacts(section: &mut CableSection, context: &SolveContext)
             a.history.append(&context.contact_path(&b), &b.history);
             a.smooth &= b.smooth;
             a.next = b.next;
-            (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
+            (a.ends.place[1], a.ends.material[1], a.ends.tension[1]) =
+                (b.ends.place[1], b.ends.material[1], b.ends.tension[1]);
             if let (Mode::Slip(m), Mode::Stick) = (a.mode, b.mode)
                 && m != 0.0
             {

@@ -11,7 +11,7 @@ const RELEASE_OVERLAP: f64 = 1e-10;
 /// Releases the contact whose interval has turned round most: it would have to pull. Returns
 /// whether there was one.
 pub(super) fn release_turned_contact(section: &mut CableSection, context: &mut SolveContext) -> Result<bool, Failure> {
-    let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
+    let turned = |c: &Contact| c.ends.place[1] - c.ends.place[0];
     let worst = (0..section.contacts.len())
         .filter(|&j| !is_round_wheel(&section.contacts[j], context))
         .min_by(|&a, &b| turned(&section.contacts[a]).total_cmp(&turned(&section.contacts[b])));
@@ -24,13 +24,13 @@ pub(super) fn release_turned_contact(section: &mut CableSection, context: &mut S
 /// True if a contact is a wheel with a radius: the cable passes it on one side. An eye it may pass
 /// on either.
 fn is_round_wheel(c: &Contact, context: &SolveContext) -> bool {
-    c.wheel.is_some() && context.contact_path(c).place(c.ends.p[0]).stretch > 0.0
+    c.wheel.is_some() && context.contact_path(c).place(c.ends.place[0]).stretch > 0.0
 }
 
 /// The wheel on which the interval has turned round most, if on any: it would have to pull there.
 pub(super) fn lifted_wheel(section: &CableSection, context: &SolveContext) -> Option<usize> {
     let wheels = section.contacts.iter().filter(|c| is_round_wheel(c, context));
-    let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
+    let turned = |c: &&Contact| c.ends.place[1] - c.ends.place[0];
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
@@ -41,7 +41,7 @@ pub(super) fn release_vanishing_contact(
     context: &mut SolveContext,
 ) -> Result<bool, Failure> {
     let least = context.settings.changes.shed_length_fraction * (section.to - section.from);
-    let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
+    let small = |c: &Contact| !c.is_load() && c.ends.material[1] - c.ends.material[0] < least;
     let beside = |j: usize| section.is_joined(j, 0) || section.is_joined(j, 1);
     let Some(j) = (0..section.contacts.len()).find(|&j| small(&section.contacts[j]) && beside(j)) else {
         return Ok(false);
@@ -71,7 +71,7 @@ fn remove_contact(section: &mut CableSection, context: &mut SolveContext, j: usi
         let ends = (other == 0 && !section.end_conditions[0].has_span())
             || (other > m && !section.end_conditions[1].has_span());
         if ends {
-            return Err(Failure::LoadInContact { s: contact.ends.s[0] });
+            return Err(Failure::LoadInContact { s: contact.ends.material[0] });
         }
         section.forces.remove(k);
         section.resolve_span(context, j);
@@ -103,10 +103,14 @@ fn remove_contact(section: &mut CableSection, context: &mut SolveContext, j: usi
 fn pass_eye_on_other_side(c: &mut Contact) {
     // Its boundary in the other sense: p → −p.
     c.curve ^= 1;
-    c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
-    let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
-    let breakpoint =
-        |k: usize| Breakpoint { coordinate: c.ends.p[k], arc_length: s, tension: c.ends.t[k], mobilised: 0.0 };
+    c.ends.place = [-c.ends.place[0], -c.ends.place[1]];
+    let s = 0.5 * (c.ends.material[0] + c.ends.material[1]);
+    let breakpoint = |k: usize| Breakpoint {
+        coordinate: c.ends.place[k],
+        arc_length: s,
+        tension: c.ends.tension[k],
+        mobilised: 0.0,
+    };
     // Its interval is a point: the friction memory keeps the material that is there.
     let held = c.history.breakpoints().first().map_or(s, |k| k.arc_length);
     c.history = TensionProfile::new(

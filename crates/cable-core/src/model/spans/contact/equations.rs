@@ -39,7 +39,7 @@ pub(in crate::model::spans) fn rows(
     pinned: [bool; 2],
 ) -> (ContactEquations, Option<StickZone>) {
     // Lifted (Newton looks there): a point without friction.
-    let lifted = e.p[1] < e.p[0];
+    let lifted = e.place[1] < e.place[0];
     match if lifted { Mode::Slip(0.0) } else { mode } {
         Mode::Slip(m) if contact_path.floored && !lifted => (drawn(contact_path, e, end_points, m), None),
         Mode::Slip(m) => (sliding(contact_path, history, e, end_points, m), None),
@@ -80,24 +80,24 @@ fn pin(
     side: usize,
     front: &SlipFront,
 ) {
-    let (old_t, old_s) = history.at(contact_path, e.p[side]);
-    let gap = e.s[side] - old_s;
-    let x = e.t[side] - old_t;
+    let (old_t, old_s) = history.at(contact_path, e.place[side]);
+    let gap = e.material[side] - old_s;
+    let x = e.tension[side] - old_t;
     out.of_tension[side] = true;
-    if gap.abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
+    if gap.abs() <= END_MOVE_TOLERANCE * (e.material[0].abs() + e.material[1].abs()) {
         out.residual[side] = x;
         out.by[side] = [0.0; 6];
         out.by[side][3 * side + 2] = 1.0;
         return;
     }
-    let size = e.s[0].abs() + e.s[1].abs();
+    let size = e.material[0].abs() + e.material[1].abs();
     let law = &contact_path.law;
-    let place = contact_path.place(e.p[side]);
+    let place = contact_path.place(e.place[side]);
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let target = -sign * gap;
     // The way the tension will have to go decides the slope of the sliding there.
     let m = front.mobilised.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
-    let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
+    let inner = e.place[side] + (e.place[1 - side] - e.place[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(contact_path, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
         // It slides on as it slid: the material follows the tension along the whole of the old
@@ -105,7 +105,7 @@ fn pin(
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
-            let way = history.front(contact_path, e.p[side], nudged, e.p[1 - side]).way;
+            let way = history.front(contact_path, e.place[side], nudged, e.place[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
         return;
@@ -139,19 +139,19 @@ fn sliding(
     [a, b]: &[BoundaryPoint; 2],
     m: f64,
 ) -> ContactEquations {
-    let way = contact_path.slide(e.p[0], e.p[1], e.t[0], m);
-    let slope = contact_path.law.slope(a, e.t[0], m);
+    let way = contact_path.slide(e.place[0], e.place[1], e.tension[0], m);
+    let slope = contact_path.law.slope(a, e.tension[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
     if contact_path.drag > 0.0 {
-        let (t, s) = history.at(contact_path, e.p[0]);
-        held = contact_path.drag * (s - e.s[0]);
+        let (t, s) = history.at(contact_path, e.place[0]);
+        held = contact_path.drag * (s - e.material[0]);
         held_by = contact_path.drag * a.stretch / contact_path.law.stretch(t);
     }
     ContactEquations {
-        residual: [e.s[1] - e.s[0] - way.material, e.t[1] - way.tension - held],
+        residual: [e.material[1] - e.material[0] - way.material, e.tension[1] - way.tension - held],
         by: [
             [
-                a.stretch / contact_path.law.stretch(e.t[0]) + way.material_by_tension * slope,
+                a.stretch / contact_path.law.stretch(e.tension[0]) + way.material_by_tension * slope,
                 -1.0,
                 -way.material_by_tension,
                 -b.stretch / contact_path.law.stretch(way.tension),
@@ -176,14 +176,14 @@ fn sliding(
 fn drawn(contact_path: &ContactPath<'_>, e: &Ends, end_points: &[BoundaryPoint; 2], m: f64) -> ContactEquations {
     let from = e.drawn_side(m);
     let to = 1 - from;
-    let (way, _) = contact_path.slide_floored(e.p[from], e.p[to], e.t[from], m);
+    let (way, _) = contact_path.slide_floored(e.place[from], e.place[to], e.tension[from], m);
     let (start, end) = (&end_points[from], &end_points[to]);
-    let slope = contact_path.law.slope(start, e.t[from], m);
+    let slope = contact_path.law.slope(start, e.tension[from], m);
     let falls = if way.by_tension == 0.0 { 0.0 } else { contact_path.law.slope(end, way.tension, m) };
     let mut rows = ContactEquations { of_tension: [false, true], ..ContactEquations::default() };
-    rows.residual = [e.s[to] - e.s[from] - way.material, e.t[to] - way.tension];
+    rows.residual = [e.material[to] - e.material[from] - way.material, e.tension[to] - way.tension];
     let [lengths, tensions] = &mut rows.by;
-    lengths[3 * from] = start.stretch / contact_path.law.stretch(e.t[from]) + way.material_by_tension * slope;
+    lengths[3 * from] = start.stretch / contact_path.law.stretch(e.tension[from]) + way.material_by_tension * slope;
     lengths[3 * from + 1] = -1.0;
     lengths[3 * from + 2] = -way.material_by_tension;
     lengths[3 * to] = -end.stretch / contact_path.law.stretch(way.tension);
@@ -205,10 +205,10 @@ fn holding(
     let mut out = ContactEquations::default();
     for k in 0..2 {
         let (f, place) = (&fronts[k], &end_points[k]);
-        out.residual[k] = e.s[k] + f.way.material - f.old;
-        let slope = law.slope(place, e.t[k], f.mobilised);
+        out.residual[k] = e.material[k] + f.way.material - f.old;
+        let slope = law.slope(place, e.tension[k], f.mobilised);
         let by_t = f.way.material_by_tension;
-        out.by[k][3 * k] = -place.stretch / law.stretch(e.t[k]) - by_t * slope;
+        out.by[k][3 * k] = -place.stretch / law.stretch(e.tension[k]) - by_t * slope;
         out.by[k][3 * k + 1] = 1.0;
         out.by[k][3 * k + 2] = by_t;
     }
@@ -237,7 +237,7 @@ fn meeting(
     for k in 0..2 {
         let sign = if k == 0 { -1.0 } else { 1.0 };
         let moved = gain * sign * fronts[k].way.by_tension / closing;
-        let slope = law.slope(&end_points[k], e.t[k], fronts[k].mobilised);
+        let slope = law.slope(&end_points[k], e.tension[k], fronts[k].mobilised);
         for row in &mut out.by {
             row[3 * k + 2] += moved;
             row[3 * k] -= moved * slope;
@@ -261,41 +261,42 @@ pub(in crate::model::spans) fn next_mode(
 ) -> Mode {
     let friction = contact_path.friction;
     let (cone, stuck) = (CONE_ROUNDING * patience, STICK_ROUNDING * patience);
-    if friction <= 0.0 || e.p[1] < e.p[0] {
+    if friction <= 0.0 || e.place[1] < e.place[0] {
         return if friction <= 0.0 { Mode::Slip(0.0) } else { mode };
     }
     match mode {
         Mode::Stick => match held.unwrap_or_else(|| history.hold(contact_path, e)) {
             StickZone::Beyond(m, _) => {
                 // Rounding at the edge of the cone is not sliding.
-                let reached = contact_path.slide(e.p[0], e.p[1], e.t[0], m).tension;
-                if (e.t[1] - reached).abs() > cone * e.t[1].abs() { Mode::Slip(m) } else { mode }
+                let reached = contact_path.slide(e.place[0], e.place[1], e.tension[0], m).tension;
+                if (e.tension[1] - reached).abs() > cone * e.tension[1].abs() { Mode::Slip(m) } else { mode }
             }
             _ => mode,
         },
         Mode::Slip(m) => {
             for side in (0..2).filter(|&side| pinned[side]) {
-                let (old_t, old_s) = history.at(contact_path, e.p[side]);
-                if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
+                let (old_t, old_s) = history.at(contact_path, e.place[side]);
+                if (e.material[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.material[0].abs() + e.material[1].abs())
+                {
                     // A point that does not move is drawn the more the more the rest slides away
                     // from it.
-                    let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
-                    let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
+                    let drawn = (e.tension[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
+                    let rounding = cone * friction * larger(e.tension[0].abs(), e.tension[1].abs());
                     return if drawn < -rounding { Mode::Stick } else { mode };
                 }
             }
             // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at
             // every p. The slip is least where the tension is what it was: before it the one
             // stretch is the greater, after it the other.
-            let (old, _) = history.at(contact_path, e.p[0]);
-            let least = if (old - e.t[0]) * m > 0.0 {
-                history.front(contact_path, e.p[0], e.t[0], e.p[1]).coordinate
+            let (old, _) = history.at(contact_path, e.place[0]);
+            let least = if (old - e.tension[0]) * m > 0.0 {
+                history.front(contact_path, e.place[0], e.tension[0], e.place[1]).coordinate
             } else {
-                e.p[0]
+                e.place[0]
             };
-            let s = e.s[0] + contact_path.slide(e.p[0], least, e.t[0], m).material;
+            let s = e.material[0] + contact_path.slide(e.place[0], least, e.tension[0], m).material;
             let slid = s - history.at(contact_path, least).1;
-            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Stick } else { mode }
+            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.material[1].abs()) { Mode::Stick } else { mode }
         }
     }
 }

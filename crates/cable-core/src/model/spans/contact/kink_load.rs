@@ -68,10 +68,14 @@ pub(in crate::model::spans) fn enter(section: &mut CableSection, context: &Solve
     for c in section.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(context, c, kink) else { continue };
-            if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
-                let breakpoint =
-                    Breakpoint { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
-                c.ends.p = [p; 2];
+            if (c.ends.place[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
+                let breakpoint = Breakpoint {
+                    coordinate: p,
+                    arc_length: c.ends.material[0],
+                    tension: c.ends.tension[0],
+                    mobilised: 0.0,
+                };
+                c.ends.place = [p; 2];
                 c.history = TensionProfile::new(breakpoint, breakpoint);
                 c.load = Some(RestingLoad { kink: Some(kink) });
                 (c.mode, c.smooth) = (Mode::Stick, false);
@@ -96,16 +100,17 @@ pub(in crate::model::spans) fn leave_kink(
     let mut chain_range = c.chain_range;
     if on {
         let found = beyond(context, c, kink).and_then(|(i, _)| curve.chain(i, context.law.load));
-        chain_range = found.ok_or(Failure::LoadInContact { s: c.ends.s[0] })?.1;
+        chain_range = found.ok_or(Failure::LoadInContact { s: c.ends.material[0] })?.1;
     }
     let p = match (kink, on) {
         (Kink::Ahead, true) => curve.origin(chain_range.first),
         (Kink::Back, true) => curve.end(chain_range.last),
-        _ => c.ends.p[0],
+        _ => c.ends.place[0],
     };
     let c = &mut section.contacts[j];
-    let breakpoint = Breakpoint { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
-    (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(breakpoint, breakpoint));
+    let breakpoint =
+        Breakpoint { coordinate: p, arc_length: c.ends.material[0], tension: c.ends.tension[0], mobilised: 0.0 };
+    (c.chain_range, c.ends.place, c.history) = (chain_range, [p; 2], TensionProfile::new(breakpoint, breakpoint));
     c.load = Some(RestingLoad::default());
     c.mode = Mode::Slip(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
@@ -133,10 +138,10 @@ fn part(section: &mut CableSection, context: &SolveContext, j: usize, side: usiz
 pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, end: usize) {
     let gives = GIVE_WAY_FRACTION * (section.to - section.from);
     let e = &mut section.contacts[i].ends;
-    let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });
+    let (most, sign) = (0.5 * (e.material[1] - e.material[0]), if end == 0 { 1.0 } else { -1.0 });
     let by = if gives < most { gives } else { most };
-    e.s[end] += sign * by;
-    e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
+    e.material[end] += sign * by;
+    e.place[end] += sign * 0.5 * (e.place[1] - e.place[0]) * if most > 0.0 { by / most } else { 0.0 };
 }
 
 /// True if contact `c` lies on the chain beyond the kink that a load is in, on that side.

@@ -25,7 +25,7 @@ impl LoadBalance {
 /// Forces on the load that is contact j.
 pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &SolveContext, j: usize) -> LoadBalance {
     let c = &section.contacts[j];
-    let place = context.contact_path(c).place(c.ends.p[0]);
+    let place = context.contact_path(c).place(c.ends.place[0]);
     let own = load(section, context, j);
     let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
     for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -38,7 +38,7 @@ pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &So
             if beside.chain_range == c.chain_range {
                 along += tension * sign;
             } else {
-                fixed += context.contact_path(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
+                fixed += context.contact_path(beside).place(beside.ends.place[1 - side]).tangent * (tension * sign);
             }
         }
     }
@@ -47,7 +47,7 @@ pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &So
 
 /// P of the load that is contact j, N.
 fn load(section: &CableSection, context: &SolveContext, j: usize) -> Vec2 {
-    let s = section.contacts[j].ends.s[0];
+    let s = section.contacts[j].ends.material[0];
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
         if let (true, EndCondition::Loose(force)) = (j == end, section.end_conditions[side]) {
             return force;

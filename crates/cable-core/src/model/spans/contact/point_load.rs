@@ -60,8 +60,8 @@ pub(in crate::model::spans) fn next_mode(
             if beyond { Mode::Slip(friction * along.signum()) } else { Mode::Stick }
         }
         Mode::Slip(m) => {
-            let moved = c.ends.p[0] - held_at(c);
-            let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.p[0].abs();
+            let moved = c.ends.place[0] - held_at(c);
+            let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.place[0].abs();
             if m == 0.0 || back { Mode::Stick } else { c.mode }
         }
     }
@@ -76,8 +76,11 @@ pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, con
             let f = load_balance(section, context, j);
             return context.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
-        let [t1, t2] = c.ends.t;
-        let new = !c.is_load() && c.wheel.is_none() && c.history.breakpoints().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        let [t1, t2] = c.ends.tension;
+        let new = !c.is_load()
+            && c.wheel.is_none()
+            && c.history.breakpoints().len() == 1
+            && c.ends.place[1] > c.ends.place[0];
         if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
     };
     (0..section.contacts.len()).map(missing).fold(0.0, larger)
@@ -93,9 +96,9 @@ pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &Solve
             return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
                 <= near * load_balance.size;
         }
-        let [t1, t2] = c.ends.t;
-        let reached = context.contact_path(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
-        let laid = context.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
+        let [t1, t2] = c.ends.tension;
+        let reached = context.contact_path(c).slide(c.ends.place[0], c.ends.place[1], t1, m).tension;
+        let laid = context.law.load.norm() * (c.ends.material[1] - c.ends.material[0]);
         (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
     };
     !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
@@ -103,7 +106,7 @@ pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &Solve
 
 /// The place of a load in the state before, p.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
-    c.history.breakpoints().first().map_or(c.ends.p[0], |k| k.coordinate)
+    c.history.breakpoints().first().map_or(c.ends.place[0], |k| k.coordinate)
 }
 
 /// Checks the load that is contact j against its laws.
@@ -112,8 +115,8 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     let f = load_balance(section, context, j);
     let unsound = |what: EquilibriumFault| Failure::Unsound {
         what,
-        s: c.ends.s[0],
-        at: context.contact_path(c).place(c.ends.p[0]).at,
+        s: c.ends.material[0],
+        at: context.contact_path(c).place(c.ends.place[0]).at,
     };
     let room = BALANCE_TOLERANCE * f.size;
     if !(kink_load::press(context, c, &f) >= -room) {
@@ -128,7 +131,7 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     }
     for side in (0..2).filter(|&side| section.is_joined(j, side)) {
         let beside = section.contacts[j + 2 * side - 1].ends;
-        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (section.to - section.from)) {
+        if !((beside.place[1 - side] - c.ends.place[side]).abs() <= BALANCE_TOLERANCE * (section.to - section.from)) {
             return Err(unsound(EquilibriumFault::LoadElsewhere));
         }
     }
@@ -207,14 +210,18 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
         if c.is_load() {
             // Cable between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| section.contacts[k].ends);
-            if !same || !(b.p[0] > a.p[0]) {
-                return Err(Failure::LoadInContact { s: load.ends.s[side] });
+            if !same || !(b.place[0] > a.place[0]) {
+                return Err(Failure::LoadInContact { s: load.ends.material[side] });
             }
-            let tension = section.force(context, k, a.s[1]).norm();
-            let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
+            let tension = section.force(context, k, a.material[1]).norm();
+            let ends = Ends {
+                place: [a.place[0], b.place[0]],
+                material: [a.material[1], b.material[0]],
+                tension: [tension; 2],
+            };
             let breakpoint = |side: usize| Breakpoint {
-                coordinate: ends.p[side],
-                arc_length: ends.s[side],
+                coordinate: ends.place[side],
+                arc_length: ends.material[side],
                 tension,
                 mobilised: 0.0,
             };
@@ -227,9 +234,9 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
             section.forces.insert(k, Vec2::new(tension, 0.0));
             return Ok(true);
         }
-        let tension = c.ends.t[1 - side];
+        let tension = c.ends.tension[1 - side];
         let e = &mut section.contacts[i].ends;
-        (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
+        (e.place[1 - side], e.material[1 - side]) = (load.ends.place[0], load.ends.material[side]);
         section.forces[k] = Vec2::new(tension, 0.0);
         section.contacts[first].next = Connection::Joined;
         return Ok(true);
@@ -241,17 +248,17 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
 /// load rests with. The load that is nearest to an end is set down; whether there was one.
 pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
-    let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
+    let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.material[0] == s);
     for (j, c) in section.contacts.iter().enumerate() {
         for side in (0..2).filter(|&side| section.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
             let [from, to] = [section.material(j + side).0, section.material(j + side).1];
             let inside = |l: &&PointForce| l.arc_length > section.from && l.arc_length < section.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !is_contact(l.arc_length);
             for l in context.loads.iter().filter(near) {
-                let off = (l.arc_length - c.ends.s[side]).abs();
+                let off = (l.arc_length - c.ends.material[side]).abs();
                 let beside = l.arc_length >= from && l.arc_length <= to;
-                let turned =
-                    l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
+                let turned = l.arc_length >= c.ends.material[1].min(c.ends.material[0])
+                    && l.arc_length <= c.ends.material[0].max(c.ends.material[1]);
                 if (beside || turned)
                     && off <= context.settings.changes.catch_distance_fraction * (section.to - section.from)
                     && best.is_none_or(|b| off < b.0)
@@ -264,17 +271,18 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &Solve
     let Some((_, j, side, s)) = best else { return false };
     let c = &section.contacts[j];
     let e = c.ends;
-    let p = walk(&context.contact_path(c), e.p[side], (s - e.s[side]) * context.law.stretch(e.t[side]));
-    let load = lying(c, p, [s, s.next_up()], e.t[side], FrictionPast::None);
-    let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
+    let p =
+        walk(&context.contact_path(c), e.place[side], (s - e.material[side]) * context.law.stretch(e.tension[side]));
+    let load = lying(c, p, [s, s.next_up()], e.tension[side], FrictionPast::None);
+    let left = if side == 0 { e.place[1] - p } else { p - e.place[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
         section.contacts[j] = Contact { next: c.next, ..load };
         return true;
     }
     let c = &mut section.contacts[j];
-    (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
-    let joint = Vec2::new(e.t[side], 0.0);
+    (c.ends.place[side], c.ends.material[side]) = (p, if side == 0 { s.next_up() } else { s });
+    let joint = Vec2::new(e.tension[side], 0.0);
     if side == 0 {
         section.contacts.insert(j, Contact { next: Connection::Joined, ..load });
         section.forces.insert(j + 1, joint);
@@ -310,14 +318,14 @@ fn walk(contact_path: &ContactPath<'_>, mut p: f64, way: f64) -> f64 {
 fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> bool {
     let c = &section.contacts[j];
     // A load at an end of the section draws that end.
-    let [from, to] = [larger(c.ends.s[0], section.from), smaller(c.ends.s[1], section.to)];
+    let [from, to] = [larger(c.ends.material[0], section.from), smaller(c.ends.material[1], section.to)];
     let Some(s) = context.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0)
     else {
         return false;
     };
     let s = s.arc_length;
     let contact_path = context.contact_path(c);
-    let [p0, p1] = c.ends.p;
+    let [p0, p1] = c.ends.place;
     let floor = TENSION_ROUNDING * (section.to - section.from);
     let q = crossing(p0, p1, floor, None, |p| {
         let place = contact_path.place(p);
@@ -335,9 +343,9 @@ fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> boo
     let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
     (load.next, load.smooth) = (Connection::Joined, fresh);
     let mut rest = c.clone();
-    (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
+    (rest.ends.place[0], rest.ends.material[0], rest.ends.tension[0], rest.history) = (q, after, tension, second);
     let c = &mut section.contacts[j];
-    (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
+    (c.ends.place[1], c.ends.material[1], c.ends.tension[1], c.history) = (q, s, tension, first);
     c.next = Connection::Joined;
     section.contacts.insert(j + 1, load);
     section.contacts.insert(j + 2, rest);
@@ -352,11 +360,11 @@ fn press_end(section: &mut CableSection, context: &SolveContext, j: usize) -> bo
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
         let EndCondition::Loose(force) = section.end_conditions[side] else { continue };
         let c = &section.contacts[j];
-        let normal = context.contact_path(c).place(c.ends.p[side]).normal;
+        let normal = context.contact_path(c).place(c.ends.place[side]).normal;
         if j != end || context.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
             continue;
         }
-        let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
+        let (p, s, tension) = (c.ends.place[side], c.ends.material[side], c.ends.tension[side]);
         let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
         section.contacts.insert(k, load);
@@ -386,7 +394,7 @@ impl FrictionPast {
 fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
     let fresh = past == FrictionPast::None;
     Contact {
-        ends: Ends { p: [p; 2], s, t: [tension; 2] },
+        ends: Ends { place: [p; 2], material: s, tension: [tension; 2] },
         mode: if fresh { Mode::Slip(0.0) } else { Mode::Stick },
         held: None,
         history: TensionProfile::new(

@@ -32,7 +32,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
     let mut worst: Option<(f64, usize, f64, TensionProfile)> = None;
     for (j, c) in section.contacts.iter().enumerate() {
         let contact_path = context.contact_path(c);
-        let [first, last] = c.ends.p;
+        let [first, last] = c.ends.place;
         if c.is_load()
             || c.wheel.is_some()
             || !contact_path.curve.is_round()
@@ -41,7 +41,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
             continue;
         }
         let past = after(&contact_path, c);
-        let most = -PULL_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
+        let most = -PULL_ROUNDING * (c.ends.tension[0].abs() + c.ends.tension[1].abs());
         contact_path.bottoms(first, last, |p| {
             let pressed = press(&contact_path, &past, p).0;
             if pressed < most && worst.as_ref().is_none_or(|w| pressed < w.0) {
@@ -52,12 +52,12 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
     let Some((_, j, bottom, past)) = worst else { return false };
     let c = &section.contacts[j];
     let contact_path = context.contact_path(c);
-    let floor = TENSION_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
+    let floor = TENSION_ROUNDING * (c.ends.tension[0].abs() + c.ends.tension[1].abs());
     // Within half a turn P has one zero on either side.
     let edges = [0, 1].map(|side| {
         let half = if side == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };
         let far = bottom + half;
-        let far = if (c.ends.p[side] - far) * half < 0.0 { c.ends.p[side] } else { far };
+        let far = if (c.ends.place[side] - far) * half < 0.0 { c.ends.place[side] } else { far };
         if press(&contact_path, &past, far).0 > 0.0 {
             crossing(far, bottom, floor, None, |p| press(&contact_path, &past, p))
         } else {
@@ -65,7 +65,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
         }
     });
     let [(t0, s0), (t1, s1)] = edges.map(|p| past.at(&contact_path, p));
-    let [before, behind] = [edges[0] > c.ends.p[0], edges[1] < c.ends.p[1]];
+    let [before, behind] = [edges[0] > c.ends.place[0], edges[1] < c.ends.place[1]];
     let mode = if context.friction(c) > 0.0 { Mode::Stick } else { c.mode };
     let (e, history) = (c.ends, c.history.clone());
     let c = &mut section.contacts[j];
@@ -73,8 +73,9 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
     match (before, behind) {
         (true, true) => {
             let mut other = c.clone();
-            c.ends = Ends { p: [e.p[0], edges[0]], s: [e.s[0], s0], t: [e.t[0], t0] };
-            other.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
+            c.ends = Ends { place: [e.place[0], edges[0]], material: [e.material[0], s0], tension: [e.tension[0], t0] };
+            other.ends =
+                Ends { place: [edges[1], e.place[1]], material: [s1, e.material[1]], tension: [t1, e.tension[1]] };
             c.history = history.split(&context.contact_path(c), edges[0]).0;
             other.history = history.split(&context.contact_path(&other), edges[1]).1;
             c.next = Connection::Span;
@@ -84,11 +85,11 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
             section.resolve_span(context, j + 1);
         }
         (true, false) => {
-            c.ends = Ends { p: [e.p[0], edges[0]], s: [e.s[0], s0], t: [e.t[0], t0] };
+            c.ends = Ends { place: [e.place[0], edges[0]], material: [e.material[0], s0], tension: [e.tension[0], t0] };
             section.resolve_span(context, j + 1);
         }
         (false, true) => {
-            c.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
+            c.ends = Ends { place: [edges[1], e.place[1]], material: [s1, e.material[1]], tension: [t1, e.tension[1]] };
             section.resolve_span(context, j);
         }
         (false, false) => return false,

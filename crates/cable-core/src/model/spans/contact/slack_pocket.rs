@@ -37,7 +37,7 @@ fn kink(section: &CableSection, context: &SolveContext, k: usize) -> Option<([f6
     let p = [curve.end(a.chain_range.last), curve.origin(b.chain_range.first)];
     let (u, v) = (curve.place(p[0], a.chain_range), curve.place(p[1], b.chain_range));
     let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-    ((u.at - v.at).norm() <= KINK_DISTANCE_M && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1])
+    ((u.at - v.at).norm() <= KINK_DISTANCE_M && turn > 0.0 && p[0] >= a.ends.place[0] && p[1] <= b.ends.place[1])
         .then_some((p, turn))
 }
 
@@ -61,8 +61,8 @@ pub(in crate::model::spans) fn fill(section: &mut CableSection, context: &SolveC
     for (side, p) in p.into_iter().enumerate() {
         let c = &mut section.contacts[k - 1 + side];
         let end = 1 - side;
-        c.ends.s[end] += (p - c.ends.p[end]) / stretch;
-        (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
+        c.ends.material[end] += (p - c.ends.place[end]) / stretch;
+        (c.ends.place[end], c.ends.tension[end]) = (p, 0.0);
     }
     section.contacts[k - 1].next = Connection::Pocket;
     section.forces[k] = Vec2::zeros();
@@ -90,15 +90,15 @@ pub(in crate::model::spans) fn heap(
 ) -> Option<[BearingContact; 2]> {
     let (a, b) = (&section.contacts[k - 1], &section.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {
-        let place = context.contact_path(c).place(c.ends.p[end]);
+        let place = context.contact_path(c).place(c.ends.place[end]);
         BearingContact { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
     };
     let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
     // Material that rounding alone tells from none weighs nothing.
-    if b.ends.s[0] <= a.ends.s[1] {
+    if b.ends.material[0] <= a.ends.material[1] {
         return Some(borne);
     }
-    let held = -context.load_between(a.ends.s[1], b.ends.s[0]);
+    let held = -context.load_between(a.ends.material[1], b.ends.material[0]);
     let both = cross(borne[0].normal, borne[1].normal);
     let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];
     if press.iter().all(|n| *n >= 0.0) {
@@ -114,7 +114,7 @@ pub(in crate::model::spans) fn heap(
 
 /// U: draws a span across the kink whose material is shortest.
 pub(in crate::model::spans) fn open(section: &mut CableSection, context: &SolveContext) -> bool {
-    let surplus = |k: usize| section.contacts[k].ends.s[0] - section.contacts[k - 1].ends.s[1];
+    let surplus = |k: usize| section.contacts[k].ends.material[0] - section.contacts[k - 1].ends.material[1];
     let pockets = (1..section.contacts.len()).filter(|&k| section.contacts[k - 1].next == Connection::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
@@ -122,21 +122,21 @@ pub(in crate::model::spans) fn open(section: &mut CableSection, context: &SolveC
         return false;
     }
     let Some((_, turn)) = kink(section, context, k) else { return false };
-    let extent = |j: usize| section.contacts[j].ends.p[1] - section.contacts[j].ends.p[0];
+    let extent = |j: usize| section.contacts[j].ends.place[1] - section.contacts[j].ends.place[0];
     let half = (0.5 * turn).tan();
     let (mut x, stretch) = (short / (2.0 - turn / half), context.law.stretch(0.0));
     for j in [k - 1, k] {
         let most = context.settings.changes.kink_span_fraction * extent(j);
         x = if x < most { x } else { most };
     }
-    let normal = context.contact_path(&section.contacts[k]).place(section.contacts[k].ends.p[0]).normal;
+    let normal = context.contact_path(&section.contacts[k]).place(section.contacts[k].ends.place[0]).normal;
     let tension = (context.law.load.dot(&normal)).abs() * x / half;
     for side in 0..2 {
         let c = &mut section.contacts[k - 1 + side];
         let (end, sign) = (1 - side, if side == 0 { -1.0 } else { 1.0 });
-        c.ends.p[end] += sign * x;
-        c.ends.s[end] += sign * x / stretch;
-        c.ends.t[end] = tension;
+        c.ends.place[end] += sign * x;
+        c.ends.material[end] += sign * x / stretch;
+        c.ends.tension[end] = tension;
     }
     section.contacts[k - 1].next = Connection::Span;
     if let Some(g) = section.solve_span(context, k) {

@@ -15,11 +15,11 @@ pub(in crate::model::spans) fn place(section: &mut CableSection, context: &Solve
         (EndCondition::Lies(_), Some(p)) => {
             section.end_conditions[side] = EndCondition::Lies(p);
             let c = &mut section.contacts[outer];
-            let gap = p - c.ends.p[side];
-            c.ends.p[side] = p;
+            let gap = p - c.ends.place[side];
+            c.ends.place[side] = p;
             if gap != 0.0 {
                 // The tension starts from what was at its place.
-                c.ends.t[side] = c.history.at(&context.contact_path(c), p).0;
+                c.ends.tension[side] = c.history.at(&context.contact_path(c), p).0;
             }
         }
         (EndCondition::Lies(_), None) => lift(section, context, side, outer, at),
@@ -32,7 +32,7 @@ pub(in crate::model::spans) fn place(section: &mut CableSection, context: &Solve
 /// True if p lies outside contact `j` on that side.
 fn beyond(section: &CableSection, j: usize, side: usize, p: f64) -> bool {
     let e = &section.contacts[j].ends;
-    if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
+    if side == 0 { p <= e.place[0] } else { p >= e.place[1] }
 }
 
 /// Lays an end of the section on the boundary, which takes its span away.
@@ -40,7 +40,7 @@ fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
     section.end_conditions[side] = EndCondition::Lies(p);
     let s = if side == 0 { section.from } else { section.to };
     let e = &mut section.contacts[j].ends;
-    (e.p[side], e.s[side]) = (p, s);
+    (e.place[side], e.material[side]) = (p, s);
 }
 
 /// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
@@ -49,24 +49,24 @@ fn lift(section: &mut CableSection, context: &SolveContext, side: usize, j: usiz
     let c = &mut section.contacts[j];
     let contact_path = context.contact_path(c);
     let curve = contact_path.curve;
-    let i = curve.locate(c.ends.p[side], c.chain_range);
+    let i = curve.locate(c.ends.place[side], c.chain_range);
     let foot = curve.project(i, at);
     let place = contact_path.place(foot);
     let height = (at - place.at).dot(&place.normal).abs();
-    let press = -context.law.load.dot(&place.normal) / context.law.stretch(c.ends.t[side]);
-    let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
-    let other = c.ends.p[1 - side];
+    let press = -context.law.load.dot(&place.normal) / context.law.stretch(c.ends.tension[side]);
+    let reach = if press > 0.0 { (2.0 * c.ends.tension[side].abs() * height / press).sqrt() } else { 0.0 };
+    let other = c.ends.place[1 - side];
     let sign = if side == 0 { 1.0 } else { -1.0 };
     let least = (foot - other).abs() * (1.0 - context.settings.changes.lying_fraction);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { section.from } else { section.to };
     // Of the material there is some must remain for the span.
-    let span = ((at - contact_path.place(p).at).norm()) / context.law.stretch(c.ends.t[side]);
+    let span = ((at - contact_path.place(p).at).norm()) / context.law.stretch(c.ends.tension[side]);
     let s = end + sign * span;
-    let inner = c.ends.s[1 - side];
+    let inner = c.ends.material[1 - side];
     let s = if (s - inner) * sign < 0.0 { s } else { 0.5 * (end + inner) };
-    let t = c.ends.t[side];
-    (c.ends.p[side], c.ends.s[side]) = (p, s);
+    let t = c.ends.tension[side];
+    (c.ends.place[side], c.ends.material[side]) = (p, s);
     let force = contact_path.place(p).tangent * t;
     let k = if side == 0 { 0 } else { section.forces.len() - 1 };
     section.end_conditions[side] = EndCondition::Fixed(at);

@@ -29,9 +29,9 @@ pub(in crate::model) struct CableProperties {
 /// material (m), tension (N).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model) struct WheelEnds {
-    pub p: [f64; 2],
-    pub s: [f64; 2],
-    pub t: [f64; 2],
+    pub place: [f64; 2],
+    pub material: [f64; 2],
+    pub tension: [f64; 2],
 }
 
 /// Two equations and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
@@ -54,7 +54,7 @@ pub(in crate::model) struct WheelFriction {
 
 impl From<&WheelEnds> for Ends {
     fn from(e: &WheelEnds) -> Self {
-        Self { p: e.p, s: e.s, t: e.t }
+        Self { place: e.place, material: e.material, tension: e.tension }
     }
 }
 
@@ -116,7 +116,7 @@ impl WheelFriction {
     /// The equations at these ends.
     pub fn rows(&mut self, on: &CableProperties, ends: &WheelEnds) -> WheelEquations {
         let (e, contact_path) = (Ends::from(ends), self.contact_path(on));
-        let end_points = e.p.map(|p| contact_path.place(p));
+        let end_points = e.place.map(|p| contact_path.place(p));
         let (rows, held) = equations::rows(&contact_path, &self.history, &e, &end_points, self.mode, [false; 2]);
         self.held = held;
         WheelEquations { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }

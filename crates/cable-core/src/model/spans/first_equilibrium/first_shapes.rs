@@ -50,7 +50,7 @@ pub(in crate::model::spans) enum FirstLength {
     VeryTaut,
 }
 
-/// Where a cable may lie without tension.
+/// The places at which a cable may lie without tension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SlackCable {
     /// Nowhere.

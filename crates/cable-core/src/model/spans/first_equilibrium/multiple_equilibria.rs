@@ -120,7 +120,7 @@ impl CableEquilibrium {
         for (k, c) in self.sections.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
             let by = passed_on_m(k);
             c.history.shift_material(by);
-            c.ends.s = c.ends.s.map(|s| s + by);
+            c.ends.material = c.ends.material.map(|s| s + by);
         }
         for section in &mut self.sections {
             contacts::solve_spans(section, &self.context).ok_or(Failure::ContactCycling { s: section.from })?;
@@ -154,7 +154,7 @@ impl CableEquilibrium {
 
     /// Material at the start of each contact, m.
     fn material_at_contacts(&self) -> Vec<f64> {
-        self.sections.iter().flat_map(|s| &s.contacts).map(|c| c.ends.s[0]).collect()
+        self.sections.iter().flat_map(|s| &s.contacts).map(|c| c.ends.material[0]).collect()
     }
 
     /// True if every section is a stable rest and not a balance that runs away.

@@ -194,7 +194,7 @@ fn lies_whole(
         if matches!(section.end_conditions[side], EndCondition::Lies(_)) {
             let c = &mut section.contacts[0];
             let contact_path = context.contact_path(c);
-            c.ends.t[side] = c.history.at(&contact_path, c.ends.p[side]).0;
+            c.ends.tension[side] = c.history.at(&contact_path, c.ends.place[side]).0;
         }
     }
     section
@@ -344,7 +344,7 @@ fn contact(
     Contact {
         curve,
         chain_range,
-        ends: Ends { p, s, t: [tension; 2] },
+        ends: Ends { place: p, material: s, tension: [tension; 2] },
         mode: if context.curves[curve].friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
         history: TensionProfile::new(breakpoint(0), breakpoint(1)),
         wheel: None,

@@ -178,13 +178,13 @@ fn keep_apart(section: &mut CableSection) -> Option<()> {
     let mut before = section.from;
     let mut spanned = section.end_conditions[0].has_span();
     for c in &mut section.contacts {
-        if spanned && c.ends.s[0] < before + least {
-            c.ends.s[0] = before + least;
+        if spanned && c.ends.material[0] < before + least {
+            c.ends.material[0] = before + least;
         }
-        if c.ends.s[1] < c.ends.s[0] {
-            c.ends.s[1] = c.ends.s[0];
+        if c.ends.material[1] < c.ends.material[0] {
+            c.ends.material[1] = c.ends.material[0];
         }
-        before = c.ends.s[1];
+        before = c.ends.material[1];
         spanned = true;
     }
     (before < section.to - least || !section.end_conditions[1].has_span()).then_some(())
@@ -207,7 +207,7 @@ impl Run<'_> {
         let mut contact = Contact {
             curve: self.index,
             chain_range: self.chain_range,
-            ends: Ends { p: [0.0; 2], s: [0.0; 2], t: [0.0; 2] },
+            ends: Ends { place: [0.0; 2], material: [0.0; 2], tension: [0.0; 2] },
             mode: if self.curve.friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
             history: TensionProfile::default(),
             wheel: stations[self.first].wheel,
@@ -219,16 +219,16 @@ impl Run<'_> {
         };
         for side in 0..2 {
             let (p, s, t) = self.end(section, context, stations, side)?;
-            (contact.ends.p[side], contact.ends.s[side], contact.ends.t[side]) = (p, s, t);
+            (contact.ends.place[side], contact.ends.material[side], contact.ends.tension[side]) = (p, s, t);
         }
-        if contact.ends.p[1] < contact.ends.p[0] {
-            let middle = 0.5 * (contact.ends.p[0] + contact.ends.p[1]);
-            contact.ends.p = [middle; 2];
+        if contact.ends.place[1] < contact.ends.place[0] {
+            let middle = 0.5 * (contact.ends.place[0] + contact.ends.place[1]);
+            contact.ends.place = [middle; 2];
         }
         let breakpoint = |side: usize| Breakpoint {
-            coordinate: contact.ends.p[side],
-            arc_length: contact.ends.s[side],
-            tension: contact.ends.t[side],
+            coordinate: contact.ends.place[side],
+            arc_length: contact.ends.material[side],
+            tension: contact.ends.tension[side],
             mobilised: 0.0,
         };
         let mut breakpoints = vec![breakpoint(0)];
@@ -244,7 +244,7 @@ impl Run<'_> {
                     mobilised: 0.0,
                 });
             }
-            if !b.jumps() && q < contact.ends.p[1] {
+            if !b.jumps() && q < contact.ends.place[1] {
                 breakpoints.push(Breakpoint {
                     coordinate: q,
                     arc_length: b.arc_length,
@@ -271,12 +271,12 @@ impl Run<'_> {
         if !at_end[usize::from(!back)] {
             contact.history.measure(&contact_path, if back { SweepDirection::Left } else { SweepDirection::Right });
             if let [first, .., last] = contact.history.breakpoints() {
-                contact.ends.s = [first.arc_length, last.arc_length];
+                contact.ends.material = [first.arc_length, last.arc_length];
             }
         }
         // The cone changes only the tension at an end that lies.
         if let (Some(k), EndCondition::Lies(_)) = (contact.history.breakpoints().last(), section.end_conditions[1]) {
-            contact.ends.t[1] = k.tension;
+            contact.ends.tension[1] = k.tension;
         }
         Some(contact)
     }

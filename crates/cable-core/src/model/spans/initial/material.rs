@@ -23,14 +23,14 @@ pub(in crate::model::spans) fn measure(
         (Some(a), Some(b)) => (b - a).norm() / stretch,
         _ => 0.0,
     };
-    let own = |c: &Contact| context.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
+    let own = |c: &Contact| context.curves[c.curve].length(c.ends.place[0], c.ends.place[1], c.chain_range) / stretch;
     if loose[1] {
-        let mut s = if loose[0] { section.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { section.from };
+        let mut s = if loose[0] { section.contacts.first().map_or(0.0, |c| c.ends.material[0]) } else { section.from };
         for j in 0..n {
             s += if loose[0] && j == 0 { 0.0 } else { chord(section, j) };
             let length = own(&section.contacts[j]);
             let last = j + 1 == n && !section.end_conditions[1].has_span();
-            section.contacts[j].ends.s = [s, if last { section.to } else { s + length }];
+            section.contacts[j].ends.material = [s, if last { section.to } else { s + length }];
             s += length;
         }
     } else {
@@ -39,7 +39,7 @@ pub(in crate::model::spans) fn measure(
             s -= chord(section, j + 1);
             let length = own(&section.contacts[j]);
             let first = j == 0 && !section.end_conditions[0].has_span();
-            section.contacts[j].ends.s = [if first { section.from } else { s - length }, s];
+            section.contacts[j].ends.material = [if first { section.from } else { s - length }, s];
             s -= length;
         }
     }
@@ -54,16 +54,16 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
         let is_end = j == 0 && !section.end_conditions[0].has_span();
         let room = section.to - least * (n - j) as f64;
         let e = &mut section.contacts[j].ends;
-        if !is_end && e.s[0] < before + least {
-            let shift = before + least - e.s[0];
-            e.s = [e.s[0] + shift, e.s[1] + shift];
+        if !is_end && e.material[0] < before + least {
+            let shift = before + least - e.material[0];
+            e.material = [e.material[0] + shift, e.material[1] + shift];
         }
         let last = j + 1 == n && !section.end_conditions[1].has_span();
-        if !last && e.s[1] > room {
-            let shift = room - e.s[1];
-            e.s = [e.s[0] + shift, e.s[1] + shift];
+        if !last && e.material[1] > room {
+            let shift = room - e.material[1];
+            e.material = [e.material[0] + shift, e.material[1] + shift];
         }
-        before = e.s[1];
+        before = e.material[1];
     }
     let loose = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Loose(_)));
     let tied = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Lies(_)));
@@ -73,7 +73,7 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
         let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
         for side in 0..2 {
             if let EndCondition::Loose(force) = section.end_conditions[side] {
-                c.ends.t[side] = if free[side] { context.pull(c, side, force) } else { c.ends.t[side] };
+                c.ends.tension[side] = if free[side] { context.pull(c, side, force) } else { c.ends.tension[side] };
             }
         }
         c.history = lay_down(&contact_path, &c.ends, [free, held]);
@@ -82,9 +82,9 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
             for _ in 0..END_FIT_ROUNDS {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
-                let (tension, s) = c.history.at(&contact_path, c.ends.p[other]);
-                let off = (s - c.ends.s[other]) * context.law.stretch(tension);
-                c.ends.p[side] += if other == side { -off } else { off };
+                let (tension, s) = c.history.at(&contact_path, c.ends.place[other]);
+                let off = (s - c.ends.material[other]) * context.law.stretch(tension);
+                c.ends.place[side] += if other == side { -off } else { off };
                 c.history = lay_down(&contact_path, &c.ends, [free, held]);
             }
         }
@@ -95,13 +95,21 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
 /// its material is; else from its middle. With two free ends it is laid with the tension of the one
 /// that draws less.
 fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
-    let end =
-        |side: usize| Breakpoint { coordinate: e.p[side], arc_length: e.s[side], tension: e.t[side], mobilised: 0.0 };
+    let end = |side: usize| Breakpoint {
+        coordinate: e.place[side],
+        arc_length: e.material[side],
+        tension: e.tension[side],
+        mobilised: 0.0,
+    };
     let start = match (free, held) {
         ([true, false], _) | ([false, false], [true, false]) => end(0),
         ([false, true], _) | ([false, false], [false, true]) => end(1),
-        ([true, true], _) => return TensionProfile::laid_from_middle(contact_path, e, smaller(e.t[0], e.t[1])),
-        ([false, false], _) => return TensionProfile::laid_from_middle(contact_path, e, 0.5 * (e.t[0] + e.t[1])),
+        ([true, true], _) => {
+            return TensionProfile::laid_from_middle(contact_path, e, smaller(e.tension[0], e.tension[1]));
+        }
+        ([false, false], _) => {
+            return TensionProfile::laid_from_middle(contact_path, e, 0.5 * (e.tension[0] + e.tension[1]));
+        }
     };
-    TensionProfile::laid(contact_path, start, e.p)
+    TensionProfile::laid(contact_path, start, e.place)
 }

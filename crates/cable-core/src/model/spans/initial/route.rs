@@ -178,7 +178,7 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
     for body in world.geometry().bodies() {
-        let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
+        let points = body.edges.iter().flat_map(|e| [e.from, e.to]).chain(body.center);
         for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
             top = top.max(q.y + 2.0 * body.offset + clear);
         }
@@ -204,7 +204,7 @@ fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
     let mut far: Option<(f64, f64)> = None;
     for body in world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
         let reach = body.offset + if body.center.is_some() { 0.0 } else { ROUTE_CLEARANCE_FRACTION * (to - p).norm() };
-        let points = || body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
+        let points = || body.edges.iter().flat_map(|e| [e.from, e.to]).chain(body.center);
         let [least, most] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], q| [l.min(q.x), m.max(q.x)]);
         let above = points().any(|q| q.y > p.y);
         if above && p.x > least - reach && p.x < most + reach {

@@ -6,7 +6,7 @@ use crate::model::spans::section::cable_section::{CableSection, Contact, SolveCo
 
 /// Length of the taut string through what it touches, m.
 pub(in crate::model::spans) fn taut_length(section: &CableSection, context: &SolveContext) -> f64 {
-    let own = |c: &Contact| context.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range);
+    let own = |c: &Contact| context.curves[c.curve].length(c.ends.place[0], c.ends.place[1], c.chain_range);
     let spans: f64 = (0..section.spans())
         .filter_map(|k| match section.span_ends(context, k) {
             [Some(a), Some(b)] => Some((b - a).norm()),
@@ -38,7 +38,7 @@ pub(in crate::model::spans) fn tighten(section: &mut CableSection, context: &Sol
 pub(in crate::model::spans) fn equalise_tensions(section: &mut CableSection, context: &SolveContext) {
     tighten(section, context);
     for c in &mut section.contacts {
-        let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
+        let even = 0.5 * (c.ends.tension[0] + c.ends.tension[1]);
         c.history = TensionProfile::laid_from_middle(&context.contact_path(c), &c.ends, even);
     }
 }

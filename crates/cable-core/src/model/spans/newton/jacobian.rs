@@ -19,7 +19,7 @@ pub(super) fn gather(section: &CableSection, out: &mut Vec<f64>) {
     out.resize(count(section), 0.0);
     let mut blocks = out.chunks_exact_mut(6);
     for ((k, c), block) in section.contacts.iter().enumerate().zip(&mut blocks) {
-        let (g, s) = (section.forces[k], c.ends.s);
+        let (g, s) = (section.forces[k], c.ends.material);
         block.copy_from_slice(&[g.x, g.y, slot(section, k, 0), s[0], slot(section, k, 1), s[1]]);
     }
     if let ([x, y], Some(g)) = (blocks.into_remainder(), section.forces.last()) {
@@ -46,7 +46,7 @@ fn is_end(section: &CableSection, j: usize, side: usize) -> bool {
 
 fn slot(section: &CableSection, j: usize, side: usize) -> f64 {
     let e = &section.contacts[j].ends;
-    if has_tension_unknown(section, j, side) { e.t[side] } else { e.p[side] }
+    if has_tension_unknown(section, j, side) { e.tension[side] } else { e.place[side] }
 }
 
 pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f64]) {
@@ -61,12 +61,12 @@ pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f
                 let e = &mut c.ends;
                 // The material of a load is what it is, to the last digit.
                 if !marked {
-                    e.s[side] = s;
+                    e.material[side] = s;
                 }
                 if own {
-                    e.t[side] = slot;
+                    e.tension[side] = slot;
                 } else {
-                    e.p[side] = slot;
+                    e.place[side] = slot;
                 }
             }
         }
@@ -91,7 +91,7 @@ pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, syste
     system.residual.resize(n, 0.0);
     system.band.reset(n);
     system.end_points.clear();
-    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.p);
+    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.place);
     system.end_points.extend(section.contacts.iter().map(seen));
     for k in 0..section.spans() {
         span_rows(section, context, k, system);
@@ -114,9 +114,18 @@ pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize
     contact_rows(section, context, j, system);
 }
 
+/// Unit of lengths in residuals, in parts of the section: lengths and tensions, in parts of the
+/// greatest, then stop an iteration at the same size. Smaller: shapes are found worse beside
+/// tensions; larger: tensions are. A choice, tuned on no campaign.
+const LENGTH_UNITS: f64 = 100.0;
+
+/// Length of cable (m) whose load is the least force by which residuals of forces are divided.
+/// Smaller: contacts almost without tension never converge; larger: their friction is found worse.
+const MIN_FORCE_LENGTH_M: f64 = 1e-9;
+
 /// Lengths in hundredths of the section.
 fn scale(section: &CableSection) -> f64 {
-    100.0 / (section.to - section.from)
+    LENGTH_UNITS / (section.to - section.from)
 }
 
 fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
@@ -125,10 +134,10 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
     let m = section.contacts.len();
     if k > 0 && section.is_joined(k, 0) {
         // One place; the tension stands where the force would.
-        r[row] = (section.contacts[k - 1].ends.p[1] - section.contacts[k].ends.p[0]) * scale;
+        r[row] = (section.contacts[k - 1].ends.place[1] - section.contacts[k].ends.place[0]) * scale;
         band.add(row, row - 2, scale);
         band.add(row, row + 2, -scale);
-        let size = 1.0 / larger(section.forces[k].x.abs(), 1e-9 * context.law.load.norm());
+        let size = 1.0 / larger(section.forces[k].x.abs(), MIN_FORCE_LENGTH_M * context.law.load.norm());
         r[row + 1] = section.forces[k].y * size;
         band.add(row + 1, row + 1, size);
         return;
@@ -188,11 +197,11 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
 fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &mut System) {
     let (r, b, scale) = (&mut system.residual, &mut system.band, scale(section));
     let (c, place) = (&section.contacts[j], &system.end_points[j].0[0]);
-    let (row, p) = (6 * j + 2, c.ends.p[0]);
+    let (row, p) = (6 * j + 2, c.ends.place[0]);
     // Its material stays as it is, and both of its ends are one.
     b.add(row, row + 1, scale);
     b.add(row + 3, row + 3, scale);
-    r[row + 2] = (c.ends.p[1] - p) * scale;
+    r[row + 2] = (c.ends.place[1] - p) * scale;
     b.add(row + 2, row + 2, scale);
     b.add(row + 2, row, -scale);
     let Mode::Slip(m) = c.mode else {
@@ -201,7 +210,7 @@ fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &
         return;
     };
     let load_balance = load_balance(section, context, j);
-    let size = 1.0 / larger(load_balance.size, 1e-9 * context.law.load.norm());
+    let size = 1.0 / larger(load_balance.size, MIN_FORCE_LENGTH_M * context.law.load.norm());
     let across = load_balance.tangent + load_balance.normal * m;
     r[row + 1] = load_balance.sum.dot(&across) * size;
     if place.turn != 0.0 {
@@ -230,7 +239,8 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
     let (rows, held) = equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
     section.contacts[j].held = held;
     let c = &section.contacts[j];
-    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * context.law.load.norm());
+    let tension =
+        larger(larger(c.ends.tension[0].abs(), c.ends.tension[1].abs()), MIN_FORCE_LENGTH_M * context.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
         r[row + 1 + i] = rows.residual[i] * size[i];
@@ -259,7 +269,7 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
         }
         if is_end(section, j, side) {
             let s = if side == 0 { section.from } else { section.to };
-            r[tangency] = (c.ends.s[side] - s) * scale;
+            r[tangency] = (c.ends.material[side] - s) * scale;
             b.add(tangency, s_column, scale);
             // A free end has no tension and finds its place; a held one has a place and finds its
             // tension.

@@ -147,7 +147,7 @@ fn least_tension(section: &CableSection, context: &SolveContext) -> f64 {
     for (j, c) in section.contacts.iter().enumerate() {
         for side in 0..2 {
             if section.has_span(j + side) {
-                take(c.ends.t[side]);
+                take(c.ends.tension[side]);
             }
         }
     }

@@ -92,7 +92,7 @@ pub(in crate::model::spans) fn predict_slip(
     section.update_end_tensions(context);
     let SlipPredictor { bars, links, end_points, tuned, .. } = memory;
     *tuned = context.settings.newton.slip;
-    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.p);
+    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.place);
     end_points.clear();
     end_points.extend(section.contacts.iter().map(seen));
     bars.clear();
@@ -179,13 +179,13 @@ fn link(section: &CableSection, context: &SolveContext, end_points: &[ContactPla
     let mut out = LinearContact { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
     let beside_slack = section.in_pocket(j, 0) || section.in_pocket(j, 1);
     let beside_load = section.has_load_material(j, 0) || section.has_load_material(j, 1);
-    if is_tied || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
+    if is_tied || beside_slack || beside_load || !(e.place[1] > e.place[0] && e.tension[0] > 0.0) {
         return out;
     }
     let friction = context.friction(c);
     let contact_path = ContactPath { cached_piece: end_points.get(j).map(|s| s.1), ..context.contact_path(c) };
     out.reach = Some([-friction, friction].map(|m| {
-        let way = contact_path.slide(e.p[0], e.p[1], e.t[0], m);
+        let way = contact_path.slide(e.place[0], e.place[1], e.tension[0], m);
         (way.tension, way.by_tension)
     }));
     // A smooth contact always slides.
@@ -222,26 +222,26 @@ impl SlipPredictor {
                 continue;
             }
             let old = l.ends;
-            l.ends.s = l.ends.s.map(|s| s + l.sigma);
+            l.ends.material = l.ends.material.map(|s| s + l.sigma);
             let contact_path = ContactPath { cached_piece: Some(*cached_piece), ..context.contact_path(c) };
             for side in 0..2 {
                 let bar = &mut self.bars[j + side];
                 let Some(force) = pulls(bar, 1 - side) else { continue };
                 let (tension, place) = (force.norm(), &mut places[side]);
-                l.ends.t[side] = tension;
+                l.ends.tension[side] = tension;
                 let angle = angle(place.tangent, force);
                 if place.turn == 0.0 || !(angle.abs() <= most) {
                     continue;
                 }
                 let by = angle / place.turn;
-                let p = l.ends.p[side] + by;
-                let turned = if side == 0 { p < l.ends.p[1] } else { p > l.ends.p[0] };
+                let p = l.ends.place[side] + by;
+                let turned = if side == 0 { p < l.ends.place[1] } else { p > l.ends.place[0] };
                 if turned && contact_path.turns(p) {
-                    l.ends.p[side] = p;
-                    l.ends.s[side] += by * place.stretch / context.law.stretch(tension);
+                    l.ends.place[side] = p;
+                    l.ends.material[side] += by * place.stretch / context.law.stretch(tension);
                     *place = contact_path.place(p);
                 }
-                bar.material[1 - side] = l.ends.s[side];
+                bar.material[1 - side] = l.ends.material[side];
                 if let Some(ends) = &mut bar.ends {
                     ends[1 - side] = place.at;
                 }
@@ -251,9 +251,9 @@ impl SlipPredictor {
                 [-contact_path.friction, contact_path.friction].into_iter().zip(l.reach.iter_mut().flatten())
             {
                 let load = |place: &BoundaryPoint, t: f64| law.slope(place, t, m) - m * place.turn.abs() * t;
-                let [first, last] = [0, 1].map(|side| l.ends.p[side] - old.p[side]);
+                let [first, last] = [0, 1].map(|side| l.ends.place[side] - old.place[side]);
                 let grown = exp(m * (last * places[1].turn.abs() - first * places[0].turn.abs()));
-                *made += *by * (l.ends.t[0] - old.t[0] - load(&places[0], old.t[0]) * first);
+                *made += *by * (l.ends.tension[0] - old.tension[0] - load(&places[0], old.tension[0]) * first);
                 *made = (*made + load(&places[1], *made) * last) * grown;
                 *by *= grown;
             }
@@ -322,7 +322,7 @@ impl SlipPredictor {
                     // T₂ − what is made of T₁ = 0.
                     let lower = -by * one.by[1][0];
                     let middle = two.by[0][0] - by * one.by[1][1];
-                    let rest = made + by * (one.tension[1] - l.ends.t[0]) - two.tension[0];
+                    let rest = made + by * (one.tension[1] - l.ends.tension[0]) - two.tension[0];
                     let pivot = middle - lower * before.0;
                     (two.by[0][1] / pivot, (rest - lower * before.1) / pivot)
                 }
@@ -350,7 +350,7 @@ impl SlipPredictor {
             let side = if l.side == 0 {
                 let (before, after) = (sigma(&self.links, j.checked_sub(1)), sigma(&self.links, Some(j + 1)));
                 let (one, two) = (&self.bars[j], &self.bars[j + 1]);
-                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.ends.t[0];
+                let grown = one.tension[1] + one.by[1][0] * before + one.by[1][1] * l.sigma - l.ends.tension[0];
                 let reached = two.tension[0] + two.by[0][0] * l.sigma + two.by[0][1] * after;
                 if reached > high + by_high * grown {
                     1

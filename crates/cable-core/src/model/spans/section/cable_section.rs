@@ -238,7 +238,7 @@ impl SolveContext {
 
     /// Tension a dead force makes at an end that lies, N.
     pub fn pull(&self, c: &Contact, side: usize, force: Vec2) -> f64 {
-        let along = force.dot(&self.contact_path(c).place(c.ends.p[side]).tangent);
+        let along = force.dot(&self.contact_path(c).place(c.ends.place[side]).tangent);
         if side == 0 { -along } else { along }
     }
 
@@ -334,8 +334,8 @@ impl CableSection {
 
     /// Material at both ends of span k, m.
     pub fn material(&self, k: usize) -> (f64, f64) {
-        let from = k.checked_sub(1).and_then(|j| self.contacts.get(j)).map_or(self.from, |c| c.ends.s[1]);
-        let to = self.contacts.get(k).map_or(self.to, |c| c.ends.s[0]);
+        let from = k.checked_sub(1).and_then(|j| self.contacts.get(j)).map_or(self.from, |c| c.ends.material[1]);
+        let to = self.contacts.get(k).map_or(self.to, |c| c.ends.material[0]);
         (from, to)
     }
 
@@ -355,7 +355,7 @@ impl CableSection {
     /// Start and end of span k, m; None where the end hangs.
     pub fn span_ends(&self, context: &SolveContext, k: usize) -> [Option<Vec2>; 2] {
         let tie = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
-        let point = |c: &Contact, side: usize| Some(context.contact_path(c).place(c.ends.p[side]).at);
+        let point = |c: &Contact, side: usize| Some(context.contact_path(c).place(c.ends.place[side]).at);
         [
             match k.checked_sub(1).and_then(|j| self.contacts.get(j)) {
                 Some(c) => point(c, 1),
@@ -398,18 +398,18 @@ impl CableSection {
         for j in 0..self.contacts.len() {
             for side in 0..2 {
                 if let Some(force) = self.force_at_contact(context, j, side) {
-                    self.contacts[j].ends.t[side] = force.norm();
+                    self.contacts[j].ends.tension[side] = force.norm();
                 } else if self.in_pocket(j, side) {
-                    self.contacts[j].ends.t[side] = 0.0;
+                    self.contacts[j].ends.tension[side] = 0.0;
                 } else if self.is_joined(j, side) {
-                    self.contacts[j].ends.t[side] = self.forces[j + side].x;
+                    self.contacts[j].ends.tension[side] = self.forces[j + side].x;
                 } else if self.contacts[j].is_load() {
                     // Beyond it is nothing.
                     let k = j + 1 - side;
                     let inner = self.force_at_contact(context, j, 1 - side);
-                    self.contacts[j].ends.t[side] = inner.map_or(self.forces[k].x, |f| f.norm());
+                    self.contacts[j].ends.tension[side] = inner.map_or(self.forces[k].x, |f| f.norm());
                 } else if let EndCondition::Loose(force) = self.end_conditions[side] {
-                    self.contacts[j].ends.t[side] = context.pull(&self.contacts[j], side, force);
+                    self.contacts[j].ends.tension[side] = context.pull(&self.contacts[j], side, force);
                 }
             }
         }
@@ -418,7 +418,7 @@ impl CableSection {
     /// Force of the span beside contact j on a side of it; None beside a lying end.
     pub fn force_at_contact(&self, context: &SolveContext, j: usize, side: usize) -> Option<Vec2> {
         let k = j + side;
-        let s = self.contacts.get(j)?.ends.s[side];
+        let s = self.contacts.get(j)?.ends.material[side];
         self.has_span(k).then(|| self.force(context, k, s))
     }
 }

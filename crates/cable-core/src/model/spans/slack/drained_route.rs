@@ -97,7 +97,7 @@ impl RouteDraining<'_> {
     fn down(&mut self, u: f64, v: f64) -> Option<()> {
         let here = self.surfaces.over(u - NONE_M, u + NONE_M).filter_map(|k| {
             let surface = self.surfaces.all.get(k)?;
-            let u = larger(surface.u[0], smaller(u, surface.u[1]));
+            let u = larger(surface.range[0], smaller(u, surface.range[1]));
             Some((k, u, surface.height(u))).filter(|f| f.2 <= v + NONE_M)
         });
         let (mut surface, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
@@ -111,14 +111,14 @@ impl RouteDraining<'_> {
             if slope.abs() <= here.friction {
                 break;
             }
-            let end = here.u[usize::from(slope < 0.0)];
+            let end = here.range[usize::from(slope < 0.0)];
             if (end - u).abs() > NONE_M {
                 self.lie(surface, [u, end]);
             }
             let beyond = end + if slope < 0.0 { 2.0 * NONE_M } else { -2.0 * NONE_M };
             let next = self.surfaces.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
                 let other = self.surfaces.all.get(k)?;
-                let on = larger(other.u[0], smaller(end, other.u[1]));
+                let on = larger(other.range[0], smaller(end, other.range[1]));
                 Some((k, on, other.height(on))).filter(|f| f.2 <= self.height + NONE_M)
             });
             let (other, on, height) = next.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
@@ -153,7 +153,7 @@ impl RouteDraining<'_> {
         let over: Vec<usize> = self.surfaces.over(low, high).collect();
         let mut stops = vec![low, high];
         for k in &over {
-            stops.extend(self.surfaces.all[*k].u.iter().filter(|u| **u > low && **u < high));
+            stops.extend(self.surfaces.all[*k].range.iter().filter(|u| **u > low && **u < high));
         }
         stops.sort_by(f64::total_cmp);
         let mut fallen: Vec<(usize, [f64; 2])> = Vec::new();
@@ -163,11 +163,11 @@ impl RouteDraining<'_> {
                 continue;
             }
             let middle = 0.5 * (at + stop);
-            while next < over.len() && self.surfaces.all[over[next]].u[0] <= middle {
+            while next < over.len() && self.surfaces.all[over[next]].range[0] <= middle {
                 active.push(over[next]);
                 next += 1;
             }
-            active.retain(|k| self.surfaces.all[*k].u[1] >= middle);
+            active.retain(|k| self.surfaces.all[*k].range[1] >= middle);
             self.between(at, stop, &active, &route, &mut fallen)?;
             at = stop;
         }

@@ -29,7 +29,8 @@ pub(in crate::model::spans) struct UpperSurface {
     /// surface begins.
     piece: i64,
     start: f64,
-    pub u: [f64; 2],
+    /// Its first and last coordinate u, across the direction in which cable falls, m.
+    pub range: [f64; 2],
     pub top: SurfaceShape,
 }
 
@@ -114,7 +115,7 @@ impl UpperSurface {
     fn along(&self, u: f64) -> f64 {
         self.start
             + match self.top {
-                SurfaceShape::Line { slope, .. } => (u - self.u[0]) * 1.0f64.hypot(slope),
+                SurfaceShape::Line { slope, .. } => (u - self.range[0]) * 1.0f64.hypot(slope),
                 SurfaceShape::Round { center, radius } => {
                     // The angle from where it rises plumb.
                     let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
@@ -125,7 +126,7 @@ impl UpperSurface {
                         let c = if 1.0 - c.abs() <= rounding { c.signum() } else { c };
                         larger(1.0 - c * c, 0.0).sqrt().atan2(c)
                     };
-                    angle(u) - angle(self.u[0])
+                    angle(u) - angle(self.range[0])
                 }
             }
     }
@@ -164,17 +165,17 @@ impl UpperSurfaces {
                 curve.pieces().for_each(|piece| upper_surfaces_of(curve, body, piece, frame, &mut all));
             }
         }
-        all.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
+        all.sort_by(|a, b| a.range[0].total_cmp(&b.range[0]));
         let mut far = f64::NEG_INFINITY;
-        let reach = all.iter().map(|r| (far = larger(far, r.u[1]), far).1).collect();
+        let reach = all.iter().map(|r| (far = larger(far, r.range[1]), far).1).collect();
         Self { all, reach }
     }
 
     /// Those over an interval across the load.
     pub fn over(&self, low: f64, high: f64) -> impl Iterator<Item = usize> {
         let first = self.reach.partition_point(|far| *far <= low);
-        let last = self.all.partition_point(|r| r.u[0] < high);
-        (first..last.max(first)).filter(move |&k| self.all[k].u[1] > low)
+        let last = self.all.partition_point(|r| r.range[0] < high);
+        (first..last.max(first)).filter(move |&k| self.all[k].range[1] > low)
     }
 }
 
@@ -190,7 +191,7 @@ fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: 
                     friction,
                     piece,
                     start: 0.0,
-                    u,
+                    range: u,
                     top: SurfaceShape::Line { from, slope: along.y / along.x },
                 });
             }
@@ -218,7 +219,7 @@ fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: 
                         friction,
                         piece,
                         start: low,
-                        u,
+                        range: u,
                         top: SurfaceShape::Round { center, radius },
                     });
                 }

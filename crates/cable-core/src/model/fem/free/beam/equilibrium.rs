@@ -37,6 +37,25 @@ const LONGEST_TURN: f64 = 0.5;
 pub(in crate::model::fem) const STEP_TOLERANCE: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
+/// Part of the bending stiffness from which it is raised where Newton fails from the flexible
+/// cable. Smaller: more solves on the way; larger: the first one fails as well. A choice, tuned on
+/// no campaign, as are the four below.
+const FIRST_STIFFNESS_FRACTION: f64 = 1e-8;
+/// First factor by which it is raised. Smaller: more solves; larger: more of them fail.
+const FIRST_RISE: f64 = 10.0;
+/// Factor of the rise after a solve that was stable. Smaller: more solves; larger: more of them
+/// fail.
+const RISE_GROWTH: f64 = 2.0;
+/// Least rise after solves that failed. Smaller: the tries run out before the whole stiffness is
+/// met; larger: a sharp change of shape is not followed.
+const MIN_RISE: f64 = 1.01;
+/// Steps of this many tolerances are taken for rounding where they no longer shrink. Smaller:
+/// cables of kilometres fail for their rounding; larger: an iteration that stalls passes for
+/// converged.
+const STALLED_TOLERANCES: f64 = 1e3;
+/// Part of the step before above which a step no longer shrinks. Smaller: slow convergence passes
+/// for rounding; larger: rounding is iterated on to the last step.
+const STALLED_STEP_FRACTION: f64 = 0.5;
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
 pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
     [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
@@ -92,7 +111,7 @@ pub(in crate::model::fem) struct Sample {
     /// Its part of the rest length, m.
     pub(in crate::model::fem) length: f64,
     /// The tangent.
-    pub(in crate::model::fem) t: Vec2,
+    pub(in crate::model::fem) tangent: Vec2,
     /// Force along and across it, N.
     pub(in crate::model::fem) along: f64,
     pub(in crate::model::fem) across: f64,
@@ -295,7 +314,7 @@ impl Beam {
             Sample {
                 shapes: shapes(x),
                 length: weight * self.rest(e),
-                t,
+                tangent: t,
                 along,
                 across: f.dot(&perp(t)),
                 tau: along / self.material.axial_stiffness,
@@ -313,7 +332,7 @@ impl Beam {
         // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the
         // next rise.
         (self.angles, self.forces) = start;
-        let (mut part, mut factor): (f64, f64) = (1e-8, 10.0);
+        let (mut part, mut factor): (f64, f64) = (FIRST_STIFFNESS_FRACTION, FIRST_RISE);
         let mut saved = (self.angles.clone(), self.forces.clone());
         for _ in 0..MAX_TRIES {
             let next = (part * factor).min(1.0);
@@ -322,11 +341,11 @@ impl Beam {
                 if next >= 1.0 {
                     return outcome;
                 }
-                (part, factor) = (next, factor * 2.0);
+                (part, factor) = (next, factor * RISE_GROWTH);
                 saved = (self.angles.clone(), self.forces.clone());
             } else {
                 (self.angles, self.forces) = saved.clone();
-                factor = factor.sqrt().max(1.01);
+                factor = factor.sqrt().max(MIN_RISE);
             }
         }
         outcome
@@ -382,7 +401,9 @@ impl Beam {
             }
             self.steps += 1;
             let size = turn.max(change);
-            if size <= STEP_TOLERANCE || (size <= 1e3 * STEP_TOLERANCE && size > 0.5 * before) {
+            if size <= STEP_TOLERANCE
+                || (size <= STALLED_TOLERANCES * STEP_TOLERANCE && size > STALLED_STEP_FRACTION * before)
+            {
                 return if negative == down { Outcome::Stable } else { Outcome::Unstable };
             }
             before = size;
@@ -422,15 +443,15 @@ impl Beam {
                     }
                 }
                 let Some(i) = span else { continue };
-                let chord = p.t * (p.length * stretched);
-                let turned = -(perp(p.t) * stretched + p.t * (p.across / ea)) * p.length;
+                let chord = p.tangent * (p.length * stretched);
+                let turned = -(perp(p.tangent) * stretched + p.tangent * (p.across / ea)) * p.length;
                 for r in 0..2 {
                     gap[2 * i + r] += chord[r];
                     for a in 0..3 {
                         b[2 * i + r][2 * e + a] += turned[r] * p.shapes[a];
                     }
                     for s in 0..2 {
-                        c[(2 * i + r, 2 * i + s)] += p.length / ea * p.t[r] * p.t[s];
+                        c[(2 * i + r, 2 * i + s)] += p.length / ea * p.tangent[r] * p.tangent[s];
                     }
                 }
             }

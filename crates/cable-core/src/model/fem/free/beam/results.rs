@@ -63,7 +63,8 @@ impl Beam {
         let n = self.bars.len();
         let (starts, forces) = (self.stretch_starts(), self.station_forces());
         let curvatures: Vec<f64> = (0..=n).map(|v| self.curvature(v, &starts)).collect();
-        let chord = |e: usize| self.samples(e, &starts).iter().map(|p| p.t * (p.length * (1.0 + p.tau))).sum::<Vec2>();
+        let chord =
+            |e: usize| self.samples(e, &starts).iter().map(|p| p.tangent * (p.length * (1.0 + p.tau))).sum::<Vec2>();
         let first = self.layout.stations.iter().position(Station::anchors).unwrap_or(0);
         let anchor = self.layout.stations[first].point(0).unwrap_or_default();
         let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
