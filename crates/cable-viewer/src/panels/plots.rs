@@ -4,14 +4,14 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand, PlaybackCommand};
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::dimmed_if_old;
 use crate::panels::timeline;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::CableQuantity;
-use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
+use crate::state::AppState;
 use crate::widgets::field;
 use crate::widgets::tick::checkbox;
 
@@ -56,17 +56,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     } else if wide && view.second.is_some() {
         ui.columns_const(|[left, middle, right]| {
             vec![
-                time::ui(left, state, view, height),
-                time::second(middle, state, view, height),
+                over_time(left, state, view, height, time::ui),
+                over_time(middle, state, view, height, time::second),
                 along_cable(right, state, view, height),
             ]
         })
     } else if wide {
         ui.columns_const(|[left, right]| {
-            vec![time::ui(left, state, view, height), along_cable(right, state, view, height)]
+            vec![over_time(left, state, view, height, time::ui), along_cable(right, state, view, height)]
         })
     } else {
-        vec![time::ui(ui, state, view, height), along_cable(ui, state, view, height)]
+        vec![over_time(ui, state, view, height, time::ui), along_cable(ui, state, view, height)]
     };
     for graph in touched {
         // A graph that follows would take the zoom back at once.
@@ -129,6 +129,13 @@ fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
     }
 }
 
+/// A graph over time.
+type TimeGraph = fn(&mut Ui, &AppState, GraphView, f32) -> GraphResponse;
+
+fn over_time(ui: &mut Ui, state: &AppState, view: GraphView, height: f32, graph: TimeGraph) -> GraphResponse {
+    dimmed_if_old(ui, state, |ui| graph(ui, state, view, height))
+}
+
 fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     let index = state.current_cable();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
@@ -139,13 +146,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
             let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
-            ui.scope(|ui| {
-                if !state.is_current() {
-                    ui.multiply_opacity(DIMMED);
-                }
-                along::ui(ui, cable, (solved, ribbon), view, height)
-            })
-            .inner
+            dimmed_if_old(ui, state, |ui| along::ui(ui, cable, (solved, ribbon), view, height))
         }
         _ => {
             ui.weak("Nothing solved yet");

@@ -8,6 +8,7 @@ use cable_core::scene::{RobotTask, SupportKind};
 use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
+use crate::panels::readouts::dimmed_if_old;
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, quantity};
@@ -37,7 +38,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     by_hand(ui, state, commands);
     match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
-        Some(report) => readouts(ui, &report, pull_n(state)),
+        Some(report) => dimmed_if_old(ui, state, |ui| readouts(ui, &report, pull_n(state))),
         None => {
             ui.weak("It cannot drive here: it needs terrain below it in a side view");
         }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use cable_core::scene::{Obstacle, RobotTask, Shape, catalog};
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::{AppState, Freshness, Item};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -437,4 +437,88 @@ fn a_new_scene_and_the_name_of_its_file() {
     apply(&mut harness, Command::File(FileCommand::SaveAs(folder.path().join("mine.toml"))));
     harness.get_by_label("New scene – mine.toml");
     assert_eq!(state(&harness).ui.recent.len(), 1);
+}
+
+/// Returns how opaque every text of a picture is.
+fn opacities(harness: &Harness<'_, ViewerApp>) -> Vec<(String, u8)> {
+    fn add(shape: &egui::Shape, out: &mut Vec<(String, u8)>) {
+        match shape {
+            egui::Shape::Text(text) => {
+                let vertices = text.galley.rows.iter().flat_map(|r| &r.visuals.mesh.vertices);
+                let known = vertices.map(|v| v.color).find(|c| *c != egui::Color32::PLACEHOLDER);
+                let ink = text.override_text_color.or(known).unwrap_or(text.fallback_color);
+                out.push((text.galley.text().to_owned(), ink.a()));
+            }
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|s| add(s, out)),
+            _ => {}
+        }
+    }
+    let mut out = Vec::new();
+    harness.output().shapes.iter().for_each(|s| add(&s.shape, &mut out));
+    out
+}
+
+fn opacity(harness: &Harness<'_, ViewerApp>, text: &str) -> f32 {
+    let all = opacities(harness);
+    let found = all.iter().find(|(t, _)| t == text).unwrap_or_else(|| panic!("no text {text}: {all:?}"));
+    f32::from(found.1)
+}
+
+/// Figures of the robot, of the marked place, of the quality of the answer, of the pinned results
+/// and of the graph over time looked valid while the picture was older than the scene or a draft.
+#[test]
+fn figures_of_an_older_scene_are_dimmed_in_every_panel() {
+    let mut harness = open(catalog::tank_robot());
+    harness.set_size(Vec2::new(1600.0, 3000.0));
+    let marker = cable_viewer::state::TensionMarker {
+        cable: 0,
+        arc_length_m: 4.0,
+        from: cable_core::analysis::tension_budget::StartEnd::Start,
+    };
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
+    apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(marker))));
+    for (item, told) in [
+        (Item::Robot, ["Normal force", "Tension there", "Acceleration", "Now", "Maximum"]),
+        (Item::Solver, ["Residual", "Condition estimate", "Kinetic energy", "Now", "Maximum"]),
+    ] {
+        apply(&mut harness, Command::View(ViewCommand::Select(Some(item))));
+        harness.run_steps(3);
+        let before = told.map(|text| opacity(&harness, text));
+        harness.state_mut().state.live.snapshot.draft = true;
+        harness.run_steps(2);
+        for (text, before) in told.iter().zip(before) {
+            let now = opacity(&harness, text);
+            assert!(now < 0.6 * before, "{text}: {now} of {before}");
+        }
+        harness.state_mut().state.live.snapshot.draft = false;
+        harness.run_steps(2);
+        assert_eq!(told.map(|text| opacity(&harness, text)), before);
+    }
+}
+
+/// The row of the present answer had the sag of the old shape between the supports of the new
+/// scene.
+#[test]
+fn the_present_row_of_pinned_results_is_of_the_scene_that_was_solved() {
+    let mut harness = open(catalog::hanging_span());
+    harness.set_size(Vec2::new(1600.0, 3000.0));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
+    let row = |h: &Harness<'_, ViewerApp>| {
+        let height = h.get_by_label("Now").rect().center().y;
+        let all = h.query_all_by_label_contains(" m").filter(|n| {
+            let at = n.rect().center();
+            at.x > 1280.0 && (at.y - height).abs() < 8.0
+        });
+        all.map(|n| n.accesskit_node().label().unwrap_or_default()).collect::<Vec<_>>()
+    };
+    let before = row(&harness);
+    assert!(!before.is_empty());
+    // An end that is free, and a stiffness that cannot be solved.
+    let mut scene = state(&harness).document.scene.clone();
+    scene.cables[0].supports[1].kind = cable_core::scene::SupportKind::Free;
+    scene.cables[0].supports[1].at_m = None;
+    scene.cables[0].axial_stiffness_n = f64::NAN;
+    apply(&mut harness, Command::Scene(SceneCommand::SetScene(Box::new(scene))));
+    assert!(!state(&harness).is_current());
+    assert_eq!(row(&harness), before);
 }

@@ -8,6 +8,7 @@ use cable_core::{Scene, Solution};
 use egui::{Align, Color32, Label, Layout, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, ViewCommand};
+use crate::panels::readouts::dimmed_if_old;
 use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
@@ -57,14 +58,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return;
     };
     place(ui, scene, probe, commands);
-    ui.horizontal(|ui| {
-        ui.label("Tension there");
-        ui.strong(format::force(found.tension_n));
+    dimmed_if_old(ui, state, |ui| {
+        ui.horizontal(|ui| {
+            ui.label("Tension there");
+            ui.strong(format::force(found.tension_n));
+        });
+        motion(ui, answer, probe);
+        let listed = listed(&found);
+        bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
+        figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
     });
-    motion(ui, answer, probe);
-    let listed = listed(&found);
-    bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
-    figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
 }
 
 /// The place and the end the sum begins at, both to be set by keys as well.
