@@ -176,6 +176,18 @@ impl ViewerApp {
         self.perform_effects(ctx, effects);
     }
 
+    /// Number of solves that were given up for what was asked later.
+    #[must_use]
+    pub fn abandoned_solves(&self) -> u64 {
+        self.worker.abandoned_solves()
+    }
+
+    /// Returns whether a solve has been running for longer than this.
+    #[must_use]
+    pub fn solves_for(&self, time: std::time::Duration) -> bool {
+        self.worker.solves_for(time)
+    }
+
     /// The worker has answered every edit.
     #[must_use]
     pub fn settled(&self) -> bool {
