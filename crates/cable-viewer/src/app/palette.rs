@@ -11,6 +11,7 @@ use crate::plot::{along, time};
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Item, OpenPanels};
+use crate::units::labels;
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
@@ -125,7 +126,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         .map(|(name, _, command)| (format!("Add obstacle: {}", name.to_lowercase()), Command::Scene(command)));
     all.extend(obstacles);
     let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
-    all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
+    all.extend(models.map(|m| (format!("Solve with {}", labels::model(m)), Command::SetModel(m))));
     all.extend(CableQuantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
     all.extend(
         TUTORIALS.iter().enumerate().map(|(k, t)| (format!("Guide: {}", t.title), Command::File(tutorials::open(k)))),

@@ -40,6 +40,7 @@ mod units;
 mod walk;
 mod warnings;
 mod wishes;
+mod words;
 
 use cable_core::scene::{Shape, catalog};
 use cable_viewer::ViewerApp;

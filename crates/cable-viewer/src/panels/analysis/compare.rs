@@ -135,7 +135,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
                     let why = sentence(why);
-                    let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
+                    let name = if why.contains(labels::model(answer.model)) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
                     ui.label(RichText::new(format!("{name}{colon}{why}")).small());
                 }
