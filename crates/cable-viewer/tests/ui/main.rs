@@ -17,6 +17,7 @@ mod hands;
 mod help;
 mod job;
 mod keys;
+mod layers;
 mod layout;
 mod outline;
 mod pictures;
