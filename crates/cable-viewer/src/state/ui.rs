@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::state::dialog::Dialog;
+use crate::state::dialog::{Dialog, Replacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
 
@@ -32,6 +32,8 @@ pub struct Ui {
     pub legend_beside: bool,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
+    /// The action that goes on once the scene is saved.
+    pub after_save: Option<Replacement>,
     /// The dialog that comes back once the message over it is closed.
     pub after_message: Option<Dialog>,
     /// Files opened and saved last, the latest first.

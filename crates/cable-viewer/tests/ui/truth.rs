@@ -458,6 +458,43 @@ fn a_failed_save_asks_again_with_the_path_that_was_typed() {
     assert_eq!(std::path::Path::new(typed), path);
 }
 
+/// "Save…" dropped what was pending: the other scene was not opened, the window not closed.
+#[test]
+fn what_was_pending_goes_on_once_the_scene_is_saved() {
+    let changed = || {
+        let mut harness = open(catalog::hanging_span());
+        apply(&mut harness, Command::Scene(SceneCommand::SetName("Changed".to_owned())));
+        apply(&mut harness, Command::File(FileCommand::OpenCatalogue("over-beam".to_owned())));
+        harness.get_by_label("Save…").click();
+        harness.run_steps(3);
+        harness
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("changed.toml");
+    let mut harness = changed();
+    assert_eq!(state(&harness).document.scene.name, "Changed", "not before it is saved");
+    // A place that cannot be written to: asked again, and then it goes on.
+    apply(&mut harness, Command::File(FileCommand::SaveAs("/no such folder/scene.toml".into())));
+    harness.get_by_label("Close").click();
+    harness.run_steps(3);
+    apply(&mut harness, Command::File(FileCommand::SaveAs(path.clone())));
+    assert_eq!(cable_viewer::io::scene_file::load(&path).unwrap().name, "Changed");
+    assert_eq!(state(&harness).document.scene.name, catalog::over_beam().name);
+    assert!(!state(&harness).document.unsaved() && state(&harness).ui.dialog.is_none());
+    // Called off, it does not follow a later save.
+    let mut harness = changed();
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(3);
+    apply(&mut harness, Command::File(FileCommand::SaveAs(path)));
+    assert_eq!(state(&harness).document.scene.name, "Changed");
+    // A file that is known is saved at once, and the window closes.
+    apply(&mut harness, Command::Scene(SceneCommand::SetName("Changed again".to_owned())));
+    apply(&mut harness, Command::File(FileCommand::Quit));
+    harness.get_by_label("Save…").click();
+    harness.run_steps(3);
+    assert!(state(&harness).ui.closing && !state(&harness).document.unsaved());
+}
+
 /// A new scene asks first, has a name and an answer, and the window's title tells the file.
 #[test]
 fn a_new_scene_and_the_name_of_its_file() {
