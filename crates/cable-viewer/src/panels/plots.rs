@@ -11,7 +11,7 @@ use crate::record::measure::Measure;
 use crate::render::colour::CableQuantity;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
-use crate::state::AppState;
+use crate::state::{AppState, GraphRequest};
 use crate::widgets::field;
 use crate::widgets::tick::checkbox;
 
@@ -34,6 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
+    asked(ui, state, &mut view);
     let restart = if state.live.earlier_run.is_some() { UNDO_RESTART } else { 0.0 };
     if ui.available_width() >= ONE_ROW + restart {
         ui.horizontal(|ui| {
@@ -115,6 +116,19 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
         && matches!(view.measure, Measure::Cable(CableQuantity::Stress | CableQuantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
+    }
+}
+
+/// What was asked of the graphs since the frame before.
+fn asked(ui: &Ui, state: &AppState, view: &mut GraphView) {
+    let id = Id::unique("graph requests");
+    let (count, request) = state.ui.graph_request;
+    let before = ui.data(|d| d.get_temp::<u64>(id)).unwrap_or(0);
+    ui.data_mut(|d| d.insert_temp(id, count));
+    match request.filter(|_| count != before) {
+        Some(GraphRequest::Measure(measure)) => (view.measure, view.second) = (measure, None),
+        Some(GraphRequest::Follow) => view.follow = !view.follow,
+        None => {}
     }
 }
 

@@ -161,6 +161,18 @@ fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     });
 }
 
+/// A leg to a place a metre ahead.
+#[must_use]
+pub fn first_drive(robot: &Robot) -> RobotTask {
+    RobotTask::Drive { to_x_m: robot.at_m[0] + 1.0, speed_m_per_s: FIRST_LEG.0 }
+}
+
+/// A leg that stands still for a while.
+#[must_use]
+pub fn first_wait() -> RobotTask {
+    RobotTask::Wait { wait_s: FIRST_LEG.1 }
+}
+
 fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     ui.separator();
     ui.weak(if robot.path.is_empty() { "No path: it stands until it is driven" } else { "Path" });
@@ -178,10 +190,10 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             set(changed, commands);
         };
         if ui.button("Add drive").on_hover_text("A leg to a place").clicked() {
-            add(RobotTask::Drive { to_x_m: robot.at_m[0] + 1.0, speed_m_per_s: FIRST_LEG.0 });
+            add(first_drive(robot));
         }
         if ui.button("Add wait").on_hover_text("Stands still for a while").clicked() {
-            add(RobotTask::Wait { wait_s: FIRST_LEG.1 });
+            add(first_wait());
         }
         let mut repeat = robot.repeat;
         if checkbox(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {

@@ -154,6 +154,16 @@ pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// Their titles with their number, and what leads to the place of each or to their list.
+pub fn places(state: &AppState) -> Vec<(String, Command)> {
+    let list = || ViewCommand::ShowPanels(OpenPanels { results: true, ..state.ui.panels });
+    let named = entries(state).into_iter().enumerate().map(|(k, e)| {
+        let command = e.at_m.map_or_else(list, ViewCommand::ZoomOn);
+        (format!("warning {}: {}", k + 1, e.title), Command::View(command))
+    });
+    named.collect()
+}
+
 fn entries(state: &AppState) -> Vec<Entry> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::record::measure::Measure;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
@@ -21,6 +22,15 @@ impl Default for OpenPanels {
     fn default() -> Self {
         Self { edit: true, results: true, graphs: true }
     }
+}
+
+/// Something asked of the graphs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GraphRequest {
+    /// A measure to show alone.
+    Measure(Measure),
+    /// To keep up with the data, or not any more.
+    Follow,
 }
 
 /// The window around the scene.
@@ -48,6 +58,8 @@ pub struct Ui {
     pub written: Option<PathBuf>,
     /// The graph (by its title) whose export was asked for elsewhere than beside it.
     pub graph_to_export: Option<&'static str>,
+    /// What is asked of the graphs elsewhere than above them, and how many times something was.
+    pub graph_request: (u64, Option<GraphRequest>),
     /// The user agreed to close the window without saving.
     pub closing: bool,
 }

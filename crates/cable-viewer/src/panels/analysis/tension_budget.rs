@@ -39,10 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let help = "Breaks the largest tension down into weight, friction at each contact and pull at the end";
         if ui.button("At the largest").on_hover_text(help).clicked() {
-            let most = answer.max_tension();
-            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
-            let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
-            commands.push(Command::View(ViewCommand::SetTensionMarker(Some(probe))));
+            commands.push(Command::View(ViewCommand::SetTensionMarker(at_the_largest(state))));
         }
         let help = "Removes the mark";
         if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
@@ -68,6 +65,14 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
         figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
     });
+}
+
+/// A mark at the largest tension of the answer on screen.
+#[must_use]
+pub fn at_the_largest(state: &AppState) -> Option<TensionMarker> {
+    let most = state.live.snapshot.solution.as_deref()?.max_tension();
+    let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
+    Some(TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from })
 }
 
 /// The place and the end the sum begins at, both to be set by keys as well.
