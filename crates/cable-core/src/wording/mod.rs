@@ -21,7 +21,7 @@ mod solve_error;
 mod verification;
 mod warning;
 
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{FOOT_M, Quantity, UnitSystem};
 
 /// Data that can be told in a sentence.
 pub trait Sentence {
@@ -123,6 +123,15 @@ impl Figures {
     /// A length (m) with so many decimals.
     fn length(self, length_m: f64, decimals: usize) -> String {
         self.fixed(Quantity::Length, length_m, decimals)
+    }
+
+    /// A radius (m) of a bend in millimetres or inches, with three digits.
+    fn radius(self, radius_m: f64) -> String {
+        let (symbol, unit_m) = match self.0 {
+            UnitSystem::Si => ("mm", 1e-3),
+            UnitSystem::Us => ("in", FOOT_M / 12.0),
+        };
+        format!("{} {symbol}", shortened(format!("{:.2e}", radius_m / unit_m)))
     }
 
     /// A length (m) with three decimals, or three digits where it is small or huge.

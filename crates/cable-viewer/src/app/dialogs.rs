@@ -171,8 +171,9 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[St
             .labelled_by(label.id);
     });
     ui.horizontal(|ui| {
-        let label = ui.label("Length of one unit, m");
+        let label = ui.label("1 unit =");
         ui.add(egui::TextEdit::singleline(unit_m).desired_width(70.0)).labelled_by(label.id);
+        ui.label("m");
     });
     let unit = unit_m.trim().replacen(',', ".", 1).parse::<f64>().ok().filter(|u| *u > 0.0 && u.is_finite());
     if unit.is_none() {

@@ -145,9 +145,9 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         contact::draw(view, state);
     }
     cable::draw(view, state);
-    breaks::draw(view, state);
     forces::draw(view, state, &mut figures);
     supports::draw(view, state);
+    breaks::draw(view, state);
     if current {
         tension_marker::draw(view, state, &mut figures);
     }

@@ -116,8 +116,8 @@ fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         ("Track force", format::force(r.thrust_n), "Force of the tracks along the ground"),
         (
-            "Available traction",
-            format!("{} used", format::percent(share)),
+            "Traction",
+            format!("{} of available traction", format::percent(share)),
             "Track force as a share of friction times normal force: at 100 % the tracks slip",
         ),
         ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),

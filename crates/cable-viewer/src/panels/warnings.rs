@@ -389,8 +389,13 @@ fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
 /// Returns the line of an entry: what gives way where there is no room is not the place.
 fn button<'a>(ui: &Ui, entry: &Entry) -> Button<'a> {
     let place = entry.parts.as_ref().map_or("", |[.., place]| place);
-    let place = RichText::new(place).text_style(TextStyle::Small).color(ui.visuals().text_color());
-    Button::new((line(ui, entry), Atom::grow(), place)).frame(false).truncate()
+    let button = if place.is_empty() {
+        Button::new((line(ui, entry), Atom::grow()))
+    } else {
+        let place = RichText::new(place).text_style(TextStyle::Small).color(ui.visuals().text_color());
+        Button::new((line(ui, entry), Atom::grow(), place))
+    };
+    button.frame(false).truncate()
 }
 
 /// Returns what it is, and smaller its figures.

@@ -2,8 +2,9 @@
 
 use cable_core::Model;
 use cable_core::scene::catalog;
-use cable_viewer::command::{Command, SceneCommand};
+use cable_viewer::command::{Command, FileCommand, SceneCommand};
 use cable_viewer::state::Item;
+use cable_viewer::state::dialog::Dialog;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use crate::{apply, open, select};
@@ -40,4 +41,17 @@ fn a_fault_and_a_refusal_are_told_without_keys_and_short_names() {
     let told = said(&harness);
     assert!(told.iter().any(|t| t.contains("Catenary cannot answer this scene")), "{told:?}");
     assert!(!told.iter().any(|t| t.contains("catenary cannot")), "{told:?}");
+}
+
+#[test]
+fn texts_of_the_wording_table() {
+    let mut harness = open(catalog::tank_robot());
+    select(&mut harness, Item::Robot);
+    harness.set_size(egui::Vec2::new(1280.0, 2400.0));
+    harness.run_steps(3);
+    harness.get_by_label("Position, m");
+    assert!(harness.query_all_by_label_contains("% of available traction").count() == 1);
+    let (path, text, unit_m) = (String::new(), "0 0\n1 0\n".to_owned(), "1".to_owned());
+    apply(&mut harness, Command::File(FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))));
+    harness.get_by_label("1 unit =");
 }

@@ -96,8 +96,7 @@ pub fn thickness_note(view: &mut CanvasView<'_>, state: &AppState) {
     let text = format!("cable drawn {}× as thick", format::significant(f64::from(times), 2));
     let at = view.rect.right_bottom() - vec2(16.0, NOTE_HEIGHT);
     let place = view.text(at, Align2::RIGHT_BOTTOM, &text, 11.0, view.palette.weak_text);
-    // A name that finds no other room may lie over it rather than over the robot.
-    view.avoid_area(place.expand(2.0));
+    view.occupied.push(place.expand(2.0));
 }
 
 /// An outdated picture: half way to grey.
