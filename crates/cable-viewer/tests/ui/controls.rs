@@ -54,8 +54,8 @@ fn no_control_is_lost() {
     println!("{} controls before, {} now", BEFORE.lines().count(), now.len());
 }
 
-/// Buttons that the palette has no use for: menus, of which it has the entries, those of single rows
-/// of a table, and figures that lead to where they are.
+/// Buttons that the palette has no use for: menus, of which it has the entries, those of single
+/// rows of a table, and figures that lead to where they are.
 fn is_left_out(name: &str) -> bool {
     let menus = ["File", "Edit", "View", "Scenes", "Learn", "Colours", "Open recent"];
     let rows = ["Remove corner ", "Add a corner after corner ", "Add a time after ", "Remove time "];

@@ -85,6 +85,7 @@ const NOTED_THICKENING: f32 = 1.05;
 /// Returns how many times as thick as it is a cable is drawn, where its true diameter could not be
 /// seen; the greatest of several.
 fn thickening(view: &CanvasView<'_>, state: &AppState) -> Option<f32> {
+    state.live.snapshot.solution.as_ref()?;
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let times = solved.cables.iter().map(|c| MIN_WIDTH / view.points(c.diameter_m));
     times.filter(|t| t.is_finite() && *t > NOTED_THICKENING).reduce(f32::max)
