@@ -100,7 +100,7 @@ impl Figures {
     /// The same without the unit.
     fn bare(self, quantity: Quantity, value: f64) -> String {
         let converted = quantity.convert(value, self.0);
-        // What was computed, or dragged by a hand, has more digits than anyone reads.
+        // A computed value, or one dragged by a hand, has more digits than anyone reads.
         if converted == value { six_digits(value) } else { shortened(format!("{converted:.4e}")) }
     }
 

@@ -153,7 +153,7 @@ fn grounds(scene: &Scene) -> Vec<String> {
     scene.obstacles.iter().filter(ground).map(|o| format!("“{}”", o.name)).collect()
 }
 
-/// What to read, and whether it is to be added or to replace the ground.
+/// Asks for a map to read, and whether it is to be added or to replace the ground.
 fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[String], commands: &mut Vec<Command>) {
     ui.heading("Import terrain and beams");
     ui.add_space(6.0);

@@ -70,7 +70,7 @@ fn layers(state: &AppState) -> Vec<Entry> {
     all
 }
 
-/// What is done to what is selected, and to the scene as a whole.
+/// Edits of what is selected, and of the scene as a whole.
 fn edits(state: &AppState) -> Vec<Entry> {
     let mut all = vec![
         scene("Copy", SceneCommand::Copy),
@@ -129,7 +129,7 @@ fn graphs(state: &AppState) -> Vec<Entry> {
     all
 }
 
-/// What is asked beside the answer.
+/// Questions that are asked beside the answer.
 fn analyses(state: &AppState) -> Vec<Entry> {
     let reach = state.analysis.safe_reach.choice;
     let friction = &state.analysis.friction_range;

@@ -62,7 +62,7 @@ pub enum FileCommand {
         text: String,
         /// Length of a unit of it, m.
         unit_m: f64,
-        /// What is read takes the place of the ground that is there.
+        /// The map takes the place of the ground that is there.
         replaces_ground: bool,
     },
     /// Adds what the user thinks to a table.
@@ -189,7 +189,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
             state.ui.dialog = dialog.or(then);
             if state.ui.dialog.is_none() {
-                // What was to follow a save that was called off does not follow a later one.
+                // An action that was to follow a save that was called off follows no later one.
                 state.ui.after_save = None;
             }
         }

@@ -119,7 +119,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     }
 }
 
-/// What was asked of the graphs since the frame before.
+/// Takes in a request that was made of the graphs since the frame before.
 fn asked(ui: &Ui, state: &AppState, view: &mut GraphView) {
     let id = Id::unique("graph requests");
     let (count, request) = state.ui.graph_request;

@@ -19,8 +19,8 @@ pub fn short_title(kind: WarningKind, title: &'static str) -> &'static str {
     }
 }
 
-/// What a warning's figures are, in words and as short as they can be: a line of the panel has room
-/// for a value, its limit and the place.
+/// The figures of a warning, in words and as short as they can be: a line of the panel has room for
+/// a value, its limit and the place.
 pub struct Figures {
     /// In words.
     pub words: String,

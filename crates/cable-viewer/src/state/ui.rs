@@ -58,7 +58,7 @@ pub struct Ui {
     pub written: Option<PathBuf>,
     /// The graph (by its title) whose export was asked for elsewhere than beside it.
     pub graph_to_export: Option<&'static str>,
-    /// What is asked of the graphs elsewhere than above them, and how many times something was.
+    /// The last request made of the graphs elsewhere than above them, and the count of all.
     pub graph_request: (u64, Option<GraphRequest>),
     /// The user agreed to close the window without saving.
     pub closing: bool,

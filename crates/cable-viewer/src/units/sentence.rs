@@ -14,7 +14,7 @@ pub fn sentence(of: &impl Sentence) -> String {
 }
 
 fn plain(text: &str) -> String {
-    // What speaks of a file has the words of the file.
+    // A sentence about a file has the words of the file.
     let of_file = [".csv", ".toml", "line "].iter().any(|word| text.contains(word));
     let mut out = String::new();
     for (k, part) in text.split('`').enumerate() {

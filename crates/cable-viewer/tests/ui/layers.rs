@@ -1,5 +1,5 @@
-//! What the canvas draws besides the cable: how much too thick it is drawn, where it lay when the
-//! run began, and where it broke.
+//! The canvas says how much too thick the cable is drawn, where it lay when the run began, and
+//! where it broke.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
@@ -47,7 +47,7 @@ fn a_cable_drawn_thicker_than_it_is_is_said_to_be() {
     }
 }
 
-/// How many short straight lines the canvas has.
+/// Counts the short straight lines of the canvas.
 fn dashes(harness: &Harness<'_, ViewerApp>) -> usize {
     fn count(shape: &Shape, canvas: Rect) -> usize {
         match shape {

@@ -53,7 +53,7 @@ fn a_pull_past_the_length_is_refused_at_first() {
     assert!(state.document.fault.is_some() && state.live.playback.paused);
 }
 
-/// Where a pull was refused nothing told that it can pull.
+/// A pull that was refused did not tell that it can pull.
 #[test]
 fn a_pull_that_is_refused_offers_to_pull_past_the_length() {
     let (mut harness, from) = held(1e3);
