@@ -173,7 +173,9 @@ fn robot_entries(state: &AppState) -> Vec<Entry> {
     changed("Robot facing left".to_owned(), &|r| r.heading = Heading::Left);
     changed("Robot facing right".to_owned(), &|r| r.heading = Heading::Right);
     for k in 0..present.path.len() {
-        changed(format!("Remove leg {}", k + 1), &|r| drop(r.path.remove(k)));
+        changed(format!("Remove leg {}", k + 1), &|r| {
+            r.path.remove(k);
+        });
     }
     let drives = present.path.iter().enumerate().filter(|(_, task)| matches!(task, RobotTask::Drive { .. }));
     all.extend(drives.map(|(k, _)| select(format!("Select leg {}", k + 1), Item::PathLeg(k))));
