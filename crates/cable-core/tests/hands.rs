@@ -191,7 +191,7 @@ fn a_hand_is_no_faster_than_it_may_be_and_a_stiff_one_is_followed_exactly() {
                 let (end, ..) = hand(&sim);
                 assert!((end - at(&sim)).norm() < 1e-4, "{model}, step {k}: {} m behind", (end - at(&sim)).norm());
                 assert!((end - before).norm() <= fastest / 60.0 * (1.0 + 1e-3) + 1e-4, "{model}, step {k}");
-                lagged += usize::from(held(&sim).iter().any(|w| w.contains("m behind where it is sent")));
+                lagged += usize::from(held(&sim).iter().any(|w| w.contains("m behind its target")));
                 before = end;
             }
             let frames = 60.0 * 3.0 / fastest;

@@ -101,7 +101,7 @@ fn warnings() -> Vec<Warning> {
             [0.0; 2],
         ),
         (many(ShownEquilibrium::FromRouteAsFlexible, Histories::NotFound { greatest_n: 80.0 }), [0.0; 2]),
-        (Cause::Blocked { support: name("grip") }, [0.2, 0.0]),
+        (Cause::Blocked { support: name("grip"), obstacle: name("beam"), short_m: [0.2, 0.0] }, [0.2, 0.0]),
         (Cause::ClearOfWheel { pulley: name("grip") }, [0.0; 2]),
         (Cause::Lags { support: name("grip"), behind_m: 0.5 }, [2.0, 2.0]),
         (

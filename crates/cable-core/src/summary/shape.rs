@@ -10,14 +10,21 @@ const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Sag: the greatest distance of the cable from the straight line between neighbouring supports
 /// that hold it (a dead load hangs: it holds nothing), downwards in a side view, square to the line
-/// in a plan view. None where no two of them are apart, or the cable is broken between them.
+/// in a plan view. None where no two of them are apart, or the cable is broken between them or torn
+/// off one.
 #[must_use]
 pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
     let hangs = |k: usize| {
         let kind = cable.supports.get(k).map(|s| s.kind);
         matches!(kind, Some(SupportKind::Load | SupportKind::Free))
     };
-    let held: Vec<_> = answer.supports.iter().enumerate().filter(|(k, _)| !hangs(*k)).map(|(_, s)| s).collect();
+    let last = answer.supports.len().saturating_sub(1);
+    let torn_off = |k: usize| {
+        let breaks = |node: usize| answer.breaks.contains(&node);
+        (k == 0 && breaks(0)) || (k == last && breaks(answer.nodes.len()))
+    };
+    let holds = |k: usize| !hangs(k) && !torn_off(k);
+    let held: Vec<_> = answer.supports.iter().enumerate().filter(|(k, _)| holds(*k)).map(|(_, s)| s).collect();
     let mut best: Option<Sag> = None;
     for pair in held.windows(2) {
         let (a, b) = (pair[0], pair[1]);

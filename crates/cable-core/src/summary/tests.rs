@@ -248,6 +248,17 @@ fn a_broken_cable_has_no_sag_between_what_its_pieces_hang_on() {
     assert!(sag(&cable, &answer, View::Elevation).is_some_and(|s| (s.sag_m - 0.16).abs() < 1e-12));
 }
 
+/// The window showed a sag of 4.477 m for a cable that had torn off both of its supports.
+#[test]
+fn a_cable_that_nothing_holds_has_no_sag() {
+    let (cable, answer) = parabola(0.0);
+    let ends = [0, answer.nodes.len()];
+    for breaks in [&ends[..1], &ends[1..], &ends] {
+        let torn = crate::solution::CableSolution { breaks: breaks.to_vec(), ..answer.clone() };
+        assert_eq!(sag(&cable, &torn, View::Elevation), None, "{breaks:?}");
+    }
+}
+
 #[test]
 fn a_slack_cable_is_as_long_as_it_is_however_it_sags() {
     let (_, mut answer) = parabola(0.0);

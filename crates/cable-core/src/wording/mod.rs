@@ -21,7 +21,7 @@ mod solve_error;
 mod verification;
 mod warning;
 
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{FOOT_M, Quantity, UnitSystem};
 
 /// Data that can be told in a sentence.
 pub trait Sentence {
@@ -66,6 +66,16 @@ fn rounded(value: f64, decimals: usize) -> String {
     }
 }
 
+/// A number with at most six digits.
+fn six_digits(value: f64) -> String {
+    shortened(format!("{value:.5e}"))
+}
+
+/// A power of ten as a plain number without zeros at its end.
+fn shortened(power: String) -> String {
+    power.parse::<f64>().map_or(power, |value| format!("{value}"))
+}
+
 impl Figures {
     /// With so many decimals.
     fn fixed(self, quantity: Quantity, value: f64, decimals: usize) -> String {
@@ -82,7 +92,7 @@ impl Figures {
         format!("{:.decimals$e}", quantity.convert(value, self.0))
     }
 
-    /// As it was given; converted, with five digits.
+    /// As it was given, with six digits; converted, with five.
     fn given(self, quantity: Quantity, value: f64) -> String {
         self.with_unit(quantity, self.bare(quantity, value))
     }
@@ -90,12 +100,8 @@ impl Figures {
     /// The same without the unit.
     fn bare(self, quantity: Quantity, value: f64) -> String {
         let converted = quantity.convert(value, self.0);
-        // Units that both systems share keep every digit.
-        if converted == value {
-            return format!("{value}");
-        }
-        let rounded = format!("{converted:.4e}");
-        rounded.parse::<f64>().map_or(rounded, |rounded| format!("{rounded}"))
+        // A computed value, or one dragged by a hand, has more digits than anyone reads.
+        if converted == value { six_digits(value) } else { shortened(format!("{converted:.4e}")) }
     }
 
     /// The end of a range, without the unit; a power of ten where it is small or large.
@@ -117,6 +123,15 @@ impl Figures {
     /// A length (m) with so many decimals.
     fn length(self, length_m: f64, decimals: usize) -> String {
         self.fixed(Quantity::Length, length_m, decimals)
+    }
+
+    /// A radius (m) of a bend in millimetres or inches, with three digits.
+    fn radius(self, radius_m: f64) -> String {
+        let (symbol, unit_m) = match self.0 {
+            UnitSystem::Si => ("mm", 1e-3),
+            UnitSystem::Us => ("in", FOOT_M / 12.0),
+        };
+        format!("{} {symbol}", shortened(format!("{:.2e}", radius_m / unit_m)))
     }
 
     /// A length (m) with three decimals, or three digits where it is small or huge.
@@ -147,5 +162,22 @@ impl Figures {
     /// From one force (N) to another, with two decimals.
     fn forces(self, [from_n, to_n]: [f64; 2]) -> String {
         format!("{} to {}", rounded(Quantity::Force.convert(from_n, self.0), 2), self.force(to_n, 2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::SpanError;
+
+    /// A chord that was computed had sixteen digits.
+    #[test]
+    fn a_number_that_was_computed_has_six_digits() {
+        let slack = SpanError::Slack { length_m: 12.0, chord_m: 98.0_f64.sqrt() };
+        let told = "a cable of 12 m without weight is slack over 9.89949 m: it has no one shape";
+        assert_eq!(slack.sentence(UnitSystem::Si), told);
+        assert_eq!(six_digits(0.14), "0.14");
+        assert_eq!(six_digits(1e6), "1000000");
+        assert_eq!(six_digits(f64::NAN), "NaN");
     }
 }

@@ -1,6 +1,6 @@
 //! These sentences say why a scene is refused: the place in its file, the fault, and what mends it.
 
-use super::{Figures, Sentence, display_in_si};
+use super::{Figures, Sentence, display_in_si, six_digits};
 use crate::error::{SceneError, SceneFault, ShapeFault};
 use crate::units::{Quantity, UnitSystem};
 
@@ -46,9 +46,10 @@ impl Sentence for SceneFault {
             }
             Self::UnequalCounts { values, times } => format!("{values} values for {times} times"),
             Self::TimesNotIncreasing { time_s, before_s } => {
-                format!("times must increase: {time_s} s after {before_s} s")
+                format!("times must increase: {} s after {} s", six_digits(*time_s), six_digits(*before_s))
             }
             Self::ThermalFactor { factor, allowed: [low, high] } => {
+                let factor = six_digits(*factor);
                 format!("with temperature_change_k the length changes by a factor {factor}, beyond {low} to {high}")
             }
             Self::ServiceAboveBreaking { service_n, breaking_n } => format!(

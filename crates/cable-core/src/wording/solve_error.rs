@@ -1,7 +1,7 @@
 //! These sentences say why a model has no answer. Every one says where, in lengths and names, and
 //! what can be done; none holds a number that is not finite.
 
-use super::{Figures, Sentence, display_in_si};
+use super::{Figures, Sentence, display_in_si, six_digits};
 use crate::error::{
     EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
     Unsupported, UnsupportedReach,
@@ -85,7 +85,7 @@ impl Sentence for SolveError {
             Self::NonFinite { quantity, arc_length_m, time_s } => format!(
                 "{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others",
                 f.distance(*arc_length_m),
-                if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
+                if time_s.is_finite() { format!("{} s", six_digits(*time_s)) } else { "no finite time".to_owned() }
             ),
             Self::Buried { model, obstacle, depth_m, arc_length_m, at_m } => format!(
                 "{model} cannot go on from where the cable runs through `{obstacle}`: {} inside at {} along it, at {}",

@@ -65,8 +65,8 @@ impl Sentence for Warning {
             ),
             Cause::NarrowGuide | Cause::FreeKink => format!(
                 "`{cable}` is bent to a radius of {} at {place}, below {}: {}",
-                f.length(value, 4),
-                given(limit),
+                f.radius(value),
+                f.radius(limit),
                 if self.cause == Cause::FreeKink {
                     "it kinks there and stays bent; give it more way to turn, or a guide"
                 } else {
@@ -125,14 +125,19 @@ impl Sentence for Warning {
                 let friction = if matches!(known, Histories::SlackElsewhere { .. } | Histories::BowedElsewhere { .. }) { "The" } else { "With friction the" };
                 format!("{friction} resting place depends on how the cable was laid{shown}{}", histories(f, known))
             }
-            Cause::Blocked { support } => {
-                format!("support `{support}` cannot reach where it is sent: an obstacle blocks it")
+            Cause::Blocked { support, obstacle, short_m } => {
+                let [from, to] = match self.at_m {
+                    Some(at) => [f.point(at, 3), f.point([at[0] + short_m[0], at[1] + short_m[1]], 3)],
+                    None => ["where it is".to_owned(), "where it is sent".to_owned()],
+                };
+                let by = if obstacle.is_empty() { "an obstacle".to_owned() } else { format!("`{obstacle}`") };
+                format!("support `{support}` cannot reach {to}: blocked by {by}, it stopped at {from}")
             }
             Cause::ClearOfWheel { pulley } => {
                 format!("the cable hangs clear of the wheel of pulley `{pulley}`, which carries nothing")
             }
             Cause::Lags { support, behind_m } => format!(
-                "support `{support}` lags {} behind where it is sent: it follows at {} at most",
+                "support `{support}` is {} behind its target: it moves at {} at most",
                 f.length(*behind_m, 2),
                 given(limit)
             ),
@@ -149,7 +154,7 @@ impl Sentence for Warning {
                 if *hand_behind_m > 0.0 {
                     let hand = if behind_m.is_some() { "the hand" } else { "its hand" };
                     let behind = f.length(*hand_behind_m, 2);
-                    parts.push(format!("{hand} lags {behind} behind where it is sent: it follows at {} at most", given(limit)));
+                    parts.push(format!("{hand} is {behind} behind its target: it moves at {} at most", given(limit)));
                 }
                 format!("support `{support}`: {}", parts.join("; "))
             }

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use cable_core::Scene;
+use cable_core::scene::{Obstacle, Shape};
 use egui::{Button, Context, Id, Modal, Ui};
 
 use crate::app::path_picker::{self, Purpose};
@@ -58,7 +60,9 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::StartHere => crate::app::start_here::ui(ui, &state.ui.recent, commands),
             Dialog::About => about(ui, commands),
             Dialog::Palette { text } => crate::app::palette::ui(ui, text, state, commands),
-            Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
+            Dialog::ImportMap { path, text, unit_m } => {
+                import_map(ui, [path, text, unit_m], &grounds(&state.document.scene), commands)
+            }
             Dialog::Unsaved { then } => unsaved(ui, &state.document.scene.name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
             Dialog::Help => help(ui, commands),
@@ -155,7 +159,14 @@ fn ask(ui: &mut Ui, question: &PathQuestion<'_>, path: &mut String, commands: &m
     (done && !path.trim().is_empty()).then(|| PathBuf::from(path.trim()))
 }
 
-fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mut Vec<Command>) {
+/// The names of what is ground in a scene, in quotation marks.
+fn grounds(scene: &Scene) -> Vec<String> {
+    let ground = |o: &&Obstacle| matches!(o.shape, Shape::Terrain { .. });
+    scene.obstacles.iter().filter(ground).map(|o| format!("“{}”", o.name)).collect()
+}
+
+/// Asks for a map to read, and whether it is to be added or to replace the ground.
+fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[String], commands: &mut Vec<Command>) {
     ui.heading("Import terrain and beams");
     ui.add_space(6.0);
     ui.weak("A table of x and y (tab, comma, semicolon; decimal comma) or an SVG with paths. Open lines become ground, closed shapes become beams.");
@@ -172,8 +183,9 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
             .labelled_by(label.id);
     });
     ui.horizontal(|ui| {
-        let label = ui.label("Length of one unit, m");
+        let label = ui.label("1 unit =");
         ui.add(egui::TextEdit::singleline(unit_m).desired_width(70.0)).labelled_by(label.id);
+        ui.label("m");
     });
     let unit = unit_m.trim().replacen(',', ".", 1).parse::<f64>().ok().filter(|u| *u > 0.0 && u.is_finite());
     if unit.is_none() {
@@ -182,10 +194,21 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
     ui.add_space(10.0);
     ui.horizontal(|ui| {
         let ready = !path.trim().is_empty() || !text.trim().is_empty();
-        let import = ui.add_enabled(ready && unit.is_some(), egui::Button::new("Import"));
-        if let (true, Some(unit_m)) = (import.clicked(), unit) {
-            let path = (!path.trim().is_empty()).then(|| PathBuf::from(path.trim()));
-            commands.push(Command::File(FileCommand::ImportMap { path, text: text.clone(), unit_m }));
+        let mut import = |ui: &mut Ui, name: &str, help: &str, replaces_ground: bool| {
+            let button = ui.add_enabled(ready && unit.is_some(), Button::new(name)).on_hover_text(help);
+            if let (true, Some(unit_m)) = (button.clicked(), unit) {
+                let path = (!path.trim().is_empty()).then(|| PathBuf::from(path.trim()));
+                let text = text.clone();
+                commands.push(Command::File(FileCommand::ImportMap { path, text, unit_m, replaces_ground }));
+            }
+        };
+        if grounds.is_empty() {
+            import(ui, "Import", "Adds it to the scene", false);
+        } else {
+            // Two grounds at once are hardly ever meant.
+            let help = format!("Takes out {} for the ground that is read; beams and posts stay", grounds.join(", "));
+            import(ui, "Replace the ground", &help, true);
+            import(ui, "Add to the scene", "Keeps the ground that is there, and adds to it", false);
         }
         if ui.button("Cancel").clicked() {
             commands.push(close());
@@ -293,7 +316,7 @@ fn unsaved(ui: &mut Ui, name: &str, then: &Replacement, commands: &mut Vec<Comma
     ui.horizontal(|ui| {
         if ui.button("Save…").clicked() {
             commands.push(close());
-            commands.push(Command::File(FileCommand::Save));
+            commands.push(Command::File(FileCommand::SaveThen(then.clone())));
         }
         if ui.button("Discard changes").clicked() {
             commands.push(Command::File(FileCommand::Discard(then.clone())));

@@ -263,6 +263,8 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     checkbox(ui, &mut layers.components, "Force components")
         .on_hover_text("Horizontal and vertical part of each force");
     checkbox(ui, &mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
+    checkbox(ui, &mut layers.start_shape, "Shape at the start")
+        .on_hover_text("Where the cable lay when the run began, dashed beside where it is now");
     ui.separator();
     checkbox(ui, &mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
     if layers != state.view.layers {

@@ -1,6 +1,7 @@
 //! The window takes in the worker's answers, lays out panels and canvas and applies what they push.
 //!
-//! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
+//! - `layout`, `menu`, `keys`, `palette`, `palette_entries`: where panels are, and every command by
+//!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
 //! - `early_clicks`: clicks that come before the first frame
@@ -17,7 +18,8 @@ mod first_steps;
 mod keys;
 mod layout;
 mod menu;
-mod palette;
+pub mod palette;
+mod palette_entries;
 mod path_picker;
 pub mod screenshot;
 mod start_here;
@@ -175,6 +177,18 @@ impl ViewerApp {
             command::apply(&mut self.state, command, &mut effects);
         }
         self.perform_effects(ctx, effects);
+    }
+
+    /// Number of solves that were given up for what was asked later.
+    #[must_use]
+    pub fn abandoned_solves(&self) -> u64 {
+        self.worker.abandoned_solves()
+    }
+
+    /// Returns whether a solve has been running for longer than this.
+    #[must_use]
+    pub fn solves_for(&self, time: std::time::Duration) -> bool {
+        self.worker.solves_for(time)
     }
 
     /// The worker has answered every edit.

@@ -4,6 +4,7 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
+use crate::app::palette_entries;
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
@@ -11,6 +12,7 @@ use crate::plot::{along, time};
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Item, OpenPanels};
+use crate::units::labels;
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
@@ -96,7 +98,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
         ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
         ("Add a cable", Command::Scene(SceneCommand::AddCable)),
-        ("Resume from the time shown", Command::Playback(PlaybackCommand::ResumeFromShown)),
+        ("Resume from here: the time shown", Command::Playback(PlaybackCommand::ResumeFromShown)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Start here…", file(Dialog::StartHere)),
         ("Help: pointer and keys", file(Dialog::Help)),
@@ -125,13 +127,23 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         .map(|(name, _, command)| (format!("Add obstacle: {}", name.to_lowercase()), Command::Scene(command)));
     all.extend(obstacles);
     let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
-    all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
+    all.extend(models.map(|m| (format!("Solve with {}", labels::model(m)), Command::SetModel(m))));
     all.extend(CableQuantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
     all.extend(
-        TUTORIALS.iter().enumerate().map(|(k, t)| (format!("Guide: {}", t.title), Command::File(tutorials::open(k)))),
+        TUTORIALS
+            .iter()
+            .enumerate()
+            .map(|(k, t)| (format!("Guide {}. {}", k + 1, t.title), Command::File(tutorials::open(k)))),
     );
     all.extend(catalog::all().into_iter().map(|(id, scene)| (format!("Open scene: {}", scene.name), open_scene(id))));
+    all.extend(palette_entries::entries(state));
     all
+}
+
+/// The names of what is found by a text.
+#[must_use]
+pub fn names(text: &str, state: &AppState) -> Vec<String> {
+    found(text, state).into_iter().map(|(name, _)| name).collect()
 }
 
 /// Those that have every word of a text in their name.

@@ -14,8 +14,8 @@ use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::layers::{
-    annotations, cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot, robot_path,
-    safe_reach, supports, tension_marker,
+    annotations, breaks, cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot,
+    robot_path, safe_reach, supports, tension_marker,
 };
 use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand, ViewCommand};
@@ -147,6 +147,7 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     cable::draw(view, state);
     forces::draw(view, state, &mut figures);
     supports::draw(view, state);
+    breaks::draw(view, state);
     if current {
         tension_marker::draw(view, state, &mut figures);
     }
@@ -156,6 +157,7 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         grid::axes(view);
         grid::scale_bar(view);
     }
+    cable::thickness_note(view, state);
     if !state.ui.legend_beside {
         legend::draw(view, state);
         legend::contacts(view, state);

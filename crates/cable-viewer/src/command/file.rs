@@ -42,6 +42,8 @@ pub enum FileCommand {
     },
     /// Saves where it came from, else asks where to.
     Save,
+    /// Saves, asking where to if need be, and goes on with what was pending.
+    SaveThen(Replacement),
     /// Asks where to save.
     AskSaveAs,
     /// Saves to a file.
@@ -60,6 +62,8 @@ pub enum FileCommand {
         text: String,
         /// Length of a unit of it, m.
         unit_m: f64,
+        /// The map takes the place of the ground that is there.
+        replaces_ground: bool,
     },
     /// Adds what the user thinks to a table.
     SaveFeedback(PathBuf, Answers),
@@ -129,10 +133,14 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             state.ui.tutorial = Some(TutorialPlace { tutorial, step: 0 });
         }
         FileCommand::Save => match state.document.path.clone() {
-            Some(path) => save(state, &path),
+            Some(path) => save(state, &path, effects),
             None => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
-        FileCommand::SaveAs(path) => save(state, &path),
+        FileCommand::SaveAs(path) => save(state, &path, effects),
+        FileCommand::SaveThen(then) => {
+            state.ui.after_save = Some(then);
+            execute(state, FileCommand::Save, effects);
+        }
         FileCommand::Export(path, sheet) => {
             let result = graph_file::save(&path, &sheet);
             exported(state, path, result);
@@ -142,8 +150,9 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             execute(state, FileCommand::SetDialog(Some(Dialog::ExportPicture { path })), effects);
         }
         FileCommand::ExportPicture(path) => effects.picture = Some(path),
-        FileCommand::ImportMap { path, text, unit_m } => {
-            match import::add(&state.document.scene, path.as_deref(), &text, unit_m) {
+        FileCommand::ImportMap { path, text, unit_m, replaces_ground } => {
+            let read = import::Map { path: path.as_deref(), text: &text, unit_m, replaces_ground };
+            match import::add(&state.document.scene, &read) {
                 Ok((scene, report)) => {
                     scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
                     state.view.camera.fit_wanted = true;
@@ -179,6 +188,10 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             let message = matches!(state.ui.dialog, Some(Dialog::Message { .. }));
             let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
             state.ui.dialog = dialog.or(then);
+            if state.ui.dialog.is_none() {
+                // An action that was to follow a save that was called off follows no later one.
+                state.ui.after_save = None;
+            }
         }
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
@@ -282,7 +295,7 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     }
 }
 
-fn save(state: &mut AppState, path: &Path) {
+fn save(state: &mut AppState, path: &Path, effects: &mut Effects) {
     match scene_file::save(path, &state.document.scene) {
         Ok(()) => {
             state.document.path = Some(path.to_owned());
@@ -290,6 +303,9 @@ fn save(state: &mut AppState, path: &Path) {
             state.document.saved = state.document.scene.clone();
             state.document.recovered = false;
             state.ui.dialog = None;
+            if let Some(then) = state.ui.after_save.take() {
+                execute(state, then.into(), effects);
+            }
         }
         Err(text) => {
             show_error(state, &format!("“{}” was not saved", path.display()), text);

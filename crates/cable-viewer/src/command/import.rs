@@ -10,23 +10,44 @@ use crate::units::sentence::sentence;
 /// Largest file, bytes: a million points with room to spare.
 const MAX_BYTES: u64 = 64 << 20;
 
+/// A map to read.
+pub struct Map<'a> {
+    /// The file; None: the text.
+    pub path: Option<&'a Path>,
+    /// The text that was pasted.
+    pub text: &'a str,
+    /// Length of a unit of it, m.
+    pub unit_m: f64,
+    /// It takes the place of the ground that is there.
+    pub replaces_ground: bool,
+}
+
 /// The scene with what was read added to it, and what was done, in words.
 ///
 /// # Errors
 /// What cannot be read, or why the scene would not hold it, in words.
-pub fn add(scene: &Scene, path: Option<&Path>, text: &str, unit_m: f64) -> Result<(Scene, String), String> {
+pub fn add(scene: &Scene, map: &Map<'_>) -> Result<(Scene, String), String> {
     let from_file;
-    let text = match path {
+    let text = match map.path {
         Some(path) => {
             let bytes = files::read_limited(path, MAX_BYTES).map_err(|e| e.to_string())?;
             from_file = String::from_utf8(bytes).map_err(|_| "it is no text in UTF-8".to_owned())?;
             &from_file
         }
-        None => text,
+        None => map.text,
     };
-    let read = import::read(text, unit_m).map_err(|e| e.to_string())?;
+    let read = import::read(text, map.unit_m).map_err(|e| e.to_string())?;
     let mut scene = scene.clone();
     let mut report = Vec::new();
+    if map.replaces_ground {
+        if read.lines.iter().all(|line| line.closed) {
+            return Err("it has no open line that could be the ground".to_owned());
+        }
+        let (grounds, others) =
+            scene.obstacles.into_iter().partition::<Vec<_>, _>(|o| matches!(o.shape, Shape::Terrain { .. }));
+        scene.obstacles = others;
+        report.extend(grounds.iter().map(|o| format!("“{}”: taken out", o.name)));
+    }
     for line in read.lines {
         let count = line.points_m.len();
         let (kind, shape) = if line.closed {

@@ -1,5 +1,6 @@
 //! Scene commands change the scene.
 
+use cable_core::error::SceneFault;
 use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
@@ -82,6 +83,11 @@ pub enum SceneCommand {
         /// The target, m.
         to_x_m: f64,
     },
+    /// Lays a cable from its supports at the start, whatever way it took: its route is forgotten.
+    LayAnew {
+        /// Index.
+        cable: usize,
+    },
     /// Another cable like the current one, beside it.
     AddCable,
     /// A new obstacle; its name is made unique.
@@ -160,6 +166,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         SceneCommand::Move { item: Item::Support { cable, support }, to_m } => Some((cable, support, to_m)),
         _ => None,
     };
+    let lays_anew = matches!(command, SceneCommand::LayAnew { .. });
     let robot_moves = matches!(command, SceneCommand::Move { item: Item::Robot, .. });
     let new_obstacles =
         matches!(command, SceneCommand::SetScene(_) | SceneCommand::AddObstacle(_) | SceneCommand::Paste { .. });
@@ -169,6 +176,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     }
     let dragged = if robot_moves { hitched_support(&state.document.scene) } else { dragged };
     if state.document.scene == before {
+        if lays_anew && state.live.has_run() {
+            playback::apply(state, PlaybackCommand::Reset, effects);
+        }
         return;
     }
     state.document.undo.record(&before, kind);
@@ -180,6 +190,14 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         pull_past_length(state, before, cable, support, to_m, effects);
         return;
     }
+    if lays_anew {
+        state.document.validate();
+        // Time that has run is a way that the cable took, too.
+        if state.live.has_run() {
+            playback::apply(state, PlaybackCommand::Reset, effects);
+        }
+        return submit_undone(state, effects);
+    }
     submit_edited_scene(state, dragged, effects);
 }
 
@@ -190,6 +208,23 @@ fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     let [back, forward] = state.document.undo.neighbours();
     let to = if *command == SceneCommand::Undo { back } else { forward };
     scene.is_some() && to == scene && !state.live.has_run()
+}
+
+/// Returns whether the scene has no answer because a support was moved, after time had run, farther
+/// than its cable reaches.
+#[must_use]
+pub fn is_refused_pull(state: &AppState) -> bool {
+    let fault = state.document.fault.as_ref().map(|f| &f.fault);
+    let ([Some(before), _], Some(SceneFault::TooShort { .. })) = (state.document.undo.neighbours(), fault) else {
+        return false;
+    };
+    let mut then = state.document.scene.clone();
+    for (cable, was) in then.cables.iter_mut().zip(&before.cables) {
+        for (support, was) in cable.supports.iter_mut().zip(&was.supports) {
+            support.at_m = was.at_m;
+        }
+    }
+    then == *before && state.live.has_run()
 }
 
 /// Returns whether the pointer pulls a support, while masses move, to where the cable does not
@@ -279,6 +314,11 @@ fn change(state: &mut AppState, command: SceneCommand) {
         SceneCommand::AddWaypoint { cable, arc_length_m, at_m } => add_waypoint(state, cable, arc_length_m, at_m),
         SceneCommand::SetRobot(robot) => set_robot(scene, robot),
         SceneCommand::AddLeg { to_x_m } => add_leg(state, to_x_m),
+        SceneCommand::LayAnew { cable } => {
+            if let Some(cable) = scene.cables.get_mut(cable) {
+                cable.route_m.clear();
+            }
+        }
         SceneCommand::AddCable => clipboard::add_cable(state),
         SceneCommand::Paste { at_m } => clipboard::paste(state, at_m),
         SceneCommand::AddObstacle(mut obstacle) => {

@@ -12,7 +12,7 @@ use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Grab, Item, Layers, OpenPanels, Reference, TensionMarker};
+use crate::state::{AppState, Grab, GraphRequest, Item, Layers, OpenPanels, Reference, TensionMarker};
 use crate::units::labels;
 use crate::units::system::System;
 
@@ -54,6 +54,8 @@ pub enum ViewCommand {
     ZoomOn(Point),
     /// Opens and folds parts of the window.
     ShowPanels(OpenPanels),
+    /// Shows another measure in the graphs, or has them keep up with the data.
+    AskGraph(GraphRequest),
     /// Asks where to export the graph of this title to.
     ExportGraph(&'static str),
     /// The colouring of the cable.
@@ -148,6 +150,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
+        ViewCommand::AskGraph(request) => {
+            state.ui.panels.graphs = true;
+            state.ui.graph_request = (state.ui.graph_request.0 + 1, Some(request));
+        }
         ViewCommand::ExportGraph(title) => {
             state.ui.panels.graphs = true;
             state.ui.graph_to_export = Some(title);

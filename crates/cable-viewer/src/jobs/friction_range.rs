@@ -7,6 +7,7 @@ use cable_core::scene::SupportKind;
 use cable_core::{Scene, Solution};
 
 use crate::jobs::background;
+use crate::units::sentence::sentence;
 
 /// The findings, and the question.
 pub type Outcome = (Arc<FrictionRange>, Arc<FrictionQuery>);
@@ -50,7 +51,7 @@ impl Job {
         let theirs = Arc::clone(&query);
         let work = move |listen: background::Listener<'_, Outcome>| {
             let found = friction_range::friction_range(&theirs, |share| listen(share, None));
-            found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
+            found.map(|s| (Arc::new(s), theirs)).map_err(|e| sentence(&e))
         };
         Self { job: background::Job::start("friction range", work, shown), query }
     }

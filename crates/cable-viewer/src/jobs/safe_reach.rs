@@ -11,6 +11,7 @@ use cable_core::scene::SupportKind;
 use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;
+use crate::units::sentence::sentence;
 
 /// Places of a robot that are looked at. More: finer and, with the way back from each, slower by
 /// the square; fewer: mounds fall between them.
@@ -175,7 +176,7 @@ fn find(query: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
             let ends_m = query.corners_m.map(|p| p[0]);
             let told = |map: &ReachMap, _: f64| tell(known_share(map), &|| ReachMaps::Line(Arc::new(map.clone())));
             let map = line::robot_reach(&scene, query.now.as_deref(), query.settings, ends_m, ROBOT_PLACES, told)
-                .map_err(|e| e.to_string())?;
+                .map_err(|e| sentence(&e))?;
             ReachMaps::Line(Arc::new(map))
         }
         ReachSubject::Support { cable, support } => {
@@ -194,12 +195,12 @@ fn find(query: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
                 back: false,
             };
             let told = |area: &Area, share: f64| tell(0.5 * share, &|| ReachMaps::Area(Arc::new(area.clone()), None));
-            let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
+            let there = Arc::new(area::area(&ask, told).map_err(|e| sentence(&e))?);
             let ask = area::ReachQuery { spacing_m: RETURN_COARSENING * spacing_m, back: true, ..ask };
             let told = |area: &Area, share: f64| {
                 tell(0.5 + 0.5 * share, &|| ReachMaps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };
-            let back = area::area(&ask, told).map_err(|e| e.to_string())?;
+            let back = area::area(&ask, told).map_err(|e| sentence(&e))?;
             ReachMaps::Area(there, Some(Arc::new(back)))
         }
     };

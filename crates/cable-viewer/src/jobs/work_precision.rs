@@ -9,6 +9,7 @@ use cable_core::summary::{Compared, Setting, answer_with};
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;
+use crate::units::sentence::sentence;
 
 /// Time within which short solves are repeated, s: the shortest counts. Less: the first solve,
 /// which finds cold memory, counts; more: nobody waits for it.
@@ -51,7 +52,7 @@ pub fn start(scene: Scene, model: Model, settings: Settings, shown: impl Fn() + 
         if listen(0.0, None) == ControlFlow::Break(()) {
             return Err(ended());
         }
-        let (given, given_s) = timed(|| at_rest(&scene, model, settings)).map_err(|e| e.to_string())?;
+        let (given, given_s) = timed(|| at_rest(&scene, model, settings)).map_err(|e| sentence(&e))?;
         let mut found = Outcome { scene: Arc::new(scene), given: (Arc::new(given), given_s), entries: Vec::new() };
         for (k, setting) in all.iter().enumerate() {
             if listen(share(k + 1), Some(found.clone())) == ControlFlow::Break(()) {

@@ -4,7 +4,7 @@
 //! - `scene`: the outline on the left, and the forms of what stands in it
 //! - `selected`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on the
 //!   right
-//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `readouts`, `warnings`, `warning_figures`, `analysis`: what was answered, on the right
 //! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
@@ -23,5 +23,6 @@ pub mod scene_errors;
 pub mod selected;
 pub mod solver;
 pub mod timeline;
+mod warning_figures;
 pub mod warnings;
 pub mod words;

@@ -4,14 +4,14 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand, PlaybackCommand};
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::dimmed_if_old;
 use crate::panels::timeline;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::CableQuantity;
-use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
+use crate::state::{AppState, GraphRequest};
 use crate::widgets::field;
 use crate::widgets::tick::checkbox;
 
@@ -34,6 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
+    asked(ui, state, &mut view);
     let restart = if state.live.earlier_run.is_some() { UNDO_RESTART } else { 0.0 };
     if ui.available_width() >= ONE_ROW + restart {
         ui.horizontal(|ui| {
@@ -56,17 +57,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     } else if wide && view.second.is_some() {
         ui.columns_const(|[left, middle, right]| {
             vec![
-                time::ui(left, state, view, height),
-                time::second(middle, state, view, height),
+                over_time(left, state, view, height, time::ui),
+                over_time(middle, state, view, height, time::second),
                 along_cable(right, state, view, height),
             ]
         })
     } else if wide {
         ui.columns_const(|[left, right]| {
-            vec![time::ui(left, state, view, height), along_cable(right, state, view, height)]
+            vec![over_time(left, state, view, height, time::ui), along_cable(right, state, view, height)]
         })
     } else {
-        vec![time::ui(ui, state, view, height), along_cable(ui, state, view, height)]
+        vec![over_time(ui, state, view, height, time::ui), along_cable(ui, state, view, height)]
     };
     for graph in touched {
         // A graph that follows would take the zoom back at once.
@@ -118,6 +119,19 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     }
 }
 
+/// Takes in a request that was made of the graphs since the frame before.
+fn asked(ui: &Ui, state: &AppState, view: &mut GraphView) {
+    let id = Id::unique("graph requests");
+    let (count, request) = state.ui.graph_request;
+    let before = ui.data(|d| d.get_temp::<u64>(id)).unwrap_or(0);
+    ui.data_mut(|d| d.insert_temp(id, count));
+    match request.filter(|_| count != before) {
+        Some(GraphRequest::Measure(measure)) => (view.measure, view.second) = (measure, None),
+        Some(GraphRequest::Follow) => view.follow = !view.follow,
+        None => {}
+    }
+}
+
 /// A click shows a measure alone; with shift, in a second graph or not any more.
 fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
     if !ui.input(|i| i.modifiers.shift) {
@@ -127,6 +141,13 @@ fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
     } else if view.measure != measure {
         view.second = Some(measure);
     }
+}
+
+/// A graph over time.
+type TimeGraph = fn(&mut Ui, &AppState, GraphView, f32) -> GraphResponse;
+
+fn over_time(ui: &mut Ui, state: &AppState, view: GraphView, height: f32, graph: TimeGraph) -> GraphResponse {
+    dimmed_if_old(ui, state, |ui| graph(ui, state, view, height))
 }
 
 fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
@@ -139,13 +160,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
             let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
-            ui.scope(|ui| {
-                if !state.is_current() {
-                    ui.multiply_opacity(DIMMED);
-                }
-                along::ui(ui, cable, solved, ribbon, view, height)
-            })
-            .inner
+            dimmed_if_old(ui, state, |ui| along::ui(ui, cable, solved, ribbon, view, height))
         }
         _ => {
             ui.weak("Nothing solved yet");

@@ -8,6 +8,7 @@ use cable_core::scene::{RobotTask, SupportKind};
 use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
+use crate::panels::readouts::dimmed_if_old;
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, quantity};
@@ -37,7 +38,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     by_hand(ui, state, commands);
     match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
-        Some(report) => readouts(ui, &report, pull_n(state)),
+        Some(report) => dimmed_if_old(ui, state, |ui| readouts(ui, &report, pull_n(state))),
         None => {
             ui.weak("It cannot drive here: it needs terrain below it in a side view");
         }
@@ -115,8 +116,8 @@ fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         ("Track force", format::force(r.thrust_n), "Force of the tracks along the ground"),
         (
-            "Available traction",
-            format!("{} used", format::percent(share)),
+            "Traction",
+            format!("{} of available traction", format::percent(share)),
             "Track force as a share of friction times normal force: at 100 % the tracks slip",
         ),
         ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
@@ -160,6 +161,18 @@ fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     });
 }
 
+/// A leg to a place a metre ahead.
+#[must_use]
+pub fn first_drive(robot: &Robot) -> RobotTask {
+    RobotTask::Drive { to_x_m: robot.at_m[0] + 1.0, speed_m_per_s: FIRST_LEG.0 }
+}
+
+/// A leg that stands still for a while.
+#[must_use]
+pub fn first_wait() -> RobotTask {
+    RobotTask::Wait { wait_s: FIRST_LEG.1 }
+}
+
 fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     ui.separator();
     ui.weak(if robot.path.is_empty() { "No path: it stands until it is driven" } else { "Path" });
@@ -177,10 +190,10 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             set(changed, commands);
         };
         if ui.button("Add drive").on_hover_text("A leg to a place").clicked() {
-            add(RobotTask::Drive { to_x_m: robot.at_m[0] + 1.0, speed_m_per_s: FIRST_LEG.0 });
+            add(first_drive(robot));
         }
         if ui.button("Add wait").on_hover_text("Stands still for a while").clicked() {
-            add(RobotTask::Wait { wait_s: FIRST_LEG.1 });
+            add(first_wait());
         }
         let mut repeat = robot.repeat;
         if checkbox(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {

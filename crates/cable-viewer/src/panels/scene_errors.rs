@@ -120,7 +120,7 @@ pub fn inline(ui: &mut Ui, state: &AppState, path: &str, commands: &mut Vec<Comm
     let Some(found) = at(state, path) else { return };
     let below = found.path.strip_prefix(path).unwrap_or_default().trim_start_matches('.');
     let text = sentence(&found.fault);
-    field::fault(ui, &if below.is_empty() { text } else { format!("{below}: {text}") });
+    field::fault(ui, &if below.is_empty() { text } else { format!("{}: {text}", words::place(below)) });
     if let Some(fix) = fix(state)
         && ui.button(&fix.label).on_hover_text("Puts this right").clicked()
     {

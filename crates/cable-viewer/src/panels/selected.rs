@@ -10,7 +10,7 @@ use egui::Ui;
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::handles;
 use crate::geometry::supports::{is_broken, support_position};
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::dimmed_if_old;
 use crate::panels::scene::{self, loads, obstacles, supports};
 use crate::panels::{cable, environment, robot, solver};
 use crate::state::{AppState, Item};
@@ -52,10 +52,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         Item::Solver => solver::ui(ui, state, commands),
     });
     let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
-    ui.scope(|ui| {
-        if !state.is_current() {
-            ui.multiply_opacity(DIMMED);
-        }
+    dimmed_if_old(ui, state, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         for (name, value, help) in figures(state, answer, item) {
             readout::row(ui, name, &value, help, |_| {});

@@ -5,15 +5,18 @@ use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
 use egui::text::{LayoutJob, TextFormat};
-use egui::{Align, Button, Color32, Layout, ScrollArea, TextStyle, Ui, vec2};
+use egui::{Align, Atom, Button, Color32, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
 
+use crate::command::scene::is_refused_pull;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
+use crate::panels::warning_figures::{figures, short_title};
 use crate::state::{AppState, Item, NoAnswer, OpenPanels, WorkerStatus};
 use crate::units::sentence::sentence;
 use crate::units::{format, unit};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+use crate::worker::engine::is_quasi_static;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
 /// node.
@@ -42,14 +45,16 @@ struct Entry {
     /// Its subject, as long as it lasts; figures are in the title.
     kind: String,
     title: String,
-    /// The title in two parts: what, and figures with their place.
-    parts: Option<[String; 2]>,
+    /// The title in three parts: what, its figures, and its place, which is never cut.
+    parts: Option<[String; 3]>,
     text: String,
     /// The place to look at, m.
     at_m: Option<[f64; 2]>,
     /// The thing to pick.
     item: Option<Item>,
-    fix: Option<Fix>,
+    fixes: Vec<Fix>,
+    /// The reason why a fix would change nothing.
+    no_use: Option<&'static str>,
 }
 
 /// Draws all but the worst, which stands above everything that scrolls.
@@ -109,7 +114,7 @@ pub fn worst_in_strip(ui: &mut Ui, width: f32, state: &AppState, commands: &mut 
     let (colour, sign) = look(ui, worst.severity);
     let room = vec2(width, ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(room, Layout::right_to_left(Align::Center), |ui| {
-        let line = ui.add(Button::new(line(ui, worst)).frame(false).truncate());
+        let line = ui.add(button(ui, worst));
         field::name(&line, "Worst warning");
         let more = if entries.len() > 1 { format!("\n\nand {} more", entries.len() - 1) } else { String::new() };
         if line.on_hover_text(format!("{}{more}", worst.text)).clicked() {
@@ -149,6 +154,16 @@ pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// Their titles with their number, and what leads to the place of each or to their list.
+pub fn places(state: &AppState) -> Vec<(String, Command)> {
+    let list = || ViewCommand::ShowPanels(OpenPanels { results: true, ..state.ui.panels });
+    let named = entries(state).into_iter().enumerate().map(|(k, e)| {
+        let command = e.at_m.map_or_else(list, ViewCommand::ZoomOn);
+        (format!("warning {}: {}", k + 1, e.title), Command::View(command))
+    });
+    named.collect()
+}
+
 fn entries(state: &AppState) -> Vec<Entry> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
@@ -158,8 +173,8 @@ fn entries(state: &AppState) -> Vec<Entry> {
         let error = capital(&sentence(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
-        let (title, fix) = if cancelled { ("Not solved", Some(solve)) } else { ("No answer", None) };
-        list.push(Entry { title: title.to_owned(), fix, ..entry(Severity::Stop, text) });
+        let (title, fixes) = if cancelled { ("Not solved", vec![solve]) } else { ("No answer", Vec::new()) };
+        list.push(Entry { title: title.to_owned(), fixes, ..entry(Severity::Stop, text) });
     }
     // What a draft or the answer to another scene warns of says nothing of this one.
     if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
@@ -180,7 +195,8 @@ fn entry(severity: Severity, text: String) -> Entry {
         text,
         at_m: None,
         item: None,
-        fix: None,
+        fixes: Vec::new(),
+        no_use: None,
     }
 }
 
@@ -194,14 +210,20 @@ fn dead_worker(state: &AppState) -> Option<Entry> {
     let WorkerStatus::Dead(words) = &state.solver.status else { return None };
     let fix = Fix { label: "Restart the solver".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
-    Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
+    Some(Entry { title: "The solver stopped".to_owned(), fixes: vec![fix], ..entry(Severity::Stop, text) })
 }
 
 fn scene_fault(state: &AppState) -> Option<Entry> {
     let found = scene_errors::summary(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
-    Some(Entry { title, fix: scene_errors::fix(state), ..entry(Severity::Stop, text) })
+    let pull = is_refused_pull(state) && !is_quasi_static(state.solver.model);
+    let pull = pull.then(|| Fix {
+        label: "Pull past the length".to_owned(),
+        command: Command::Playback(PlaybackCommand::PullPastLength(true)),
+    });
+    let fixes = scene_errors::fix(state).into_iter().chain(pull).collect();
+    Some(Entry { title, fixes, ..entry(Severity::Stop, text) })
 }
 
 fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
@@ -225,7 +247,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
-        WarningKind::NotUnique => (Severity::Note, "Rest shape is not unique"),
+        WarningKind::NotUnique => (Severity::Note, "Depends on how it was laid"),
         _ => (Severity::Caution, "Warning"),
     };
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
@@ -236,7 +258,10 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let figures = figures(warning);
     let told = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words));
     let along = along.replace(' ', "\u{a0}");
-    let whole = format!("{title} at {along}{of}{told}{since}");
+    // All of the cable has one shape of several: there is no place to it.
+    let everywhere = warning.kind == WarningKind::NotUnique;
+    let at = if everywhere { String::new() } else { format!(" at {along}") };
+    let whole = format!("{title}{at}{of}{told}{since}");
     Entry {
         severity,
         of_tension: matches!(
@@ -245,64 +270,17 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         ),
         kind: format!("{title} {}", warning.cable),
         parts: Some([
-            // The long name leaves no room for the limit.
-            if warning.kind == WarningKind::ServiceTension { "Above service" } else { title }.to_owned(),
-            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f.short + " ")),
+            short_title(warning.kind, title).to_owned(),
+            figures.map_or_else(String::new, |f| f.short) + &of,
+            if everywhere { String::new() } else { along },
         ]),
         title: whole,
-        text: sentence(warning),
-        at_m: position(answer, warning),
+        text: format!("{}{since}", sentence(warning)),
+        at_m: position(answer, warning).filter(|_| !everywhere),
         item: index.map(Item::Cable),
-        fix: remedy(state, answer, warning, index),
+        fixes: remedy(state, answer, warning, index).into_iter().collect(),
+        no_use: (everywhere && !can_be_laid_anew(state, index)).then_some(LIES_AS_LAID),
     }
-}
-
-/// What a warning's figures are, in words and as short as they can be: a line of the panel has room
-/// for a value, its limit and the place.
-struct Figures {
-    words: String,
-    short: String,
-}
-
-impl Figures {
-    fn bare(value: String) -> Self {
-        Self { words: value.clone(), short: value }
-    }
-
-    fn above(value: &str, limit: &str) -> Self {
-        Self { words: format!("{value}, limit {limit}"), short: format!("{value} > {limit}") }
-    }
-
-    fn below(value: &str, limit: &str) -> Self {
-        Self { words: format!("{value}, min {limit}"), short: format!("{value} < {limit}") }
-    }
-}
-
-/// The value and its limit, in the warning's own unit.
-fn figures(warning: &Warning) -> Option<Figures> {
-    let Warning { value, limit, .. } = *warning;
-    let [force, most] = [value, limit].map(format::force);
-    Some(match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension => Figures::above(&force, &most),
-        WarningKind::MayBreak => Figures::bare(format!("{force}, limit {most}")),
-        WarningKind::Broken => Figures { words: format!("breaking tension {most}"), short: format!("limit {most}") },
-        WarningKind::BendRadius | WarningKind::Kink => Figures::below(&format::length(value), &format::length(limit)),
-        WarningKind::Slack => Figures::bare(format!("{} of cable", format::length(value))),
-        WarningKind::SidewallPressure => {
-            let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
-            Figures::above(&per_metre(value), &per_metre(limit))
-        }
-        WarningKind::Wrapped => Figures::bare(format!("{value:.2} turns")),
-        WarningKind::Curl => Figures::bare(format!("{value:.0}°")),
-        WarningKind::Snag => Figures::bare(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Figures::bare(format!("{} too much", format::energy(value))),
-        WarningKind::Accuracy => {
-            let [value, limit] = [value, limit].map(format::percent);
-            Figures { words: format!("{value} estimated, target {limit}"), short: format!("{value} > {limit}") }
-        }
-        // A loop, a second rest, a blocked support and the like have no figure.
-        _ => return None,
-    })
 }
 
 fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
@@ -315,6 +293,16 @@ fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
     Some([nearest.x_m, nearest.y_m])
 }
 
+/// Said of a cable that laying anew would leave where it is.
+const LIES_AS_LAID: &str = "It lies as it is laid from its supports: no route leads it, and no time has run";
+
+/// Returns whether a cable lies otherwise than laid from its supports: led by a route, or moved
+/// since.
+fn can_be_laid_anew(state: &AppState, cable: Option<usize>) -> bool {
+    let of = cable.and_then(|k| state.document.scene.cables.get(k));
+    of.is_some_and(|c| !c.route_m.is_empty()) || state.live.snapshot.solution.as_ref().is_some_and(|s| s.time_s > 0.0)
+}
+
 /// One change that takes the warning's cause away, where there is one.
 fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<usize>) -> Option<Fix> {
     match warning.kind {
@@ -325,6 +313,10 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
             Some(Fix { label: format!("Use {segments} segments"), command: Command::SetSettings(settings) })
         }
         WarningKind::BendRadius => wheel(state, answer, warning, index?),
+        WarningKind::NotUnique => {
+            let command = Command::Scene(SceneCommand::LayAnew { cable: index? });
+            Some(Fix { label: "Lay anew".to_owned(), command })
+        }
         _ => None,
     }
 }
@@ -345,8 +337,9 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     Some(Fix { label, command: Command::Scene(command) })
 }
 
-/// One line: severity, what, value of limit, place, cut where the panel ends. A click on it shows
-/// the place; the text and the fix are behind the sign at its end, and the text is told on hover.
+/// One line: severity, what, value of limit, and the place at its end, which is never cut. A click
+/// on it shows the place; the text and the fix are behind the sign at its end, and the text is told
+/// on hover.
 fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     let (colour, sign) = look(ui, entry.severity);
     // Remembered by what it says: the next warning in its place is another one. Where there is no
@@ -364,7 +357,7 @@ fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
                 ui.data_mut(|d| d.insert_temp(id, open));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let line = ui.add(Button::new(line(ui, entry)).frame(false).truncate());
+                let line = ui.add(button(ui, entry).min_size(vec2(ui.available_width(), 0.0)));
                 field::name(&line, &entry.title);
                 let help = match entry.at_m {
                     Some(at_m) => format!("{}\n\nClick: zooms on {}", entry.text, format::position(at_m)),
@@ -379,7 +372,7 @@ fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if open {
         ui.indent(id, |ui| {
             ui.add(egui::Label::new(&entry.text).wrap());
-            if entry.at_m.is_some() || entry.fix.is_some() {
+            if entry.at_m.is_some() || !entry.fixes.is_empty() {
                 ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
             }
         });
@@ -394,7 +387,19 @@ fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
     }
 }
 
-/// Returns what it is, and smaller its figures with their place.
+/// Returns the line of an entry: what gives way where there is no room is not the place.
+fn button<'a>(ui: &Ui, entry: &Entry) -> Button<'a> {
+    let place = entry.parts.as_ref().map_or("", |[.., place]| place);
+    let button = if place.is_empty() {
+        Button::new((line(ui, entry), Atom::grow()))
+    } else {
+        let place = RichText::new(place).text_style(TextStyle::Small).color(ui.visuals().text_color());
+        Button::new((line(ui, entry), Atom::grow(), place))
+    };
+    button.frame(false).truncate()
+}
+
+/// Returns what it is, and smaller its figures.
 fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut push = |text: &str, style: TextStyle, colour: Color32| {
@@ -405,10 +410,10 @@ fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
             TextFormat { font_id: font, color: colour, valign: Align::Center, ..TextFormat::default() },
         );
     };
-    let [what, rest] = entry.parts.as_ref().map_or([entry.title.as_str(), ""], |[what, rest]| [what, rest]);
+    let [what, rest] = entry.parts.as_ref().map_or([entry.title.as_str(), ""], |[what, rest, _]| [what, rest]);
     push(what, TextStyle::Body, ui.visuals().strong_text_color());
     if !rest.is_empty() {
-        push(&format!("  {rest}"), TextStyle::Small, ui.visuals().text_color());
+        push(&format!(" {rest}"), TextStyle::Small, ui.visuals().text_color());
     }
     job
 }
@@ -431,12 +436,22 @@ fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command
             show(entry, commands);
         }
     }
-    if let Some(fix) = &entry.fix
-        && ui.button(&fix.label).on_hover_text("Puts this right; undo takes it back").clicked()
-    {
-        commands.push(fix.command.clone());
-        if matches!(fix.command, Command::Scene(_)) {
-            commands.push(Command::Scene(SceneCommand::EditDone));
+    for fix in &entry.fixes {
+        let button = ui.add_enabled(entry.no_use.is_none(), Button::new(&fix.label));
+        let help = match fix.command {
+            Command::Scene(SceneCommand::LayAnew { .. }) => {
+                "Forgets its route and lays it from its supports, at the start; undo takes it back"
+            }
+            Command::Playback(PlaybackCommand::PullPastLength(_)) => {
+                "Takes the move back; from now on such a pull pulls by the hand's spring, until the cable breaks: play, and pull again"
+            }
+            _ => "Puts this right; undo takes it back",
+        };
+        if button.on_hover_text(help).on_disabled_hover_text(entry.no_use.unwrap_or_default()).clicked() {
+            commands.push(fix.command.clone());
+            if matches!(fix.command, Command::Scene(_)) {
+                commands.push(Command::Scene(SceneCommand::EditDone));
+            }
         }
     }
 }

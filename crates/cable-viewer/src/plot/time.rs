@@ -107,7 +107,7 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], colu
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);
-        lines.push(Series { name: format!("Held {}", k + 1), points, reference: Some(k), ..Series::default() });
+        lines.push(Series { name: format!("Pinned {}", k + 1), points, reference: Some(k), ..Series::default() });
     }
     lines
 }

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::state::dialog::Dialog;
+use crate::record::measure::Measure;
+use crate::state::dialog::{Dialog, Replacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
 
@@ -23,6 +24,15 @@ impl Default for OpenPanels {
     }
 }
 
+/// Something asked of the graphs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GraphRequest {
+    /// A measure to show alone.
+    Measure(Measure),
+    /// To keep up with the data, or not any more.
+    Follow,
+}
+
 /// The window around the scene.
 #[derive(Debug, Default)]
 pub struct Ui {
@@ -32,6 +42,8 @@ pub struct Ui {
     pub legend_beside: bool,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
+    /// The action that goes on once the scene is saved.
+    pub after_save: Option<Replacement>,
     /// The dialog that comes back once the message over it is closed.
     pub after_message: Option<Dialog>,
     /// Files opened and saved last, the latest first.
@@ -46,6 +58,8 @@ pub struct Ui {
     pub written: Option<PathBuf>,
     /// The graph (by its title) whose export was asked for elsewhere than beside it.
     pub graph_to_export: Option<&'static str>,
+    /// The last request made of the graphs elsewhere than above them, and the count of all.
+    pub graph_request: (u64, Option<GraphRequest>),
     /// The user agreed to close the window without saving.
     pub closing: bool,
 }

@@ -51,12 +51,23 @@ pub struct Layers {
     pub components: bool,
     /// The model's nodes.
     pub nodes: bool,
+    /// The shape that the cables had when the run began.
+    pub start_shape: bool,
     /// Dragged points land on the grid.
     pub snap: bool,
 }
 
 impl Default for Layers {
     fn default() -> Self {
-        Self { grid: true, labels: true, contacts: true, forces: true, components: false, nodes: false, snap: false }
+        Self {
+            grid: true,
+            labels: true,
+            contacts: true,
+            forces: true,
+            components: false,
+            nodes: false,
+            start_shape: false,
+            snap: false,
+        }
     }
 }

@@ -76,6 +76,7 @@ impl Worker {
                 let answers = slots.solve.as_ref().is_some_and(|s| !s.seeks_histories);
                 request.came_during_solve = request.edit.is_some() && answers;
                 slots.asked_at.get_or_insert_with(Instant::now);
+                slots.last_asked_at = Some(Instant::now());
                 match &mut slots.request {
                     Some(waiting) => waiting.merge(request),
                     None => slots.request = Some(request),
@@ -110,6 +111,24 @@ impl Worker {
         let taken = take_superseded(&mut shared.lock(), abandon_timeout, Arc::strong_count(shared));
         if let Some((engine, thread)) = taken {
             *handle = start(shared, shown, *engine, thread);
+        }
+    }
+
+    /// Number of solves that were given up.
+    #[must_use]
+    pub fn abandoned_solves(&self) -> u64 {
+        match &self.kind {
+            Backend::Thread { shared, .. } => shared.lock().thread,
+            Backend::Inline { .. } => 0,
+        }
+    }
+
+    /// Returns whether a solve has been running for longer than this.
+    #[must_use]
+    pub fn solves_for(&self, time: std::time::Duration) -> bool {
+        match &self.kind {
+            Backend::Thread { shared, .. } => shared.lock().solve.as_ref().is_some_and(|s| s.began.elapsed() > time),
+            Backend::Inline { .. } => false,
         }
     }
 

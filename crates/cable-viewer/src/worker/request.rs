@@ -129,6 +129,12 @@ impl Request {
         self.edit.is_some() || self.resume.is_some() || self.reset
     }
 
+    /// It leads back to what was, or to another scene: no answer of the way there is waited for.
+    #[must_use]
+    pub fn goes_back(&self) -> bool {
+        self.edit.as_ref().is_some_and(|e| e.starts_from_scene) || self.resume.is_some() || self.reset
+    }
+
     /// Nothing is asked.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -20,6 +20,8 @@ pub struct Slots {
     pub request: Option<Request>,
     /// The time when the waiting request came.
     pub asked_at: Option<Instant>,
+    /// The time when the last request was merged into it.
+    pub last_asked_at: Option<Instant>,
     pub report: Option<Report>,
     pub busy: bool,
     pub stop: bool,

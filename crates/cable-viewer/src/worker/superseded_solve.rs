@@ -7,12 +7,20 @@ use std::time::Duration;
 use crate::worker::engine::Engine;
 use crate::worker::slots::{Slots, Solve};
 
-/// Time (s) that a request waits for a solve that it makes worthless. Shorter: a drag restarts
-/// solves that would have been in the next frames; longer: an undo is felt to hang.
+/// Time (s) that a request waits for a solve that it makes worthless, and the least age of a solve
+/// that an undo gives up. Shorter: a drag restarts solves that would have been in the next frames;
+/// longer: an undo is felt to hang.
 const GIVE_UP_AFTER: Duration = Duration::from_millis(40);
+/// Time without a further edit (s) after which a hand counts as resting: no solve of before is
+/// waited for any longer. Shorter: a hand whose frames are slow rests between two of them; longer:
+/// a typed value is felt to hang.
+const HAND_RESTS_AFTER: Duration = Duration::from_millis(80);
 /// Most threads with the window's own handle counted: more would share the processor with the one
 /// that is listened to.
 const MAX_THREADS: usize = 6;
+/// The same where the user asks for an undo or cancels: these are not to hang because edits have
+/// abandoned as many solves as they may.
+const MAX_THREADS_AT_ONCE: usize = 16;
 
 /// The time that a request waits for a solve that it makes worthless.
 pub struct AbandonTimeout {
@@ -40,12 +48,20 @@ pub fn take_superseded(
     }
     let asked_at = slots.asked_at?;
     let waiting = slots.request.as_ref().filter(|r| r.solves() || r.cancel)?;
+    let solve = slots.solve.as_ref()?;
     // The next draft goes on from the one on screen: its answer may be given up at once, and so
     // may other histories of a scene that has changed.
-    let refines = slots.solve.as_ref().is_some_and(|s| s.request.is_none());
-    let wait = if waiting.cancel || refines { Duration::ZERO } else { abandon_timeout.wait };
-    let old = slots.solve.as_ref().is_some_and(|s| s.began.elapsed() >= wait);
-    if !old || asked_at.elapsed() < wait || threads > MAX_THREADS {
+    let at_once = waiting.cancel || solve.request.is_none();
+    let rests = slots.last_asked_at.is_some_and(|at| at.elapsed() >= HAND_RESTS_AFTER);
+    let due = if at_once {
+        true
+    } else if waiting.goes_back() {
+        solve.began.elapsed() >= GIVE_UP_AFTER
+    } else {
+        solve.began.elapsed().min(asked_at.elapsed()) >= abandon_timeout.wait || rests
+    };
+    let most = if waiting.cancel || waiting.goes_back() { MAX_THREADS_AT_ONCE } else { MAX_THREADS };
+    if !due || threads > most {
         return None;
     }
     let Solve { engine, request, .. } = slots.solve.take()?;
@@ -61,4 +77,60 @@ pub fn take_superseded(
         (first, then) => first.or(then),
     };
     Some((engine, slots.thread))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::worker::request::{Edit, Request};
+
+    fn edit(starts_from_scene: bool) -> Request {
+        let scene = cable_core::scene::catalog::hanging_span();
+        let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
+        let edit = Edit { scene, model, settings, is_new_scene: false, starts_from_scene };
+        Request { edit: Some(edit), ..Request::default() }
+    }
+
+    /// A solve that has run for a second, and what was asked for milliseconds before.
+    fn slots(waiting: Request, [first_ms, last_ms]: [u64; 2]) -> Slots {
+        let before = |ms: u64| Instant::now().checked_sub(Duration::from_millis(ms)).unwrap();
+        Slots {
+            request: Some(waiting),
+            asked_at: Some(before(first_ms)),
+            last_asked_at: Some(before(last_ms)),
+            solve: Some(Solve {
+                began: before(1000),
+                engine: Box::default(),
+                request: Some(edit(false)),
+                seeks_histories: false,
+            }),
+            ..Slots::default()
+        }
+    }
+
+    /// A hand that went on for long waits seconds; an undo, a cancel and a single edit do not.
+    #[test]
+    fn undo_cancel_and_a_resting_hand_never_wait_for_more_than_a_tenth_of_a_second() {
+        let tired = || AbandonTimeout { wait: Duration::from_secs(3), reports: 0 };
+        let given_up = |waiting: Request, asked_ms: [u64; 2], threads: usize| {
+            take_superseded(&mut slots(waiting, asked_ms), &mut tired(), threads).is_some()
+        };
+        let cancel = || Request { cancel: true, ..Request::default() };
+        for (waiting, asked_ms) in [
+            (edit(true), [0, 0]),
+            (cancel(), [0, 0]),
+            (Request { reset: true, ..Request::default() }, [0, 0]),
+            (edit(false), [100, 100]),
+            (edit(false), [2000, 100]),
+        ] {
+            assert!(given_up(waiting.clone(), asked_ms, 2), "{waiting:?}");
+        }
+        assert!(!given_up(edit(false), [2000, 10], 2), "a hand that goes on has answers in between");
+        // Abandoned threads are bounded, and the bound of edits is not that of an undo.
+        assert!(given_up(edit(true), [0, 0], MAX_THREADS + 1) && given_up(cancel(), [0, 0], MAX_THREADS + 1));
+        assert!(!given_up(edit(false), [2000, 100], MAX_THREADS + 1));
+        assert!(!given_up(edit(true), [0, 0], MAX_THREADS_AT_ONCE + 1));
+    }
 }

@@ -236,7 +236,7 @@ fn a_fault_of_a_support_stands_below_it() {
     state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
     let mut harness = open_with(state, outline_and_form);
     enter(&mut harness, "Pulley friction", "-2");
-    harness.get_by_label_contains("friction: ");
+    harness.get_by_label_contains("Friction: ");
     assert_eq!(harness.state().state.document.scene.cables[0].supports[1].friction, Some(-2.0));
 }
 

@@ -160,6 +160,54 @@ fn a_table_pasted_from_another_program_is_offered_as_a_map() {
     assert!(matches!(&state(&harness).ui.dialog, Some(Dialog::ImportMap { text, .. }) if text.starts_with("0\t-3")));
 }
 
+/// D10.12: an import added a second ground to the one that was there without a word.
+#[test]
+fn an_import_asks_whether_it_replaces_the_ground() {
+    let mut scene = cable_core::scene::catalog::hanging_span();
+    let ground = |name: &str, y: f64| cable_core::Obstacle {
+        name: name.to_owned(),
+        shape: Shape::Terrain { points_m: vec![[-5.0, y], [15.0, y]] },
+        friction: None,
+    };
+    let post = cable_core::Obstacle {
+        name: "post".to_owned(),
+        shape: Shape::Circle { center_m: [20.0, -2.0], radius_m: 0.3 },
+        friction: None,
+    };
+    scene.obstacles = vec![ground("floor", -4.0), post.clone()];
+    for (button, grounds) in [("Replace the ground", 1), ("Add to the scene", 2)] {
+        let mut harness = crate::open(scene.clone());
+        harness.event(Event::Paste("-5\t-3\n15\t-3\n".to_owned()));
+        harness.run_steps(3);
+        assert!(harness.query_by_label("Import").is_none(), "it is asked");
+        click(&mut harness, button);
+        harness.run_steps(3);
+        let Some(Dialog::Message { text, .. }) = &state(&harness).ui.dialog else { panic!() };
+        assert_eq!(text.contains("“floor”: taken out"), grounds == 1, "{text}");
+        click(&mut harness, "Close");
+        let now = &state(&harness).document.scene.obstacles;
+        assert_eq!(now.iter().filter(|o| matches!(o.shape, Shape::Terrain { .. })).count(), grounds, "{button}");
+        assert!(now.contains(&post));
+        assert_eq!(state(&harness).live.snapshot.error, None);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(3);
+        assert_eq!(state(&harness).document.scene, scene);
+    }
+    // Shapes alone replace no ground; without one there is nothing to ask.
+    let mut harness = crate::open(scene.clone());
+    harness.event(Event::Paste("2\t-3\n3\t-3\n3\t-2\n2\t-3\n".to_owned()));
+    harness.run_steps(3);
+    click(&mut harness, "Replace the ground");
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene, scene);
+    scene.obstacles.clear();
+    let mut harness = crate::open(scene);
+    harness.event(Event::Paste("-5\t-3\n15\t-3\n".to_owned()));
+    harness.run_steps(3);
+    click(&mut harness, "Import");
+    assert_eq!(state(&harness).document.scene.obstacles.len(), 1);
+}
+
 #[test]
 fn s01_cables_are_added_swapped_and_taken_out() {
     let mut harness = open_span();

@@ -125,7 +125,7 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     harness.event(Event::Paste(table));
     harness.run_steps(3);
     assert!(matches!(state(&harness).ui.dialog, Some(Dialog::ImportMap { .. })), "{:?}", state(&harness).ui.dialog);
-    click(&mut harness, "Import");
+    click(&mut harness, "Add to the scene");
     harness.run_steps(3);
     click(&mut harness, "Close");
     assert_eq!(state(&harness).document.scene.obstacles.len(), map.obstacles.len() + 1);

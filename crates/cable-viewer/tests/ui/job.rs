@@ -127,7 +127,7 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     asked(&mut harness);
     let models: Vec<Model> = state(&harness).analysis.references.iter().map(|h| h.solution.model).collect();
     assert_eq!(models, [Model::Spans, Model::Fem, Model::MassSpring]);
-    harness.get_by_label_contains("catenary cannot answer this scene: ");
+    harness.get_by_label_contains("Catenary cannot answer this scene: ");
     let most: Vec<f64> =
         state(&harness).analysis.references.iter().map(|h| h.solution.max_tension().tension_n).collect();
     assert!(most.iter().all(|n| (n / most[0] - 1.0).abs() < 0.1), "{most:?}");

@@ -17,6 +17,7 @@ mod hands;
 mod help;
 mod job;
 mod keys;
+mod layers;
 mod layout;
 mod outline;
 mod pictures;
@@ -40,6 +41,7 @@ mod units;
 mod walk;
 mod warnings;
 mod wishes;
+mod words;
 
 use cable_core::scene::{Shape, catalog};
 use cable_viewer::ViewerApp;

@@ -50,6 +50,29 @@ fn the_outline_begins_the_left_panel_and_selects() {
     assert_eq!(selected(&harness), Some(Item::PathLeg(0)));
 }
 
+/// A hitch that the scene moves was called "Fixed".
+#[test]
+fn a_support_that_the_scene_moves_is_not_called_fixed() {
+    let mut scene = catalog::floor_drag();
+    scene.cables[0].supports.iter_mut().for_each(|s| s.motion = None);
+    let (still, moved) = (scene, catalog::floor_drag());
+    let name = moved.cables[0].supports.iter().find(|s| s.motion.is_some()).unwrap().name.clone();
+    for (scene, word, other) in [(still, "Fixed", "Scheduled"), (moved, "Scheduled", "Fixed")] {
+        let mut harness = open(scene);
+        click(&mut harness, &format!("Select {name}"));
+        let row = harness.get_by_label(&format!("Select {name}")).rect();
+        let mut texts = Vec::new();
+        harness.output().shapes.iter().for_each(|s| crate::warnings::galleys(&s.shape, &mut texts));
+        let in_row: Vec<&str> =
+            texts.iter().filter(|(_, r, _)| row.contains(r.center())).map(|(text, ..)| text.as_str()).collect();
+        assert!(in_row.contains(&word) && !in_row.contains(&other), "{in_row:?}");
+        let kind = format!("Kind of {name}");
+        let form = harness.get_by_label(&kind);
+        let value = form.accesskit_node().value().or_else(|| form.accesskit_node().label()).unwrap_or_default();
+        assert!(!value.contains(other), "{value}");
+    }
+}
+
 #[test]
 fn the_right_panel_follows_the_selection() {
     for (scene, row, title, figures) in [

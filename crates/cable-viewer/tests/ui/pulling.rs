@@ -53,6 +53,30 @@ fn a_pull_past_the_length_is_refused_at_first() {
     assert!(state.document.fault.is_some() && state.live.playback.paused);
 }
 
+/// A pull that was refused did not tell that it can pull.
+#[test]
+fn a_pull_that_is_refused_offers_to_pull_past_the_length() {
+    let (mut harness, from) = held(1e3);
+    let at = lead(&mut harness, from, 5.0);
+    harness.run_steps(3);
+    assert!(harness.state().state.document.fault.is_some());
+    press(&harness, at, false);
+    harness.run_steps(3);
+    harness.get_by_label("Pull past the length").click();
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert!(state.solver.pulls_past_length && state.document.fault.is_none(), "{:?}", state.document.fault);
+    assert!(harness.query_by_label("Pull past the length").is_none());
+    // A length that was typed is no pull.
+    let mut harness = open_span();
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
+    cable.length_m = 7.0;
+    let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
+    apply(&mut harness, Command::Scene(edit));
+    assert!(harness.state().state.document.fault.is_some());
+    assert!(harness.query_by_label("Pull past the length").is_none());
+}
+
 #[test]
 fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
     let (mut harness, from) = held(4e3);

@@ -281,7 +281,7 @@ fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_
 
 fn legend(harness: &Harness<'_, ViewerApp>) -> egui::Rect {
     let found = harness.output().shapes.iter().find_map(|shape| match &shape.shape {
-        egui::Shape::Text(text) if text.galley.text() == "above service" => Some(text.visual_bounding_rect()),
+        egui::Shape::Text(text) if text.galley.text() == "Above service" => Some(text.visual_bounding_rect()),
         _ => None,
     });
     found.expect("the map has a legend")

@@ -97,7 +97,7 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     assert!(now > 1.8 * own.peak(tension).unwrap().value);
     harness.get_by_label("Whole runs");
     let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
-    assert!(spoken.contains("Held 1") && spoken.contains("Held 2"), "{spoken}");
+    assert!(spoken.contains("Pinned 1") && spoken.contains("Pinned 2"), "{spoken}");
     // The picture of a held run is that of the time shown.
     apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.2))));
     let time_s = state(&harness).live.snapshot.solution.as_ref().unwrap().time_s;

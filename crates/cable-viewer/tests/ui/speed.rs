@@ -212,7 +212,8 @@ fn speed_of_import() {
         let began = Instant::now();
         let mut harness = crate::open(catalog::hanging_span());
         let ready = began.elapsed().as_secs_f64();
-        let import = cable_viewer::command::FileCommand::ImportMap { path: None, text, unit_m: 1.0 };
+        let import =
+            cable_viewer::command::FileCommand::ImportMap { path: None, text, unit_m: 1.0, replaces_ground: false };
         let ctx = harness.ctx.clone();
         let began = Instant::now();
         harness.state_mut().apply(&ctx, vec![Command::File(import)]);

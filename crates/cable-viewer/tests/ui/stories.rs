@@ -259,7 +259,10 @@ fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
     let mut harness = open_span();
     let before = harness.state().state.document.scene.clone();
     let text = "x;y\n-2,0;-4,0\n5;-3,5\n12;-4\n".to_owned();
-    apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
+    apply(
+        &mut harness,
+        Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0, replaces_ground: false }),
+    );
     let state = &harness.state().state;
     assert_eq!(state.document.scene.obstacles.len(), before.obstacles.len() + 1);
     assert_eq!(state.live.snapshot.error, None);
@@ -271,7 +274,10 @@ fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
     assert_eq!(harness.state().state.document.scene, before);
     // What cannot be read changes nothing and says the line.
     let text = "0 0\n1 x\n".to_owned();
-    apply(&mut harness, Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0 }));
+    apply(
+        &mut harness,
+        Command::File(FileCommand::ImportMap { path: None, text, unit_m: 1.0, replaces_ground: false }),
+    );
     assert_eq!(harness.state().state.document.scene, before);
     let Some(Dialog::Message { text, .. }) = &harness.state().state.ui.dialog else { panic!("no message") };
     assert!(text.contains("line 2"), "{text}");

@@ -117,10 +117,14 @@ pub enum WarningCause {
         /// Other loading histories.
         histories: Histories,
     },
-    /// An obstacle blocks a support.
+    /// An obstacle blocks a support, at the warning's place.
     Blocked {
         /// The support's name.
         support: String,
+        /// The obstacle's name.
+        obstacle: String,
+        /// The way from there to where it is sent, m.
+        short_m: [f64; 2],
     },
     /// A support follows its target at a greatest speed, which is the limit.
     Lags {
@@ -320,6 +324,7 @@ impl WarningCause {
                 *material_m *= length;
                 *ground_m *= length;
             }
+            Self::Blocked { short_m, .. } => *short_m = short_m.map(|m| m * length),
             Self::Lags { behind_m, .. } => *behind_m *= length,
             Self::HandLags { behind_m, hand_behind_m, stiffness_n_per_m, .. } => {
                 *behind_m = behind_m.map(|m| m * length);

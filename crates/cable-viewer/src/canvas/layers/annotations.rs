@@ -3,7 +3,7 @@
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
-use crate::canvas::layers::robot;
+use crate::canvas::layers::{breaks, robot};
 use crate::canvas::view::{CanvasView, LabelPriority};
 use crate::geometry::supports::support_position;
 use crate::state::AppState;
@@ -41,6 +41,9 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, Str
             }
             view.label(p, &format!("max {}", labels::force(most.tension_n)), text_colour, LabelPriority::Required);
         }
+    }
+    if state.is_current() {
+        breaks::names(view, state);
     }
     for (p, text, colour) in figures {
         view.label(p, &text, colour, LabelPriority::Optional);

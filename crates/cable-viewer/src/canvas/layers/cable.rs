@@ -2,18 +2,22 @@
 //! of nodes cost one draw call.
 
 use cable_core::solution::Node;
-use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
+use egui::{Align2, Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
 use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
 use crate::state::{AppState, Freshness, Item};
+use crate::units::format;
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
 pub const MIN_WIDTH: f32 = 4.5;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than
 /// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;
+/// Of what is said of the thickness above the lower edge of the canvas, points: the axis and the
+/// scale bar with its number lie below.
+const NOTE_HEIGHT: f32 = 56.0;
 /// Width of the soft edge, points.
 const FEATHER: f32 = 0.8;
 /// A joint is drawn sharp up to this ratio of its miter to the half width, then cut.
@@ -73,6 +77,27 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
             view.painter.circle(p, 2.4, view.palette.background, Stroke::new(1.0, view.palette.text));
         }
     }
+}
+
+/// A cable drawn thicker than it is by less is not said to be, as a ratio.
+const NOTED_THICKENING: f32 = 1.05;
+
+/// Returns how many times as thick as it is a cable is drawn, where its true diameter could not be
+/// seen; the greatest of several.
+fn thickening(view: &CanvasView<'_>, state: &AppState) -> Option<f32> {
+    state.live.snapshot.solution.as_ref()?;
+    let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let times = solved.cables.iter().map(|c| MIN_WIDTH / view.points(c.diameter_m));
+    times.filter(|t| t.is_finite() && *t > NOTED_THICKENING).reduce(f32::max)
+}
+
+/// Says it at the lower right corner, above the scale bar.
+pub fn thickness_note(view: &mut CanvasView<'_>, state: &AppState) {
+    let Some(times) = thickening(view, state) else { return };
+    let text = format!("cable drawn {}× as thick", format::significant(f64::from(times), 2));
+    let at = view.rect.right_bottom() - vec2(16.0, NOTE_HEIGHT);
+    let place = view.text(at, Align2::RIGHT_BOTTOM, &text, 11.0, view.palette.weak_text);
+    view.occupied.push(place.expand(2.0));
 }
 
 /// An outdated picture: half way to grey.

@@ -2,12 +2,13 @@
 //! front.
 //!
 //! - `grid`, `obstacles`, `robot`, `robot_path`: the surroundings
-//! - `cable`, `contact`, `supports`, `forces`: the answer
+//! - `cable`, `breaks`, `contact`, `supports`, `forces`: the answer
 //! - `compare_overlay`, `tension_marker`, `safe_reach`: analyses drawn over it
 //! - `annotations`, `legend`: names and figures, and what the colours mean
 //! - `no_answer`: why there is no new answer
 
 pub mod annotations;
+pub mod breaks;
 pub mod cable;
 pub mod compare_overlay;
 pub mod contact;

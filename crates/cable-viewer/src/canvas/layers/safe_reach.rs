@@ -200,7 +200,8 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
         view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0 - hints_height(state),
     );
-    let words = view.painter.layout_no_wrap(key.over.clone(), FontId::proportional(10.5), view.palette.text).size().x;
+    let words =
+        view.painter.layout_no_wrap(key.over.to_owned(), FontId::proportional(10.5), view.palette.text).size().x;
     let size = vec2(LEGEND[0].max(words + 45.0), LEGEND[1]);
     let plate = Rect::from_min_size(corner - vec2(0.0, size.y), size);
     if plate.max.x > view.rect.max.x - 20.0 || plate.min.y < view.rect.min.y + 20.0 {
@@ -224,19 +225,19 @@ pub fn legend_beside(ui: &mut Ui, state: &AppState) {
 struct MapKey {
     title: String,
     service: String,
-    over: String,
+    over: &'static str,
 }
 
 impl MapKey {
     fn of(state: &AppState) -> Option<Self> {
         let (maps, scene) = state.analysis.safe_reach.found()?;
-        let [service_n, breaking_n] = maps.limits_n();
+        let [service_n, _] = maps.limits_n();
         let title =
             if state.analysis.safe_reach.choice.round_trip { "Safe reach, there and back" } else { "Safe reach" };
         let out_of_date = if **scene == state.document.scene { "" } else { " (out of date)" };
         let over = match maps {
-            ReachMaps::Line(_) => "above service".to_owned(),
-            ReachMaps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
+            ReachMaps::Line(_) => "Above service",
+            ReachMaps::Area(..) => "Above service / breaks",
         };
         let service = format!("service {}", labels::force(service_n));
         Some(Self { title: format!("{title}{out_of_date}"), service, over })
@@ -271,6 +272,6 @@ impl MapKey {
             let foot = sample + vec2(6.0 * k as f32, 5.0);
             painter.extend(stroke(palette, [foot, foot + vec2(6.0, -10.0)], 1.0));
         }
-        text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &self.over, 10.5);
+        text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, self.over, 10.5);
     }
 }

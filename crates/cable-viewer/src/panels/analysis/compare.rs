@@ -8,6 +8,7 @@ use egui::{Grid, Id, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
+use crate::panels::readouts::DIMMED;
 use crate::panels::words;
 use crate::record::measure::Measure;
 use crate::record::run::Peak;
@@ -56,12 +57,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Nothing pinned. Pin a result, then change something to compare");
         return;
     }
-    let present = state
-        .live
-        .snapshot
-        .solution
-        .as_deref()
-        .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
+    // An answer goes with the scene that it is of, which may not be the one being edited.
+    let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let answer = state.live.snapshot.solution.as_deref();
+    let present = answer.map(|s| Figures::of(s, solved, state.live.snapshot.solve_wall_s));
+    let compared = present.as_ref().filter(|_| state.is_current());
     readout::wide(ui, "compare", |ui| {
         let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
         grid.striped(true).show(ui, |ui| {
@@ -70,8 +70,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
             ui.end_row();
             if let Some(present) = &present {
-                ui.strong("Now").on_hover_text("What is on screen");
-                row(ui, present, None);
+                dimmed_row_if_old(ui, state, |ui| {
+                    ui.strong("Now").on_hover_text("What is on screen");
+                    row(ui, present, None);
+                });
                 ui.end_row();
             }
             for (k, held) in state.analysis.references.iter().enumerate() {
@@ -85,7 +87,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     }
                     ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
                 });
-                row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
+                row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), compared);
                 ui.end_row();
             }
         });
@@ -97,6 +99,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.label(RichText::new(line).small());
         }
     }
+}
+
+/// A row of a grid, dimmed while its figures are not of the scene as it is.
+fn dimmed_row_if_old(ui: &mut Ui, state: &AppState, cells: impl FnOnce(&mut Ui)) {
+    let before = ui.opacity();
+    if !state.is_current() {
+        ui.multiply_opacity(DIMMED);
+    }
+    cells(ui);
+    ui.set_opacity(before);
 }
 
 /// Asks every model at once, and tells why some have no answer.
@@ -123,7 +135,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
                     let why = sentence(why);
-                    let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
+                    let name = if why.contains(labels::model(answer.model)) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
                     ui.label(RichText::new(format!("{name}{colon}{why}")).small());
                 }
@@ -168,13 +180,20 @@ fn runs(ui: &mut Ui, state: &AppState) {
             });
             for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
                 let text = RichText::new(name).strong();
-                ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
-                ui.label(format::duration(last - first));
-                for peak in peaks {
-                    let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
-                    ui.label(peak.map_or_else(|| "–".to_owned(), at));
+                let cells = |ui: &mut Ui| {
+                    ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+                    ui.label(format::duration(last - first));
+                    for peak in peaks {
+                        let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
+                        ui.label(peak.map_or_else(|| "–".to_owned(), at));
+                    }
+                    ui.label(events.to_string());
+                };
+                if k.is_none() {
+                    dimmed_row_if_old(ui, state, cells)
+                } else {
+                    cells(ui)
                 }
-                ui.label(events.to_string());
                 ui.end_row();
             }
         });

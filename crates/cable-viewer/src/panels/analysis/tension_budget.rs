@@ -8,6 +8,7 @@ use cable_core::{Scene, Solution};
 use egui::{Align, Color32, Label, Layout, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, ViewCommand};
+use crate::panels::readouts::dimmed_if_old;
 use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
@@ -38,10 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let help = "Breaks the largest tension down into weight, friction at each contact and pull at the end";
         if ui.button("At the largest").on_hover_text(help).clicked() {
-            let most = answer.max_tension();
-            let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
-            let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
-            commands.push(Command::View(ViewCommand::SetTensionMarker(Some(probe))));
+            commands.push(Command::View(ViewCommand::SetTensionMarker(at_the_largest(state))));
         }
         let help = "Removes the mark";
         if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
@@ -57,14 +55,24 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return;
     };
     place(ui, scene, probe, commands);
-    ui.horizontal(|ui| {
-        ui.label("Tension there");
-        ui.strong(format::force(found.tension_n));
+    dimmed_if_old(ui, state, |ui| {
+        ui.horizontal(|ui| {
+            ui.label("Tension there");
+            ui.strong(format::force(found.tension_n));
+        });
+        motion(ui, answer, probe);
+        let listed = listed(&found);
+        bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
+        figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
     });
-    motion(ui, answer, probe);
-    let listed = listed(&found);
-    bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
-    figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
+}
+
+/// A mark at the largest tension of the answer on screen.
+#[must_use]
+pub fn at_the_largest(state: &AppState) -> Option<TensionMarker> {
+    let most = state.live.snapshot.solution.as_deref()?.max_tension();
+    let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
+    Some(TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from })
 }
 
 /// The place and the end the sum begins at, both to be set by keys as well.

@@ -151,7 +151,7 @@ fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
 
 fn self_contact(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
     let mut on = cable.self_contact;
-    let help = "The cable is an obstacle to itself (fem only, without pulleys). Off: it passes in front of itself";
+    let help = "The cable is an obstacle to itself (FEM only, without pulleys). Off: it passes in front of itself";
     if checkbox(ui, &mut on, "Self-contact").on_hover_text(help).changed() {
         commands.push(changed(index, cable, |c| c.self_contact = on));
         commands.push(Command::Scene(SceneCommand::EditDone));

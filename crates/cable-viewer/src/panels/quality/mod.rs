@@ -26,10 +26,12 @@ const MIN_GROWTH_RATIO: f64 = 1.1;
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<Command>) {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    residual(ui, state.solver.settings.tolerance, answer);
-    displacement(ui, answer, commands);
-    conditioning(ui, state.solver.settings.tolerance, scene, answer);
-    kinetic_energy(ui, &state.live.history, answer);
+    readouts::dimmed_if_old(ui, state, |ui| {
+        residual(ui, state.solver.settings.tolerance, answer);
+        displacement(ui, answer, commands);
+        conditioning(ui, state.solver.settings.tolerance, scene, answer);
+        kinetic_energy(ui, &state.live.history, answer);
+    });
 }
 
 fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {

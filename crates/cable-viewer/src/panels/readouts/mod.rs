@@ -27,6 +27,17 @@ use crate::widgets::{field, readout};
 /// what was there cannot be read at all.
 pub const DIMMED: f32 = 0.4;
 
+/// Draws figures of the answer on screen: dimmed while that is not of the scene as it is.
+pub fn dimmed_if_old<R>(ui: &mut Ui, state: &AppState, figures: impl FnOnce(&mut Ui) -> R) -> R {
+    let scope = ui.scope(|ui| {
+        if !state.is_current() {
+            ui.multiply_opacity(DIMMED);
+        }
+        figures(ui)
+    });
+    scope.inner
+}
+
 /// Draws them all.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     head(ui, state, commands);

@@ -38,10 +38,19 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The move of the cable's start to the opening of the tank, where it does not begin there.
+#[must_use]
+pub fn to_opening(state: &AppState) -> Option<SceneCommand> {
+    let map = preset::map_presets().iter().find(|m| m.obstacles == state.document.scene.obstacles)?;
+    let item = Item::Support { cable: state.current_cable(), support: 0 };
+    handles::of(state, item).filter(|at| *at != map.riser_at_m)?;
+    Some(SceneCommand::Move { item, to_m: map.riser_at_m })
+}
+
 /// Offers to begin the cable at the opening of the tank, where it does not.
 fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Command>) {
     let item = Item::Support { cable: state.current_cable(), support: 0 };
-    let Some(at) = handles::of(state, item).filter(|at| *at != map.riser_at_m) else { return };
+    let (Some(at), Some(to_opening)) = (handles::of(state, item), to_opening(state)) else { return };
     let help = format!(
         "Moves the start of the cable from {} to the opening of the tank at {}",
         format::position(at),
@@ -49,7 +58,7 @@ fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Co
     );
     if ui.button("Route the cable through the tank opening").on_hover_text(help).clicked() {
         commands.push(Command::Scene(SceneCommand::EditDone));
-        commands.push(Command::Scene(SceneCommand::Move { item, to_m: map.riser_at_m }));
+        commands.push(Command::Scene(to_opening));
         commands.push(Command::Scene(SceneCommand::EditDone));
     }
 }

@@ -7,10 +7,10 @@
 //! - `rows`: the rows of the outline, and the cells and fields that forms are made of
 
 pub(crate) mod loads;
-mod map;
+pub(crate) mod map;
 pub(crate) mod obstacles;
 pub mod outline;
-pub(super) mod robot;
+pub(crate) mod robot;
 pub mod rows;
 pub(crate) mod supports;
 

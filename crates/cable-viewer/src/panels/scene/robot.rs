@@ -28,7 +28,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for p in preset::robot_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|r| r.preset == p.id), &p.name);
                 if entry.on_hover_text(about(p)).clicked() {
-                    choose(state, p, commands);
+                    commands.push(chosen(state, p));
+                    commands.push(Command::Scene(SceneCommand::EditDone));
                 }
             }
         });
@@ -60,13 +61,16 @@ fn set(robot: Option<Robot>, commands: &mut Vec<Command>) {
 }
 
 /// The same robot of another kind, or a first one with the end of the cable on its hitch.
-fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
-    if let Some(present) = &state.document.scene.robot {
-        return set(Some(Robot { preset: p.id.to_owned(), ..present.clone() }), commands);
-    }
-    let mut scene = state.document.scene.clone();
-    add(&mut scene, state.current_cable(), p);
-    commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
+#[must_use]
+pub fn chosen(state: &AppState, p: &RobotPreset) -> Command {
+    Command::Scene(match &state.document.scene.robot {
+        Some(present) => SceneCommand::SetRobot(Some(Robot { preset: p.id.to_owned(), ..present.clone() })),
+        None => {
+            let mut scene = state.document.scene.clone();
+            add(&mut scene, state.current_cable(), p);
+            SceneCommand::SetScene(Box::new(scene))
+        }
+    })
 }
 
 /// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is

@@ -76,7 +76,7 @@ pub fn pair(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
 
 /// The coordinates of a thing beside their name.
 pub fn place(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    pair(ui, &format!("x, y, {}", Unit::M.display().symbol), contents);
+    pair(ui, &format!("Position, {}", Unit::M.display().symbol), contents);
 }
 
 /// Two typed coordinates; the point once one was entered.

@@ -52,7 +52,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     for (support, value) in cable.supports.iter().enumerate() {
         let item = Item::Support { cable: index, support };
-        ui.push_id(support, |ui| rows::row(ui, state, item, &value.name, kind_name(value.kind), commands));
+        ui.push_id(support, |ui| rows::row(ui, state, item, &value.name, kind_name(value), commands));
     }
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
@@ -68,8 +68,12 @@ pub fn new_waypoint(state: &AppState, cable: usize) -> Option<SceneCommand> {
     Some(SceneCommand::AddWaypoint { cable, arc_length_m, at_m })
 }
 
-fn kind_name(kind: SupportKind) -> &'static str {
-    KINDS.iter().find(|(k, ..)| *k == kind).map_or("", |(_, text, _)| text)
+/// The word for the kind of a support: one that the scene moves is not fixed.
+fn kind_name(support: &Support) -> &'static str {
+    if support.kind == SupportKind::Fixed && support.motion.is_some() {
+        return "Scheduled";
+    }
+    KINDS.iter().find(|(k, ..)| *k == support.kind).map_or("", |(_, text, _)| text)
 }
 
 /// Returns where a support is in the present answer, else where the scene says.
@@ -125,7 +129,7 @@ fn place_apart(ui: &mut Ui, state: &AppState, row: &Row<'_>) {
 }
 
 fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) -> Response {
-    let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value.kind));
+    let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value));
     let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
         for (kind, text, help) in KINDS {
             let refused = refusal(kind, row.end, state.document.scene.robot.is_some());

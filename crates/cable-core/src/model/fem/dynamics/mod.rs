@@ -166,9 +166,13 @@ impl Dynamics {
         };
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.cable.problem.supports.get(k)?);
-            let behind = (self.cable.input.target.get(node)? - self.cable.motion.positions[node]).norm();
-            let cause = WarningCause::Blocked { support: s.name.clone() };
-            Some(Warning::new(cause, &self.cable.problem.cable.name, self.cable.mesh.arc_length[node], [behind, 0.0]))
+            let (problem, at) = (&self.cable.problem, self.cable.motion.positions[node]);
+            let short = self.cable.input.target.get(node)? - at;
+            let by = problem.world.signed_gap(at, problem.length);
+            let obstacle = by.map_or_else(String::new, |gap| problem.world.obstacle_name(gap.obstacle).to_owned());
+            let cause = WarningCause::Blocked { support: s.name.clone(), obstacle, short_m: short.into() };
+            let place = self.cable.mesh.arc_length[node];
+            Some(Warning::new(cause, &problem.cable.name, place, [short.norm(), 0.0]).at(at.into()))
         });
         let drawn = self.cable.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);

@@ -1,0 +1,95 @@
+//! The figures of a warning, in words and as short as a line of the panel has room for.
+
+use cable_core::solution::{Warning, WarningKind};
+
+use crate::units::system::{self, Kind};
+use crate::units::{format, unit};
+
+/// A title that leaves room for figures and the place beside it.
+pub fn short_title(kind: WarningKind, title: &'static str) -> &'static str {
+    match kind {
+        WarningKind::ServiceTension => "Above service",
+        WarningKind::SidewallPressure => "Sidewall",
+        WarningKind::BendRadius => "Tight bend",
+        WarningKind::Accuracy => "Accuracy",
+        WarningKind::Wrapped => "Wrapped",
+        WarningKind::InitialPenetration => "Moved out of obstacle",
+        WarningKind::ThroughRobot => "Through the robot",
+        _ => title,
+    }
+}
+
+/// The figures of a warning, in words and as short as they can be: a line of the panel has room for
+/// a value, its limit and the place.
+pub struct Figures {
+    /// In words.
+    pub words: String,
+    /// Beside the title in a line.
+    pub short: String,
+}
+
+/// Digits of a value in a line: four stand in its words.
+const SHORT_DIGITS: usize = 3;
+
+impl Figures {
+    fn bare(value: String) -> Self {
+        Self { words: value.clone(), short: value }
+    }
+
+    /// A value beside its limit: `sign` stands between them in a line, `word` before the limit in
+    /// words.
+    fn beside(kind: Kind, [value, limit]: [f64; 2], sign: &str, word: &str) -> Self {
+        let text = |v: f64| {
+            let (symbol, si) = system::for_size(kind, v);
+            format::quantity(v / si, unit::DIGITS, symbol)
+        };
+        // One unit for both, told once.
+        let (symbol, si) = system::for_size(kind, value.abs().max(limit.abs()));
+        let short = |v: f64| format::significant(v / si, SHORT_DIGITS);
+        Self {
+            words: format!("{}, {word} {}", text(value), text(limit)),
+            short: format!("{} {sign} {} {symbol}", short(value), short(limit)),
+        }
+    }
+}
+
+/// The value and its limit, in the warning's own unit.
+pub fn figures(warning: &Warning) -> Option<Figures> {
+    let Warning { value, limit, .. } = *warning;
+    let both = [value, limit];
+    Some(match warning.kind {
+        WarningKind::ServiceTension | WarningKind::BreakingTension => Figures::beside(Kind::Force, both, ">", "limit"),
+        WarningKind::MayBreak => Figures::beside(Kind::Force, both, "of", "limit"),
+        WarningKind::Broken => {
+            let most = format::force(limit);
+            Figures { words: format!("breaking tension {most}"), short: format!("limit {most}") }
+        }
+        WarningKind::BendRadius | WarningKind::Kink => Figures::beside(Kind::Length, both, "<", "min"),
+        WarningKind::Slack => Figures::bare(format!("{} of cable", format::length(value))),
+        WarningKind::SidewallPressure => {
+            let per_metre = unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M };
+            let [value, limit] = [value, limit].map(|v| per_metre.text(v));
+            let bare = value.trim_end_matches(per_metre.display().symbol).trim_end();
+            Figures { words: format!("{value}, limit {limit}"), short: format!("{bare} > {limit}") }
+        }
+        WarningKind::Wrapped => Figures::bare(format!("{value:.2} turns")),
+        WarningKind::Curl => Figures::bare(format!("{value:.0}°")),
+        WarningKind::Snag => Figures { words: format!("tension ratio {value:.2}"), short: format!("ratio {value:.2}") },
+        WarningKind::EnergyGrows => {
+            let energy = format::energy(value);
+            Figures { words: format!("{energy} too much"), short: energy }
+        }
+        WarningKind::Accuracy => {
+            let [value, limit] = [value, limit].map(format::percent);
+            let bare = value.trim_end_matches('%').trim_end().to_owned();
+            Figures { words: format!("{value} estimated, target {limit}"), short: format!("{bare} > {limit}") }
+        }
+        WarningKind::Loop
+        | WarningKind::InitialPenetration
+        | WarningKind::NotUnique
+        | WarningKind::SupportHeld
+        | WarningKind::ClearOfWheel
+        | WarningKind::ThroughRobot
+        | WarningKind::Stabilised => return None,
+    })
+}
