@@ -9,7 +9,8 @@
 //! points; `-- draw` draws the table again. Points of other programs are read from
 //! `docs/charts/peers.csv`, which `benches/peers/run` writes.
 //!
-//! A cost is the least elapsed time of several solves, on one core, without building the model.
+//! A cost is the least elapsed time of several solves, on one core, without building the model and
+//! without the search of other friction histories.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -38,8 +39,10 @@ const SLOW_MESHES: [usize; 4] = [20, 40, 80, 160];
 /// Elements of the reference where there is none without a mesh: the first that answers.
 const FINEST_AT_REST: [usize; 3] = [2560, 640, 160];
 const FINEST_SLOW: [usize; 3] = [640, 320, 160];
-/// Steps of motions, s.
-const STEPS: [f64; 4] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0];
+/// Steps of motions, s; `mass-spring` takes within [`MASS_SPRING_STEP_S`] the longest inner steps
+/// that its mesh is stable with.
+const STEPS: [f64; 6] = [1.0 / 30.0, 1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0];
+const MASS_SPRING_STEP_S: f64 = 1.0 / 240.0;
 /// A finer mesh is not tried where this one took longer, s.
 const LONGEST_S: f64 = 6.0;
 /// A motion is followed so often, and the least time counts.
@@ -207,8 +210,7 @@ fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
     };
     let mut out = Vec::new();
     for model in [Model::Fem, Model::MassSpring] {
-        // `mass-spring` takes the longest steps that its mesh is stable with.
-        let steps = if model == Model::Fem { &STEPS[..] } else { &STEPS[1..2] };
+        let steps = if model == Model::Fem { &STEPS[..] } else { &[MASS_SPRING_STEP_S] };
         'meshes: for &n in motion.meshes {
             for &step_s in steps {
                 let runs = (0..MOTION_REPEATS).map(|_| motion.measure(model, n, step_s));
@@ -289,7 +291,8 @@ This page shows what an answer costs at what error, scene by scene: each model o
 and other programs on the same scenes where they can express them ([how](../../benches/peers/README.md)).
 `cargo run --release -p cable-benches --bin work-precision` makes it; with `benches/peers/run` before it
 the points of other programs are of the same machine and hour. A cost is the least elapsed time of
-several solves on one core, without building the model. At rest the error is the largest of any
+several solves on one core, without building the model and without the search of other equilibria
+that friction allows (`Settings::histories` is off): of the solve alone. At rest the error is the largest of any
 support's force and of the greatest tension, over the greatest tension; in motion that of the figure
 named in [convergence.md](../convergence.md). Figures are in
 [work_precision.csv](work_precision.csv) and [peers.csv](peers.csv).
