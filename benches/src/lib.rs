@@ -4,6 +4,7 @@
 pub mod chart;
 pub mod compare;
 pub mod dots;
+pub mod explicit;
 pub mod maps;
 pub mod motion;
 pub mod ridges;
@@ -76,10 +77,11 @@ pub fn settled(scene: &Scene, model: Model, segments: Option<usize>) -> Option<S
     }
 }
 
-/// As [`settled`], at its first route.
+/// As [`settled`], at its first route. It seeks no other friction histories once it rests: a cost
+/// is that of the answer alone.
 #[must_use]
 pub fn fresh(scene: &Scene, model: Model, segments: Option<usize>) -> Option<Simulation> {
-    let settings = Settings { segments, ..Settings::default() };
+    let settings = Settings { segments, histories: false, ..Settings::default() };
     match Simulation::with_settings(scene.clone(), model, settings) {
         Ok(s) => Some(s),
         Err(e) => {

@@ -8,7 +8,8 @@
 //! `-- scenes` only the catalogue is measured, with `-- draw` the scenes are drawn again from their
 //! table, and nothing is measured. The exact answer is the elastic catenary's, tested to 1e-9
 //! against 40-digit references; the catenary's own points show the round-off between two ways to
-//! it. A cost is that of settling from the first route, without building the model.
+//! it. A cost is that of settling from the first route, without building the model and without the
+//! search of other friction histories.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::ridges::{arched, ridges};
+use cable_core::model::mass_spring::Stepping;
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::{Model, Scene, Settings, Simulation};
 
@@ -116,14 +117,15 @@ fn ladders() -> Vec<Ladder> {
             id: "fem-floor",
             about: "`fem`: a step of 1/240 s of a cable drawn along a floor",
             size: "elements",
-            sizes: elements[..4].to_vec(),
+            sizes: elements[..6].to_vec(),
             ask: |n| in_motion(&drawn_along_a_floor(), Model::Fem, n),
         },
         Ladder {
             id: "mass-spring-motion",
-            about: "`mass-spring`: a step of 1/240 s of the span as it swings, in as many inner steps as are stable",
+            about: "`mass-spring`: a step of 1/240 s of the span as it swings, explicit, in as many inner steps as are \
+                    stable: as many as there are elements",
             size: "elements",
-            sizes: elements[..3].to_vec(),
+            sizes: elements[..4].to_vec(),
             ask: |n| in_motion(&catalog::swinging_span(), Model::MassSpring, n),
         },
         Ladder {
@@ -217,7 +219,7 @@ fn cables(count: usize) -> Scene {
 }
 
 fn simulation(scene: &Scene, model: Model, segments: Option<usize>) -> Result<Simulation, Box<dyn Error>> {
-    let settings = Settings { segments, histories: false, ..Settings::default() };
+    let settings = Settings { segments, histories: false, stepping: Stepping::Explicit, ..Settings::default() };
     Ok(Simulation::with_settings(scene.clone(), model, settings)?)
 }
 

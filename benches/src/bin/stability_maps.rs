@@ -38,6 +38,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         measured.push((map, cells));
     }
+    for id in without_an_end(&measured) {
+        println!("{id} has no cell beyond the method's end");
+    }
     let wrong = measured.iter().flat_map(|m| &m.1).filter(|c| c.verdict == Verdict::Wrong).count();
     println!("{wrong} cells are wrong in silence");
     if asked.is_empty() {
@@ -73,6 +76,12 @@ fn cells(map: &Map) -> Vec<Cell> {
 fn counts(cells: &[Cell]) -> Vec<String> {
     let count = |v: Verdict| cells.iter().filter(|c| c.verdict == v).count();
     Verdict::ALL.iter().filter(|v| count(**v) > 0).map(|v| format!("{} {}", count(*v), v.name())).collect()
+}
+
+/// The maps on which a method is right everywhere.
+fn without_an_end(measured: &[(Map, Vec<Cell>)]) -> Vec<&'static str> {
+    let right = |cells: &[Cell]| cells.iter().all(|c| c.verdict == Verdict::Right);
+    measured.iter().filter(|(_, cells)| right(cells)).map(|(map, _)| map.id).collect()
 }
 
 fn table(measured: &[(Map, Vec<Cell>)]) -> Result<(), Box<dyn Error>> {
@@ -173,6 +182,10 @@ counts against the model and has a colour of its own. Of {} cells {wrong} are wr
     );
     for (map, cells) in measured {
         let _ = writeln!(out, "| {} | {} | {:.0e} | {} |", map.id, map.about, map.tolerance, counts(cells).join(", "));
+    }
+    let endless = without_an_end(measured);
+    if !endless.is_empty() {
+        let _ = writeln!(out, "\nOn {} no cell lies beyond the end of the method.", endless.join(", "));
     }
     out
 }

@@ -134,7 +134,11 @@ impl Outputs {
         let figures = Figures { cables, run_peaks: self.run_peaks.clone(), ..Figures::default() };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
-        self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
+        self.folder.write(&self.arguments.out, |folder| {
+            push(folder, &solution)?;
+            folder.add_wall_time(wall_time_s);
+            Ok(())
+        })?;
         if self.arguments.common.json {
             let _whole_line = self.print_lock.lock().unwrap_or_else(PoisonError::into_inner);
             self.printer.json(&printable)?;

@@ -470,6 +470,16 @@ fn columns_and_interval_of_nodes_are_chosen() {
 }
 
 #[test]
+fn a_run_keeps_its_model_and_compute_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (span(folder.path()), folder.path().join("run"));
+    assert_eq!(short_run(&scene, &out).args(["--model", "mass-spring"]).output().unwrap().status.code(), Some(0));
+    let manifest = cable_core::files::load_run(&out, 1 << 20).unwrap().manifest.unwrap();
+    assert_eq!(manifest.model(), Some(cable_core::Model::MassSpring));
+    assert!(manifest.wall_time_s.is_some_and(|s| s > 0.0 && s < 600.0), "{:?}", manifest.wall_time_s);
+}
+
+#[test]
 fn check_says_how_far_a_run_came() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, out) = (span(folder.path()), folder.path().join("run"));

@@ -67,6 +67,42 @@ fn a_run_is_replaced_by_a_complete_one_only() {
     assert!(!out.join("unfinished-1").exists() && !out.join("unfinished-4").exists());
 }
 
+/// The models of its instants and the time that they took stand in a run, and a run of before there
+/// were such keys is read without them.
+#[test]
+fn a_run_says_who_solved_it_and_how_long_that_took() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let (scene, first) = answer(12.0);
+    let mut run = begin(&out, &scene).unwrap();
+    run.begin(&scene, RobotColumns::LeftOut).unwrap();
+    for (k, wall_s) in [0.25, 0.5, f64::NAN].into_iter().enumerate() {
+        run.push(&Solution { time_s: k as f64, ..first.clone() }).unwrap();
+        run.add_wall_time(wall_s);
+    }
+    run.finish(RunEnd::Complete).unwrap();
+    let manifest = read(&out).manifest.unwrap();
+    assert_eq!((manifest.model(), manifest.wall_time_s), (Some(Model::Catenary), Some(0.75)));
+    // Two models answered: none of them answered the run.
+    let mut run = begin(&out, &scene).unwrap();
+    run.begin(&scene, RobotColumns::LeftOut).unwrap();
+    for (time_s, model) in [(0.0, Model::Catenary), (1.0, Model::Fem), (2.0, Model::Fem), (3.0, Model::Auto)] {
+        run.push(&Solution { time_s, model, ..first.clone() }).unwrap();
+    }
+    run.finish(RunEnd::Complete).unwrap();
+    let manifest = read(&out).manifest.unwrap();
+    assert_eq!(
+        (manifest.solved_by.as_slice(), manifest.model()),
+        (&["catenary".to_owned(), "fem".to_owned()][..], None)
+    );
+    let text = std::fs::read_to_string(out.join("run.toml")).unwrap();
+    let older: String = text.lines().filter(|l| !l.starts_with("solved_by")).map(|l| format!("{l}\n")).collect();
+    assert!(older.len() < text.len() && !text.contains("wall_time_s"), "{text}");
+    std::fs::write(out.join("run.toml"), older).unwrap();
+    let manifest = read(&out).manifest.unwrap();
+    assert_eq!((manifest.model(), manifest.wall_time_s), (None, None));
+}
+
 /// Stopped after any of its renamings, a replacement reads as the new run, and the next run goes on
 /// with it.
 #[test]

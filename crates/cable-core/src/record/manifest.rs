@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::choice::{NodeChoice, NodeInterval};
 use super::fingerprint::Fingerprint;
+use crate::model_id::Model;
 
 /// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -135,6 +136,13 @@ pub struct Manifest {
     /// Time of its last instant, s, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reached_s: Option<f64>,
+    /// The models that answered its instants, in the order in which they first did; empty where it
+    /// does not say.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub solved_by: Vec<String>,
+    /// Wall time that its answers took, s; None where it does not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_time_s: Option<f64>,
     /// The folder in this one that holds what is being put in its place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub successor: Option<String>,
@@ -163,6 +171,8 @@ impl Manifest {
             status: RunStatus::Partial,
             ended: None,
             reached_s: None,
+            solved_by: Vec::new(),
+            wall_time_s: None,
             successor: None,
             request,
             nodes: nodes.into(),
@@ -182,6 +192,13 @@ impl Manifest {
     pub fn from_toml(text: &str) -> Option<Self> {
         let manifest: Self = toml::from_str(text.strip_prefix(MANIFEST_HEAD)?).ok()?;
         (manifest.version == VERSION).then_some(manifest)
+    }
+
+    /// The model that answered all instants; None where several did, or it does not say.
+    #[must_use]
+    pub fn model(&self) -> Option<Model> {
+        let [only] = self.solved_by.as_slice() else { return None };
+        Model::from_name(only)
     }
 
     /// The record of a file.

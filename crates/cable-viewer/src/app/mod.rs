@@ -403,6 +403,9 @@ impl ViewerApp {
             let scene = scene.cloned();
             state.live.end_run(scene);
         }
+        if let (Some(wall_s), false) = (&mut state.live.recording.solve_wall_s, report.answers.is_empty()) {
+            *wall_s += report.snapshot.solve_wall_s;
+        }
         for answer in report.answers {
             state.live.record(answer);
         }
@@ -419,8 +422,11 @@ impl ViewerApp {
                 }
             }
         }
-        if report.history_restarts && !state.live.reopened_run.is_empty() {
-            let answers = std::mem::take(&mut state.live.reopened_run);
+        if report.history_restarts
+            && let Some(run) = state.live.reopened_run.take()
+        {
+            let answers = run.answers;
+            state.live.recording.solve_wall_s = run.wall_time_s;
             let last_s = answers.last().map(|a| a.time_s);
             for answer in answers {
                 state.live.record(answer);

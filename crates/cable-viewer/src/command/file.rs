@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use cable_core::Scene;
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest, RunStop};
 use cable_core::scene::catalog;
+use cable_core::{Model, Scene};
 
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::import;
@@ -19,8 +19,10 @@ use crate::io::scene_file;
 use crate::record::run::Run;
 use crate::record::sample::Sample;
 use crate::state::dialog::{Dialog, Replacement};
+use crate::state::live::ReopenedRun;
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Document, Reference};
+use crate::units::labels;
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,7 +174,8 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
         FileCommand::OpenRun(path) => match read_run(&path) {
             Ok(opened) => {
                 open(state, opened.scene, None, effects);
-                state.live.reopened_run = opened.answers;
+                state.live.reopened_run =
+                    Some(ReopenedRun { answers: opened.answers, wall_time_s: opened.wall_time_s });
                 remark(state, &path, &opened.remarks);
             }
             Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
@@ -260,7 +263,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     (state.selection.hovered, state.analysis.tension_marker) = (None, None);
     state.live.playback.paused = true;
     state.live.robot_speed_command = None;
-    state.live.reopened_run = Vec::new();
+    state.live.reopened_run = None;
     (state.live.earlier_run, state.live.reset_is_last, state.live.restart_is_reset) = (None, false, false);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
@@ -289,9 +292,14 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     if let (Some(solution), true) =
         (opened.answers.into_iter().next_back(), state.analysis.references.len() < Reference::MAX_COUNT)
     {
-        let name = format!("{}, {}, {:.2}\u{a0}s", opened.scene.name, path.display(), solution.time_s);
+        let by = match solution.model {
+            Model::Auto => String::new(),
+            model => format!("{} model, ", labels::model(model)),
+        };
+        let name = format!("{}, {}, {by}{:.2}\u{a0}s", opened.scene.name, path.display(), solution.time_s);
+        let wall_s = opened.wall_time_s.unwrap_or(f64::NAN);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
-        state.analysis.references.push(Reference { name, scene, solution, wall_s: f64::NAN, run });
+        state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
     }
 }
 
@@ -328,6 +336,9 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
             let _ = folder.finish(RunEnd::Partial(RunStop::Failed { message: why.clone() }));
             return Err(why);
         }
+    }
+    if let Some(wall_s) = state.live.recording.solve_wall_s {
+        folder.add_wall_time(wall_s);
     }
     folder.finish(RunEnd::Complete).map(|_| ()).map_err(|e| e.to_string())
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use cable_core::record::{Event, HistoryTable, NodeRow, RunTables};
+use cable_core::record::{Event, HistoryTable, Manifest, NodeRow, RunTables};
 use cable_core::robot::RobotReport;
 use cable_core::scene::SupportKind;
 use cable_core::solution::{
@@ -23,6 +23,8 @@ pub struct SavedRun {
     pub scene: Scene,
     /// Its instants, oldest first.
     pub answers: Vec<Solution>,
+    /// Wall time that they took, s; None where the run does not say.
+    pub wall_time_s: Option<f64>,
     /// What the user should know about it, in sentences: that it is partial, that figures are
     /// missing.
     pub remarks: Vec<String>,
@@ -42,7 +44,10 @@ pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     if let Some(missing) = fill_missing(&mut nodes)? {
         remarks.push(missing);
     }
-    let mut answers = answers(&run.scene, &history, nodes, &events);
+    let manifest = run.manifest.as_ref();
+    let model = manifest.and_then(Manifest::model).unwrap_or(Model::Auto);
+    let wall_time_s = manifest.and_then(|m| m.wall_time_s);
+    let mut answers = answers(&run.scene, model, &history, nodes, &events);
     let count = answers.len();
     // A run may have written its nodes less often than its history: only where there are nodes is
     // there a picture.
@@ -53,7 +58,7 @@ pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     if answers.len() < count {
         remarks.push(format!("Nodes were written at {} of its {count} instants, and those are shown.", answers.len()));
     }
-    Ok(SavedRun { scene: run.scene, answers, remarks })
+    Ok(SavedRun { scene: run.scene, answers, wall_time_s, remarks })
 }
 
 /// Figures of nodes that the run left out become 0; a sentence about which. Places cannot be left
@@ -91,8 +96,15 @@ fn fill_missing(nodes: &mut [NodeRow]) -> Result<Option<String>, String> {
     Ok((!missing.is_empty()).then(|| format!("It was written without {}, which is shown as 0.", missing.join(", "))))
 }
 
-/// The tables put together: an answer for each time of the history.
-fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &[Event]) -> Vec<Solution> {
+/// The tables put together: an answer for each time of the history, by a model (`Auto`: by several,
+/// or none is known).
+fn answers(
+    scene: &Scene,
+    model: Model,
+    history: &HistoryTable,
+    nodes: Vec<NodeRow>,
+    events: &[Event],
+) -> Vec<Solution> {
     let mut nodes = nodes.into_iter().peekable();
     let mut out = Vec::with_capacity(history.time_s.len());
     for (k, &time_s) in history.time_s.iter().enumerate() {
@@ -110,7 +122,7 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
         peaks(history, k, &mut cables);
         out.push(Solution {
             time_s,
-            model: Model::Auto,
+            model,
             reason: ModelReason::Recorded,
             next_cheaper: None,
             robot: robot(scene, history, k, &cables),

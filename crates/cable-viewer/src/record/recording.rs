@@ -33,6 +33,8 @@ pub struct Recording {
     active: Vec<(WarningKind, String)>,
     /// Time shown, s; None = the present.
     pub shown_s: Option<f64>,
+    /// Wall time that the answers took, s; None: it is not known.
+    pub solve_wall_s: Option<f64>,
     /// What is replayed begins anew at its end.
     pub looped: bool,
 }
@@ -47,7 +49,14 @@ impl Recording {
     /// An empty one of another size, bytes.
     #[must_use]
     pub fn with_budget(bytes: usize) -> Self {
-        Self { frames: History::new(bytes), events: Vec::new(), active: Vec::new(), shown_s: None, looped: false }
+        Self {
+            frames: History::new(bytes),
+            events: Vec::new(),
+            active: Vec::new(),
+            shown_s: None,
+            solve_wall_s: Some(0.0),
+            looped: false,
+        }
     }
 
     /// Adds an answer; one at or before the last replaces what came after it.
@@ -74,7 +83,7 @@ impl Recording {
         self.frames.clear();
         self.events.clear();
         self.active.clear();
-        self.shown_s = None;
+        (self.shown_s, self.solve_wall_s) = (None, Some(0.0));
     }
 
     /// First and last time, s; None while there are not two.

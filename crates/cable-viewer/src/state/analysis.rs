@@ -48,7 +48,8 @@ pub struct Reference {
     pub scene: Arc<Scene>,
     /// The answer.
     pub solution: Arc<Solution>,
-    /// Wall time it took, s.
+    /// Wall time it took, s; of a run that was read from its folder, the whole run; NaN where that
+    /// does not say.
     pub wall_s: f64,
     /// The run it is the end of, where time ran.
     pub run: Option<Arc<Run>>,

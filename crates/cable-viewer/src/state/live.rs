@@ -29,7 +29,7 @@ pub struct Live {
     /// Tension and reactions against time since the last start.
     pub history: History,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
-    pub reopened_run: Vec<Solution>,
+    pub reopened_run: Option<ReopenedRun>,
     /// The run that the last restart ended, until the next one or another scene.
     pub earlier_run: Option<Box<EarlierRun>>,
     /// The reset is the last thing that was done: undo takes it back.
@@ -50,7 +50,7 @@ impl Default for Live {
             latest: Snapshot::default(),
             recording: Recording::default(),
             history: History::default(),
-            reopened_run: Vec::new(),
+            reopened_run: None,
             earlier_run: None,
             reset_is_last: false,
             restart_is_reset: false,
@@ -138,6 +138,15 @@ impl Live {
     pub fn now_s(&self) -> f64 {
         self.latest.solution.as_ref().map_or(0.0, |s| s.time_s)
     }
+}
+
+/// What is recorded of a run that was opened.
+#[derive(Clone, Debug)]
+pub struct ReopenedRun {
+    /// Its instants, oldest first.
+    pub answers: Vec<Solution>,
+    /// Wall time that they took, s; None where it is not known.
+    pub wall_time_s: Option<f64>,
 }
 
 /// A run that a restart ended.

@@ -63,6 +63,31 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
     assert!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s > last.time_s);
 }
 
+/// A run that was saved keeps its model and what it cost, through another window and its own file,
+/// and Compare shows them.
+#[test]
+fn s16_a_saved_run_is_compared_with_its_model_and_its_cost() {
+    let mut harness = open_span();
+    play(&mut harness, 10);
+    let took_s = state(&harness).live.recording.solve_wall_s.unwrap();
+    assert!(took_s > 0.0);
+    let folder = tempfile::tempdir().unwrap();
+    let [first, again] = ["first", "again"].map(|name| folder.path().join(name));
+    apply(&mut harness, Command::File(FileCommand::SaveRun(first.clone())));
+    // Opened, it is what it was, and saved again as well.
+    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenRun(first))));
+    harness.run_steps(3);
+    assert_eq!(state(&harness).live.recording.solve_wall_s, Some(took_s));
+    apply(&mut harness, Command::File(FileCommand::SaveRun(again.clone())));
+    apply(&mut harness, Command::File(FileCommand::AddReferenceRun(again)));
+    harness.run_steps(2);
+    let [held] = state(&harness).analysis.references.as_slice() else { panic!("it is held") };
+    assert_eq!(held.wall_s, took_s);
+    assert!(held.solution.model == cable_core::Model::Fem && held.name.contains("model"), "{}", held.name);
+    let cost = cable_viewer::units::format::rough_duration(took_s);
+    assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
+}
+
 #[test]
 fn a_folder_that_is_no_run_changes_nothing_and_is_named() {
     let mut harness = open_span();

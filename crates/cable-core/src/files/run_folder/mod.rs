@@ -27,6 +27,7 @@ use self::ownership::{check_own, has_instant, look};
 use self::replacement::{new_unfinished, remove_unfinished, replace_if_begun};
 use self::table_file::TableFile;
 use super::{FileError, RunFolderFault};
+use crate::model_id::Model;
 use crate::record::{
     FileRecord, Fingerprint, Manifest, NodeChoice, RobotColumns, RunRequest, RunStatus, RunStop, RunWriter, WriteError,
 };
@@ -135,6 +136,14 @@ impl RunFolder {
         self.append(solution, RunWriter::push_last)
     }
 
+    /// Notes that answers of the run took so long, s, beside what was noted before; what is no time
+    /// is left out.
+    pub fn add_wall_time(&mut self, wall_s: f64) {
+        if wall_s.is_finite() && wall_s >= 0.0 {
+            self.manifest.wall_time_s = Some(self.manifest.wall_time_s.unwrap_or(0.0) + wall_s);
+        }
+    }
+
     /// Makes the tables, with headers alone ([`RunWriter::begin`]).
     ///
     /// # Errors
@@ -150,6 +159,10 @@ impl RunFolder {
     ) -> Result<(), WriteError> {
         self.write(|writer| push(writer, solution))?;
         self.manifest.reached_s = Some(solution.time_s);
+        let model = solution.model.name();
+        if solution.model != Model::Auto && !self.manifest.solved_by.iter().any(|known| known == model) {
+            self.manifest.solved_by.push(model.to_owned());
+        }
         Ok(())
     }
 

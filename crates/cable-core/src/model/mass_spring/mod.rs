@@ -1,5 +1,6 @@
-//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through
-//! violent free motion.
+//! `mass_spring` is the model of lumped masses and springs: a preview of stiff cables, a second
+//! opinion, and free motion whose energy must be kept. At equal error [`crate::model::fem`] is
+//! cheaper (`docs/notes/choosing-models.md`).
 //!
 //! | room | what it holds |
 //! |---|---|
