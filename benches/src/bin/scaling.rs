@@ -364,6 +364,13 @@ the process took more of at the greatest size, model and scene together. Figures
             ladder.about, first.0, last.0, ladder.size
         );
     }
+    for (ladder, points) in measured {
+        let answered = |size: &usize| points.iter().any(|(n, _)| n == size);
+        let missing: Vec<String> = ladder.sizes.iter().filter(|n| !answered(n)).map(usize::to_string).collect();
+        if !missing.is_empty() {
+            let _ = writeln!(out, "\nNo answer ({}) with {} {}.", ladder.about, missing.join(", "), ladder.size);
+        }
+    }
     out
 }
 
