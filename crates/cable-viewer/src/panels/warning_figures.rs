@@ -84,12 +84,7 @@ pub fn figures(warning: &Warning) -> Option<Figures> {
             let bare = value.trim_end_matches('%').trim_end().to_owned();
             Figures { words: format!("{value} estimated, target {limit}"), short: format!("{bare} > {limit}") }
         }
-        WarningKind::Loop
-        | WarningKind::InitialPenetration
-        | WarningKind::NotUnique
-        | WarningKind::SupportHeld
-        | WarningKind::ClearOfWheel
-        | WarningKind::ThroughRobot
-        | WarningKind::Stabilised => return None,
+        // A loop, a second rest, a blocked support and the like have no figure.
+        _ => return None,
     })
 }

@@ -132,7 +132,7 @@ impl Request {
     /// It leads back to what was, or to another scene: no answer of the way there is waited for.
     #[must_use]
     pub fn goes_back(&self) -> bool {
-        self.edit.as_ref().is_some_and(|e| e.starts_from_scene) || self.resume.is_some() || self.reset
+        self.edit.as_ref().is_some_and(|e| e.start != EditStart::PresentState) || self.resume.is_some() || self.reset
     }
 
     /// Nothing is asked.

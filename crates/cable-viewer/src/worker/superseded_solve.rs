@@ -84,12 +84,12 @@ mod tests {
     use std::time::Instant;
 
     use super::*;
-    use crate::worker::request::{Edit, Request};
+    use crate::worker::request::{Edit, EditStart, Request};
 
-    fn edit(starts_from_scene: bool) -> Request {
+    fn edit(start: EditStart) -> Request {
         let scene = cable_core::scene::catalog::hanging_span();
         let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
-        let edit = Edit { scene, model, settings, is_new_scene: false, starts_from_scene };
+        let edit = Edit { scene, model, settings, start };
         Request { edit: Some(edit), ..Request::default() }
     }
 
@@ -103,7 +103,7 @@ mod tests {
             solve: Some(Solve {
                 began: before(1000),
                 engine: Box::default(),
-                request: Some(edit(false)),
+                request: Some(edit(EditStart::PresentState)),
                 seeks_histories: false,
             }),
             ..Slots::default()
@@ -119,18 +119,20 @@ mod tests {
         };
         let cancel = || Request { cancel: true, ..Request::default() };
         for (waiting, asked_ms) in [
-            (edit(true), [0, 0]),
+            (edit(EditStart::Route), [0, 0]),
             (cancel(), [0, 0]),
             (Request { reset: true, ..Request::default() }, [0, 0]),
-            (edit(false), [100, 100]),
-            (edit(false), [2000, 100]),
+            (edit(EditStart::PresentState), [100, 100]),
+            (edit(EditStart::PresentState), [2000, 100]),
         ] {
             assert!(given_up(waiting.clone(), asked_ms, 2), "{waiting:?}");
         }
-        assert!(!given_up(edit(false), [2000, 10], 2), "a hand that goes on has answers in between");
+        assert!(!given_up(edit(EditStart::PresentState), [2000, 10], 2), "a hand that goes on has answers in between");
         // Abandoned threads are bounded, and the bound of edits is not that of an undo.
-        assert!(given_up(edit(true), [0, 0], MAX_THREADS + 1) && given_up(cancel(), [0, 0], MAX_THREADS + 1));
-        assert!(!given_up(edit(false), [2000, 100], MAX_THREADS + 1));
-        assert!(!given_up(edit(true), [0, 0], MAX_THREADS_AT_ONCE + 1));
+        assert!(
+            given_up(edit(EditStart::Route), [0, 0], MAX_THREADS + 1) && given_up(cancel(), [0, 0], MAX_THREADS + 1)
+        );
+        assert!(!given_up(edit(EditStart::PresentState), [2000, 100], MAX_THREADS + 1));
+        assert!(!given_up(edit(EditStart::Route), [0, 0], MAX_THREADS_AT_ONCE + 1));
     }
 }
