@@ -48,7 +48,7 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
         assert_eq!(a.time_s.to_bits(), b.time_s.to_bits());
         // Tables hold what is read of nodes, not the direction of the force there.
         let written: Vec<_> = b.cables[0].nodes.iter().map(|n| Node { force_n: [0.0; 2], ..*n }).collect();
-        assert_eq!(a.cables[0].nodes, written, "{} s", a.time_s);
+        assert_eq!(*a.cables[0].nodes, written, "{} s", a.time_s);
         assert_eq!(a.robot.unwrap().x_m, b.robot.unwrap().x_m);
         assert_eq!(a.energy, b.energy);
     }
