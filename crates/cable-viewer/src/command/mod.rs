@@ -72,7 +72,14 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
     }
     match command {
         Command::Scene(c) => scene::apply(state, c, effects),
-        Command::Playback(c) => playback::apply(state, c, effects),
+        Command::Playback(c) => {
+            let pulls = matches!(c, PlaybackCommand::PullPastLength(true));
+            playback::apply(state, c, effects);
+            if pulls && scene::is_refused_pull(state) {
+                // The pull that was refused is taken back: it can be made once more.
+                scene::apply(state, SceneCommand::Undo, effects);
+            }
+        }
         Command::SetModel(model) => {
             state.solver.model = model;
             submit_edit(state, effects);

@@ -2,7 +2,6 @@
 
 use crate::command::effects::{Effects, next_number, submit_edit};
 use crate::command::resume::{resume_from_shown, undo_restart};
-use crate::command::scene::{self, SceneCommand};
 use crate::state::{AppState, Playback};
 use crate::worker::request::Request;
 
@@ -99,13 +98,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
                 effects.request.merge(Request { robot: Some(order), ..Request::default() });
             }
         }
-        PlaybackCommand::PullPastLength(pulls) => {
-            state.solver.pulls_past_length = pulls;
-            if pulls && scene::is_refused_pull(state) {
-                // The pull that was refused is taken back: it can be made once more.
-                scene::apply(state, SceneCommand::Undo, effects);
-            }
-        }
+        PlaybackCommand::PullPastLength(pulls) => state.solver.pulls_past_length = pulls,
         PlaybackCommand::SetRobotSpeed(speed) => {
             if speed.is_finite() && speed > 0.0 {
                 state.live.manual_robot_speed = Some(speed);

@@ -27,7 +27,6 @@ use self::ownership::{check_own, has_instant, look};
 use self::replacement::{new_unfinished, remove_unfinished, replace_if_begun};
 use self::table_file::TableFile;
 use super::{FileError, RunFolderFault};
-use crate::model_id::Model;
 use crate::record::{
     FileRecord, Fingerprint, Manifest, NodeChoice, RobotColumns, RunRequest, RunStatus, RunStop, RunWriter, WriteError,
 };
@@ -160,7 +159,7 @@ impl RunFolder {
         self.write(|writer| push(writer, solution))?;
         self.manifest.reached_s = Some(solution.time_s);
         let model = solution.model.name();
-        if solution.model != Model::Auto && !self.manifest.solved_by.iter().any(|known| known == model) {
+        if !solution.model.is_automatic() && !self.manifest.solved_by.iter().any(|known| known == model) {
             self.manifest.solved_by.push(model.to_owned());
         }
         Ok(())
