@@ -45,8 +45,8 @@ pub struct Common {
     /// auto, catenary, spans, fem or mass-spring
     #[arg(long, default_value = "auto", value_parser = model)]
     pub model: Model,
-    /// Relative accuracy asked of the tension [default: 1e-3]; a run in motion for which it is given
-    /// is refined up to twice (see --refine of `cable run`)
+    /// Relative accuracy asked of the tension [default: 1e-3]; a run in motion for which it is
+    /// given is refined up to twice (see --refine of `cable run`)
     #[arg(long, value_parser = tolerance)]
     pub tolerance: Option<f64>,
     /// Friction that acts on every cable at rest: least-sliding, or all of it against a cable drawn
@@ -104,8 +104,8 @@ pub struct RunArguments {
     #[arg(long)]
     pub quasi_static: bool,
     /// Number of refinements: where errors of forces are above --tolerance, take elements and steps
-    /// half as long, at most so often and as long as that makes errors smaller; each time takes four
-    /// times as long [default: 2 where --tolerance is given, else 0]
+    /// half as long, at most so often and as long as that makes errors smaller; each time takes
+    /// four times as long [default: 2 where --tolerance is given, else 0]
     #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
     pub refine: Option<u32>,
     /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of

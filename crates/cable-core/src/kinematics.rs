@@ -3,8 +3,8 @@
 use crate::math::Vec2;
 use crate::solution::Node;
 
-/// The vector that `of` reads of nodes at an arc length (m), between the two of the nearest ones; None
-/// of a cable without nodes.
+/// The vector that `of` reads of nodes at an arc length (m), between the two of the nearest ones;
+/// None of a cable without nodes.
 fn at(nodes: &[Node], arc_length: f64, of: impl Fn(&Node) -> Vec2) -> Option<Vec2> {
     let k = nodes.partition_point(|n| n.arc_length_m <= arc_length);
     let (before, after) = (nodes.get(k.saturating_sub(1))?, nodes.get(k).or(nodes.last())?);

@@ -288,10 +288,10 @@ fn snatched(v: f64, ea: f64, segments: usize) -> [f64; 2] {
     [most, fastest]
 }
 
-/// A wave that stops a part of a cable which comes at a speed u raises the tension by u √(EA ρ), and
-/// by twice that where a fixed end throws it back (K. F. Graff, Wave Motion in Elastic Solids,
-/// Clarendon Press, 1975, section 2.4). A cable that straightens is faster across than the hand that
-/// draws it, so u is the greatest speed of any of its nodes.
+/// A wave that stops a part of a cable which comes at a speed u raises the tension by u √(EA ρ),
+/// and by twice that where a fixed end throws it back (K. F. Graff, Wave Motion in Elastic Solids,
+/// Clarendon Press, 1975, section 2.4). A cable that straightens is faster across than the hand
+/// that draws it, so u is the greatest speed of any of its nodes.
 #[test]
 fn extreme_hands_pull_no_harder_than_impact_theory() {
     let rho = slack().cables[0].linear_density_kg_per_m;

@@ -230,8 +230,8 @@ fn errors_in_motion_are_covered() {
     assert!(peaks.inside * 100 >= peaks.all * 90, "{peaks:?}");
 }
 
-/// Slackens a cable at no more than 2 m/s: the greatest tension with the step of the program, and the
-/// one with a quarter of it, N.
+/// Slackens a cable at no more than 2 m/s: the greatest tension with the step of the program, and
+/// the one with a quarter of it, N.
 fn slackened(number: u64) -> Option<[f64; 2]> {
     let greatest = |times: usize| {
         let step_s = STEP_S / times as f64;
@@ -254,6 +254,7 @@ fn a_cable_that_is_slackened_pulls_about_as_hard_as_with_a_quarter_of_the_step()
         println!("{k}: {coarse:.3} N, with a quarter of the step {fine:.3} N, {:.4}", coarse / fine);
         worst = worst.max(coarse / fine);
     }
-    // What falls on rough ground strikes it by chance: of 20 scenes 3 pull 7 to 12 % harder, 10 less.
+    // What falls on rough ground strikes it by chance: of 20 scenes 3 pull 7 to 12 % harder, 10
+    // less.
     assert!(worst < 1.25, "{worst} times the tension with a quarter of the step");
 }

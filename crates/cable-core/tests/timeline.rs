@@ -172,8 +172,8 @@ fn one_verdict_on_two_meshes() {
     one_verdict("draped-slipping", &catalog::draped_slipping(), &[42, 84], 1.5);
 }
 
-/// `cargo test --locked -p cable-core --test timeline one_verdict_on_every_mesh -- --ignored --nocapture`
-/// (minutes).
+/// `cargo test --locked -p cable-core --test timeline one_verdict_on_every_mesh
+/// -- --ignored --nocapture` (minutes).
 #[test]
 #[ignore = "minutes"]
 fn one_verdict_on_every_mesh() {

@@ -167,8 +167,8 @@ pub struct PreviewTuning {
     pub min_sub_step_fraction: f64,
     /// Greatest ω²h² of swings across the cable; 4/3 is unstable. Smaller costs more.
     pub max_swing: f64,
-    /// Times that springs and contacts are solved in turns in a sub-step. Fewer let contacts of a fine
-    /// mesh stretch it, more cost where much strikes at once.
+    /// Times that springs and contacts are solved in turns in a sub-step. Fewer let contacts of a
+    /// fine mesh stretch it, more cost where much strikes at once.
     pub max_contact_passes: usize,
     /// Change of a contact's place, in elements, of the greatest strain, that is none. Larger lets
     /// tensions beside contacts tremble, smaller takes more passes.

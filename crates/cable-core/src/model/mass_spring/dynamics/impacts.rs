@@ -58,8 +58,8 @@ pub(in crate::model::mass_spring) fn find(contacts: &mut ContactMemory, mesh: &m
     contacts.known_before = known;
 }
 
-/// Begins a sub-step of `h` (s) with the contacts of the last one, of `last` (s): their impulses are
-/// those of the same forces.
+/// Begins a sub-step of `h` (s) with the contacts of the last one, of `last` (s): their impulses
+/// are those of the same forces.
 pub(in crate::model::mass_spring) fn carry_over(contacts: &mut ContactMemory, h: f64, last: f64) {
     let part = h / last;
     contacts.impulses.retain(|c| c.normal > 0.0);
@@ -68,7 +68,8 @@ pub(in crate::model::mass_spring) fn carry_over(contacts: &mut ContactMemory, h:
     }
 }
 
-/// Adds the impulses of contacts to positions that are predicted for the end of a sub-step of `h` (s).
+/// Adds the impulses of contacts to positions that are predicted for the end of a sub-step of `h`
+/// (s).
 pub(in crate::model::mass_spring) fn displace(contacts: &ContactMemory, mesh: &Mesh, position: &mut [Vec2], h: f64) {
     for contact in &contacts.impulses {
         let j = contact.impulse(mesh) * h;
