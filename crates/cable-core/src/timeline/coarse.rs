@@ -36,10 +36,6 @@ const WINDOW_S: f64 = 0.05;
 /// covered and 80 are between half and ten times the error; with 2 they are 91 and 84, with 4 they
 /// are 97 and 71.
 const ERROR_FACTOR: f64 = 3.0;
-/// Times that its shape may differ more than its forces do: forces are those of the moment, and
-/// shapes add up what was laid elsewhere. Less: of cables that are dropped or dragged 82 errors of
-/// the shape in 100 are covered (seeds 500 to 519); more: fewer are apt.
-const SHAPE_FACTOR: f64 = 1.5;
 /// Where the finest is so much nearer to the second than to the third they converge, and
 /// what it differs by from the second counts alone. Steps of the second order have 0.375. With
 /// less, free swings are said to be up to 20 times as wrong as they are; with more, fewer figures
@@ -189,8 +185,7 @@ impl CoarseRuns {
                 Some(short.with(long, |short, long| (short * long).sqrt()))
             };
             let differences = self.runs.iter().filter_map(remembered);
-            let errors = differences.reduce(|finer, coarser| finer.with(&coarser, error_bound)).unwrap_or_default();
-            ErrorEstimates { position_m: errors.position_m.map(|m| SHAPE_FACTOR * m), ..errors }
+            differences.reduce(|finer, coarser| finer.with(&coarser, error_bound)).unwrap_or_default()
         })
     }
 }
