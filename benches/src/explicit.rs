@@ -66,7 +66,7 @@ impl Bar {
             stepping: Stepping::Explicit,
             inner_step_s: Some(step_s),
             histories: false,
-            // What grows without end would break.
+            // A cable whose motion grows without end would break.
             breaks: false,
             ..Settings::default()
         };
@@ -124,7 +124,7 @@ impl Bar {
         if self.pluck([0.0, touch]).is_err() {
             return false;
         }
-        // What is refused has run away.
+        // A step that is refused has run away.
         (0..40).any(|_| self.go(100).is_err() || !(self.off(|_| 0.0) < 1e4 * touch))
     }
 

@@ -46,7 +46,7 @@ fn said(answer: &Solution) -> f64 {
     if warns { stated.max(WARNED) } else { stated }
 }
 
-/// What is wrong with a change from one answer to another; None: nothing.
+/// The fault of a change from one answer to another; None: it has none.
 fn jump(name: &str, a: &Solution, b: &Solution) -> Option<String> {
     let (apart, said) = (apart(a, b), said(a) + said(b));
     println!("{name}: {} to {}: {apart:.1e} apart, {said:.1e} said", a.model, b.model);
@@ -110,7 +110,7 @@ fn friction_of_a_wheel() {
     });
 }
 
-/// What is seen from above is always by `fem`. The cable is taut: a slack one lies there in any
+/// A plan view is always answered by `fem`. The cable is taut: a slack one lies there in any
 /// shape.
 #[test]
 fn friction_of_the_floor_from_above() {

@@ -254,7 +254,7 @@ fn a_cable_that_is_slackened_pulls_about_as_hard_as_with_a_quarter_of_the_step()
         println!("{k}: {coarse:.3} N, with a quarter of the step {fine:.3} N, {:.4}", coarse / fine);
         worst = worst.max(coarse / fine);
     }
-    // What falls on rough ground strikes it by chance: of 20 scenes 3 pull 7 to 12 % harder, 10
-    // less.
+    // A cable falls on rough ground and strikes it by chance: of 20 scenes 3 pull 7 to 12 % harder,
+    // 10 less.
     assert!(worst < 1.25, "{worst} times the tension with a quarter of the step");
 }

@@ -140,7 +140,7 @@ impl Live {
     }
 }
 
-/// What is recorded of a run that was opened.
+/// The record of a run that was opened.
 #[derive(Clone, Debug)]
 pub struct ReopenedRun {
     /// Its instants, oldest first.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use cable_core::scene::catalog;
+use cable_core::scene::{Scene, catalog};
 use cable_viewer::command::{Command, ViewCommand};
 use cable_viewer::geometry::handles;
 use cable_viewer::state::Item;
@@ -14,9 +14,27 @@ use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open};
 
+type Window = egui_kittest::Harness<'static, cable_viewer::ViewerApp>;
+
 /// Names of the controls of several scenes with several things picked, a line each, as they were
 /// before the outline.
 const BEFORE: &str = include_str!("controls.txt");
+
+/// Opens a scene and looks at the window with each of its things picked in turn.
+fn with_each_thing_picked(scene: Scene, mut look: impl FnMut(&Window)) -> Window {
+    let mut harness = open(scene);
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
+    harness.set_size(Vec2::new(1600.0, 3000.0));
+    // A form that edits a thing stands where it is selected.
+    let all = handles::all(&harness.state().state);
+    let others = [Item::Cable(0), Item::Scene, Item::Environment, Item::Solver];
+    for picked in [None].into_iter().chain(all.into_iter().chain(others).map(Some)) {
+        apply(&mut harness, Command::View(ViewCommand::Select(picked)));
+        harness.run_steps(2);
+        look(&harness);
+    }
+    harness
+}
 
 fn names() -> BTreeSet<String> {
     let mut names = BTreeSet::new();
@@ -28,17 +46,9 @@ fn names() -> BTreeSet<String> {
         catalog::round_post(),
         catalog::over_beam(),
     ] {
-        let mut harness = open(scene);
-        apply(&mut harness, Command::View(ViewCommand::AddReference));
-        harness.set_size(Vec2::new(1600.0, 3000.0));
-        // What edits a thing stands where it is selected.
-        let all = handles::all(&harness.state().state);
-        let others = [Item::Cable(0), Item::Scene, Item::Environment, Item::Solver];
-        for picked in [None].into_iter().chain(all.into_iter().chain(others).map(Some)) {
-            apply(&mut harness, Command::View(ViewCommand::Select(picked)));
-            harness.run_steps(2);
-            names.extend(crate::help::controls(&harness).into_iter().map(|(name, ..)| name).filter(|n| !n.is_empty()));
-        }
+        with_each_thing_picked(scene, |harness| {
+            names.extend(crate::help::controls(harness).into_iter().map(|(name, ..)| name).filter(|n| !n.is_empty()));
+        });
     }
     names
 }
@@ -67,7 +77,7 @@ fn is_left_out(name: &str) -> bool {
 #[test]
 fn the_palette_knows_every_button_by_the_words_on_it() {
     let (mut unknown, mut asked) = (BTreeSet::new(), BTreeSet::new());
-    let mut ask = |harness: &egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
+    let mut ask = |harness: &Window| {
         for (name, role, _) in crate::help::controls(harness) {
             let button = matches!(role, Role::Button | Role::CheckBox | Role::RadioButton);
             if !button || name.is_empty() || is_left_out(&name) || !asked.insert(name.clone()) {
@@ -88,16 +98,7 @@ fn the_palette_knows_every_button_by_the_words_on_it() {
         catalog::pulley_waypoints(),
         catalog::floor_drag(),
     ] {
-        let mut harness = open(scene);
-        apply(&mut harness, Command::View(ViewCommand::AddReference));
-        harness.set_size(Vec2::new(1600.0, 3000.0));
-        let all = handles::all(&harness.state().state);
-        let others = [Item::Cable(0), Item::Scene, Item::Environment, Item::Solver];
-        for picked in [None].into_iter().chain(all.into_iter().chain(others).map(Some)) {
-            apply(&mut harness, Command::View(ViewCommand::Select(picked)));
-            harness.run_steps(2);
-            ask(&harness);
-        }
+        let mut harness = with_each_thing_picked(scene, &mut ask);
         for menu in ["File", "Edit", "View", "Scenes", "Learn"] {
             harness.get_by_role_and_label(Role::Button, menu).click();
             harness.run_steps(3);
