@@ -85,9 +85,9 @@ pub(in crate::model::mass_spring) fn preview(
 
 /// Sets the velocities of a sub-step of `h` (s) after one of `last` (s).
 ///
-/// Springs and contacts are solved in turns until they agree. A contact that only followed the
-/// springs would stretch them: a node of a fine mesh at a corner is drawn in by more than an
-/// element in one sub-step, and put back.
+/// Springs feel the contacts of the sub-step before, and both are solved in turns until they agree.
+/// A contact that only followed the springs would stretch them: a node of a fine mesh at a corner
+/// is drawn in by more than an element in one sub-step, and put back.
 fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2], solver: &mut ConstraintSolver) {
     if !chain.mesh.wheels.pulleys.is_empty() {
         release_pulleys(&mut chain.mesh, chain.clock.time_s);
