@@ -218,7 +218,7 @@ fn no_step_is_balanced_by_a_gap_lost_in_rounding() {
     run(485, 1.75, &mut found);
     tell(&found);
     let worst = found.imbalance.iter().map(|i| i.0).fold(0.0, f64::max);
-    assert!(found.stopped.is_empty() && worst < 1e-3, "{found:?}");
+    assert!(found.stopped.is_empty() && worst < 1e-3, "{worst} {:?}", found.stopped);
 }
 
 /// A cable lay round a post so slack that it hung from it in places: friction that was said to come
@@ -227,18 +227,29 @@ fn no_step_is_balanced_by_a_gap_lost_in_rounding() {
 fn issue_016_a_slack_wrap_has_a_tension() {
     let mut found = Found::default();
     run(20_387, 1.5, &mut found);
-    assert!(found.no_number == 0 && count(&found, Law::Finite) == 0, "{found:?}");
-    assert_eq!(count(&found, Law::Penetration), 0, "{found:?}");
+    assert!(found.no_number == 0 && count(&found, Law::Finite) == 0, "{:?}", found.broken);
+    assert_eq!(count(&found, Law::Penetration), 0, "{:?}", found.broken);
+}
+
+/// For one frame the report had 4e11 N on a post that a cable was whirled round, and the cable in
+/// it (see `weighted_capstan.rs`).
+#[test]
+fn issue_016_a_whirled_wrap_has_the_tension_of_its_ends() {
+    let mut found = Found::default();
+    run(30_540, 1.5, &mut found);
+    assert_eq!(count(&found, Law::Penetration), 0, "{:?}", found.broken);
+    assert!(found.grown.is_empty(), "{:?}", found.grown.first());
 }
 
 /// A cable that is whirled round a post is slack there now and then. The loss of its slack bars
 /// pushed, and friction was reckoned from that, up to 132 N beyond its cone in 111 of 71 714 steps.
+/// Later it was reckoned where only the weight beside a mark pulled (30002: 1.5 N beyond its cone).
 #[test]
 fn issue_016_slack_wraps_rub_within_the_cone() {
-    for scene in [3033, 3070, 3127, 3147] {
+    for scene in [3033, 3070, 3127, 3147, 30_002] {
         let mut found = Found::default();
         run(scene, 2.0, &mut found);
-        assert_eq!(count(&found, Law::Friction), 0, "{scene}: {found:?}");
+        assert_eq!(count(&found, Law::Friction), 0, "{scene}: {:?}", found.broken);
     }
 }
 
@@ -247,8 +258,8 @@ fn issue_016_slack_wraps_rub_within_the_cone() {
 fn six_hundred_violent_scenes_obey_the_laws() {
     let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
     let found = campaign(number("FROM", 0)..number("TO", 600), 2.0);
-    assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0, "{found:?}");
-    assert!(found.grown.is_empty(), "{:?}", found.grown);
-    assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{found:?}");
-    assert_eq!(count(&found, Law::Friction), 0, "{found:?}");
+    assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0, "{:?}", found.broken);
+    assert!(found.grown.is_empty(), "{:?}", found.grown.first());
+    assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{:?}", found.stopped);
+    assert_eq!(count(&found, Law::Friction), 0, "{:?}", found.broken);
 }

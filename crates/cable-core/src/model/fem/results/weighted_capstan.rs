@@ -27,6 +27,9 @@ const HALVINGS: usize = 60;
 const PRESSED_PARTS: u32 = 8;
 /// Force away from the round, of the greater tension, that is rounding.
 const LIFT_ROUNDING: f64 = 1e-9;
+/// Part of the greater tension by which the end of the turn may be missed. Where weight alone would
+/// use up the tension, it depends so steeply on the coefficient that no number leads to the end.
+const END_TOLERANCE: f64 = 1e-6;
 
 /// The tension of a cable along a round that carries its weight.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +49,8 @@ impl WeightedCapstan {
     pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
         let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
         let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
-        let lacks = |m: f64| with(m).at(turn) < after * (cos1 - m * sin1);
+        let excess = |m: f64| with(m).at(turn) - after * (cos1 - m * sin1);
+        let lacks = |m: f64| excess(m) < 0.0;
         let bound = (0..=DOUBLINGS).map(|k| f64::powi(2.0, k) / turn);
         let range = if lacks(0.0) {
             [0.0, bound.into_iter().find(|m| !lacks(*m))?]
@@ -54,7 +58,9 @@ impl WeightedCapstan {
             [-bound.into_iter().find(|m| lacks(-*m))?, 0.0]
         };
         let [low, high] = bisect(range, HALVINGS, lacks);
-        Some(with(0.5 * (low + high))).filter(|found| found.presses(turn, LIFT_ROUNDING * larger(before, after)))
+        let (mobilised, scale) = (0.5 * (low + high), larger(before, after));
+        let leads_there = excess(mobilised).abs() <= END_TOLERANCE * scale;
+        Some(with(mobilised)).filter(|found| leads_there && found.presses(turn, LIFT_ROUNDING * scale))
     }
 
     /// True if the cable presses on the round all along a turn (rad), or is drawn off by no more
@@ -141,6 +147,14 @@ mod tests {
         // A coefficient of 19 leads from the one to the other by way of -2e9 N.
         assert!(WeightedCapstan::between([1.2, 7.0], 3.0, [2.0, 1.0], [0.0, 0.3]).is_none());
         assert!(WeightedCapstan::between([2.5, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_some());
+    }
+
+    /// A cable that was whirled round a post had 4e11 N there in one frame: the coefficient lay
+    /// between two numbers next to each other, of which one led to -1e15 N and the other to 1e15 N.
+    #[test]
+    fn issue_016_no_friction_leads_where_no_number_does() {
+        let found = WeightedCapstan::between([0.770_385, 9.574_502_6], 1.042_254, [2.935_798, 0.685_06], [0.0; 2]);
+        assert!(found.is_none(), "{found:?}");
     }
 
     #[test]
