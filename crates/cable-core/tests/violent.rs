@@ -253,6 +253,16 @@ fn issue_016_slack_wraps_rub_within_the_cone() {
     }
 }
 
+/// A fold that was whipped round the edge of a beam was found under it at the end of a step: the
+/// undamped Newton had strayed into another valley, above the start of the step, and the cable had
+/// 352 J in place of 47.
+#[test]
+fn issue_016_no_step_ends_above_its_start() {
+    let mut found = Found::default();
+    run(20_330, 1.75, &mut found);
+    assert!(found.grown.is_empty() && found.stopped.is_empty(), "{:?} {:?}", found.grown.first(), found.stopped);
+}
+
 #[test]
 #[ignore = "five minutes: 600 violent scenes"]
 fn six_hundred_violent_scenes_obey_the_laws() {

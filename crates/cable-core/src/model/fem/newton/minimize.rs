@@ -30,7 +30,7 @@ use crate::model::fem::system::step_input::{
 };
 
 /// Energies are trusted to this part of the sum of their magnitudes.
-const ENERGY_NOISE: f64 = 1e-13;
+pub(in crate::model::fem) const ENERGY_NOISE: f64 = 1e-13;
 
 /// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
 /// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
@@ -121,7 +121,7 @@ pub struct Workspace {
     pub(in crate::model::fem) trial: Unknowns,
     /// The contacts of the last assembly.
     pub(in crate::model::fem) touches: Vec<ContactPair>,
-    magnitude: f64,
+    pub(in crate::model::fem) magnitude: f64,
     /// Rounding of contact forces in the last assembly.
     pub(in crate::model::fem) rounding: Rounding,
     /// Targets of held nodes, or the points where they had to stop, m.
