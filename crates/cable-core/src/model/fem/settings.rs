@@ -231,8 +231,8 @@ pub struct StepTuning {
     /// iterations in all, in shorter steps. More: 40 have three times as many steps refused.
     pub easy_iterations: usize,
     /// Rounds of finding out which sliding nodes hold in which no fewer are wrong than before,
-    /// until they are changed one at a time, for as many rounds at least. Fewer: steps of a few
-    /// nodes that free each other in turn take longer, or are halved. More: a cycle costs more.
+    /// until they are changed one at a time. Fewer: steps of a few nodes that free each other in
+    /// turn take longer, or are halved. More: a cycle costs more.
     pub grip_rounds: usize,
     /// Rounds beside those for each sliding node. Fewer: steps in which many begin to slip one
     /// after the other are halved. More: what does not end costs more.

@@ -126,9 +126,37 @@ pub struct BalancedTensions {
     pub turn: f64,
 }
 
+/// The ways on which a cable comes to a round and leaves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::model::fem) struct RoundPaths {
+    /// Directions of both ways.
+    direction: [Vec2; 2],
+    /// Turn of the cable between them, rad, and its sense; None at a point.
+    wrap: Option<(f64, f64)>,
+}
+
+impl RoundPaths {
+    /// The turn (rad) of a cable that comes with one force (N) and leaves with the other.
+    fn turn(&self, force: [Vec2; 2]) -> f64 {
+        let Some((arc, sense)) = self.wrap else { return angle_between(force[0], force[1]).abs() };
+        let t = self.direction;
+        // No force has no direction: the angle to zeros is half a turn where the sign of one of
+        // them is lost.
+        let between =
+            |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
+        // Nor does what pushes: at the round the cable hangs straight down then.
+        let hangs = |j: usize| {
+            let pull = force[j].dot(&t[j]);
+            if pull < 0.0 { force[j] - t[j] * pull } else { force[j] }
+        };
+        arc + sense * (between(hangs(0), t[0]) + between(t[1], hangs(1)))
+    }
+}
+
 /// The load of a sliding node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SlidingNodeLoad {
+    pub(in crate::model::fem) paths: RoundPaths,
     /// Tension just before and just after, N.
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
@@ -166,19 +194,11 @@ impl SlidingNodeLoad {
         let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
         let ends = [force[0].norm(), force[1].norm()];
         let pull = [force[0].dot(&t[0]), force[1].dot(&t[1])];
-        let turn = if node.end.radius > 0.0 {
-            // No force has no direction: the angle to zeros is half a turn where the sign of one of
-            // them is lost.
-            let between =
-                |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
-            // Nor does what pushes: at the round the cable hangs straight down then.
-            let hangs = |j: usize| if pull[j] < 0.0 { force[j] - t[j] * pull[j] } else { force[j] };
-            let sag = between(hangs(0), t[0]) + between(t[1], hangs(1));
-            path[0].arcs[1] + path[1].arcs[0] + node.end.sense * sag
-        } else {
-            angle_between(force[0], force[1]).abs()
-        };
+        let wrap = (node.end.radius > 0.0).then_some((path[0].arcs[1] + path[1].arcs[0], node.end.sense));
+        let paths = RoundPaths { direction: t, wrap };
+        let turn = paths.turn(force);
         Self {
+            paths,
             tension: ends,
             pull,
             lifted: pull,
@@ -189,6 +209,14 @@ impl SlidingNodeLoad {
             jump: force[1] - force[0],
             floor: [0.0; 3],
         }
+    }
+
+    /// Angle through which the cable turns round it if what slides takes `inertia` (N) from the pull
+    /// with which it comes, rad. Friction acts between the pulls that are left: one that grows from
+    /// nothing within a step would turn the cable from hanging down to straight.
+    #[must_use]
+    pub fn turn_with(&self, inertia: f64) -> f64 {
+        self.paths.turn([self.force[0] - self.paths.direction[0] * inertia, self.force[1]])
     }
 
     /// Pull where the cable comes on to the round and where it leaves it, N: what the floor takes

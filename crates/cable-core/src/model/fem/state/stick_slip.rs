@@ -77,13 +77,14 @@ pub(in crate::model::fem) fn update_stick_slip(
             continue;
         }
         let mut next = node;
+        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
         // What would push where it leaves has no tension that friction could raise: with that
         // tension friction goes to nothing. (What pulls where it comes is found in the step: with
         // a test of it friction came and went in one jump, and no state was lawful.)
-        let presses = load.turn > 0.0 && load.at_material[1] > 0.0;
-        let exponent = if presses { node.friction * load.turn } else { 0.0 };
+        let turn = load.turn_with(inertia);
+        let presses = turn > 0.0 && load.at_material[1] > 0.0;
+        let exponent = if presses { node.friction * turn } else { 0.0 };
         next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
-        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;

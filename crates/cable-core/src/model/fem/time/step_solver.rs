@@ -78,7 +78,7 @@ impl SolverMemory {
         let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
-        for _ in 0..2 * cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
+        for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
             let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
             let changes = update_stick_slip(cable, unknowns, nodes);
             if changes.are_lawful() {
