@@ -67,7 +67,7 @@ impl SolverMemory {
             let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
-            changes = update_stick_slip(cable, unknowns, nodes);
+            changes = update_stick_slip(cable, unknowns, nodes, None);
             if changes.wrong < fewest {
                 (fewest, spare) = (changes.wrong, tuning.whole_lag_rounds);
             } else {

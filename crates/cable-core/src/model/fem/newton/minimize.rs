@@ -37,6 +37,11 @@ pub(in crate::model::fem) const ENERGY_NOISE: f64 = 1e-13;
 /// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Rounding of a gap, part of the gap, above which its force is not known: the force of a barrier
+/// goes with 1/gap. Smaller: cables squeezed by 1e6 N fail; larger: steps are taken for balanced by
+/// a force that is rounding alone (1e13 N in one of 600 violent scenes).
+const MAX_GAP_ROUNDING_FRACTION: f64 = 1e-3;
+
 /// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
 /// cut short, and the next are cut shorter; larger: it outlives its need, and iterations creep.
 /// A choice, tuned on no campaign, as are the five below.
@@ -93,9 +98,11 @@ pub(in crate::model::fem) struct Rounding {
     /// Rounding of the largest force by its stiffness, N.
     pub(in crate::model::fem) noise: f64,
     /// The force that opening the gap by its rounding relieves, N, where it is more than the
-    /// tolerance. It is never all of the force: a step in motion that had come to a gap below its
-    /// own rounding was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    /// tolerance; nothing where a gap is lost in its rounding: a step in motion that had come to
+    /// such a gap was taken for balanced, with 2e11 N of contact and nothing to hold them.
     relief: f64,
+    /// True if a gap is lost in its rounding.
+    gap_is_lost: bool,
     /// Unbalanced force accepted in any case, N.
     tolerance: f64,
 }
@@ -105,8 +112,11 @@ impl Rounding {
     fn add(&mut self, barrier: &Barrier, gap: f64, stiffness: f64, rounding: f64) {
         let noise = stiffness * rounding;
         self.noise = larger(self.noise, noise);
-        // The barrier is convex: what is relieved is no more than that.
-        if noise > self.tolerance {
+        self.gap_is_lost |= rounding > MAX_GAP_ROUNDING_FRACTION * gap;
+        if self.gap_is_lost {
+            self.relief = 0.0;
+        } else if noise > self.tolerance {
+            // The barrier is convex: what is relieved is no more than that.
             self.relief = larger(self.relief, barrier.relief(gap, rounding));
         }
     }

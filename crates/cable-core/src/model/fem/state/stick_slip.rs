@@ -1,6 +1,7 @@
 //! Each sliding node sticks or slips: this module compares the friction that a solve assumed with
 //! the law at what it found.
 
+use crate::math::larger;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::step_input::Unknowns;
@@ -39,20 +40,51 @@ impl StickSlipChanges {
 pub(in crate::model::fem) enum ChangedNodes {
     /// All whose friction breaks its law.
     All,
-    /// The first of them, and turns half of the way: nearly slack bars hang from a round, and turn
-    /// over it by the more the less they pull.
+    /// The first of them.
     One,
 }
 
+/// Slope of the exponent that a node's turn asks for by the one with which it was found, above
+/// which it is not followed. Smaller: rounds creep; larger: far guesses where the two nearly agree.
+const MAX_EXPONENT_SLOPE: f64 = 0.9;
+
+/// The exponents with which sliding nodes were tried last, and those that their turns asked for
+/// then.
+///
+/// The next guess is the secant's (A. Steffensen, "Remarks on iteration", Scandinavian Actuarial
+/// Journal 1933, node by node): nearly slack bars hang from a round, and turn over it by the more
+/// the less they pull, so that the exponent itself goes to and fro.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::fem) struct TriedExponents(Vec<Option<[f64; 2]>>);
+
+impl TriedExponents {
+    /// The next exponent of node `k`, which asked for `asked` when tried with `used`.
+    fn next(&mut self, k: usize, used: f64, asked: f64) -> f64 {
+        if self.0.len() <= k {
+            self.0.resize(k + 1, None);
+        }
+        let before = std::mem::replace(&mut self.0[k], Some([used, asked]));
+        let slope = before.map_or(f64::NAN, |[x, g]| (asked - g) / (used - x));
+        if slope.is_finite() && slope < MAX_EXPONENT_SLOPE {
+            larger(used + (asked - used) / (1.0 - slope), 0.0)
+        } else {
+            asked
+        }
+    }
+}
+
 /// Sets the friction of every sliding node to what its law asks for at unknowns, and returns how
-/// that differs from the friction with which the unknowns were found.
+/// that differs from the friction with which the unknowns were found. `tried` has what was tried in
+/// the rounds of a step before; without it turns change half of the way where one node changes.
 ///
 /// A node that slid the wrong way until its friction was seen to be wrong has not slid at all.
 pub(in crate::model::fem) fn update_stick_slip(
     cable: &mut CableState,
     unknowns: &mut Unknowns,
     changed: ChangedNodes,
+    tried: Option<&mut TriedExponents>,
 ) -> StickSlipChanges {
+    let mut tried = tried;
     let one = changed == ChangedNodes::One;
     if cable.meshing.never_slides {
         return StickSlipChanges::NONE;
@@ -84,7 +116,11 @@ pub(in crate::model::fem) fn update_stick_slip(
         let turn = load.turn_with(inertia);
         let presses = turn > 0.0 && load.at_material[1] > 0.0;
         let exponent = if presses { node.friction * turn } else { 0.0 };
-        next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
+        next.exponent = match &mut tried {
+            Some(tried) => tried.next(k, node.exponent, exponent),
+            None if one => 0.5 * (node.exponent + exponent),
+            None => exponent,
+        };
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;

@@ -5,7 +5,7 @@ use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::stick_slip::{ChangedNodes, update_stick_slip};
+use crate::model::fem::state::stick_slip::{ChangedNodes, TriedExponents, update_stick_slip};
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
@@ -77,10 +77,11 @@ impl SolverMemory {
     ) -> Result<Converged, Failure> {
         let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
+        let mut tried = TriedExponents::default();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
         for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
             let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
-            let changes = update_stick_slip(cable, unknowns, nodes);
+            let changes = update_stick_slip(cable, unknowns, nodes, Some(&mut tried));
             if changes.are_lawful() {
                 return Ok(done);
             }
