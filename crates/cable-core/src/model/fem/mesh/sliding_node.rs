@@ -108,10 +108,17 @@ impl SlidingNode {
         }
     }
 
-    /// True if both sit on one round.
+    /// True if both sit on one round, in one wrap of the cable: it runs round it in the same sense.
     #[must_use]
     pub fn shares_round(&self, other: &Self) -> bool {
-        self.slide_over == other.slide_over
+        self.slide_over == other.slide_over && self.end.sense == other.end.sense
+    }
+
+    /// True if the cable runs round one round in the one sense and in the other: between the two it
+    /// has to turn back beside it, and no tangent leads from the one to the other.
+    #[must_use]
+    pub fn opposes(&self, other: &Self) -> bool {
+        self.slide_over == other.slide_over && self.end.sense != other.end.sense
     }
 }
 
@@ -211,9 +218,9 @@ impl SlidingNodeLoad {
         }
     }
 
-    /// Angle through which the cable turns round it if what slides takes `inertia` (N) from the pull
-    /// with which it comes, rad. Friction acts between the pulls that are left: one that grows from
-    /// nothing within a step would turn the cable from hanging down to straight.
+    /// Angle through which the cable turns round it if what slides takes `inertia` (N) from the
+    /// pull with which it comes, rad. Friction acts between the pulls that are left: one that grows
+    /// from nothing within a step would turn the cable from hanging down to straight.
     #[must_use]
     pub fn turn_with(&self, inertia: f64) -> f64 {
         self.paths.turn([self.force[0] - self.paths.direction[0] * inertia, self.force[1]])

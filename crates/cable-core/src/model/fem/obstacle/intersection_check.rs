@@ -80,6 +80,9 @@ impl<'a> IntersectionCheck<'a> {
     /// True if the straight part of a way between two nodes meets nothing, nor the edges of the
     /// corners it is tangent to.
     pub(in crate::model::fem) fn way_is_clear(&self, way: &TangentPath, nodes: [Option<&SlidingNode>; 2]) -> bool {
+        if matches!(nodes, [Some(a), Some(b)] if a.opposes(b)) {
+            return false;
+        }
         let geometry = self.problem.world.geometry();
         let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
         (0..2).all(|j| {

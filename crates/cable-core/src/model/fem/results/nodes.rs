@@ -158,9 +158,14 @@ fn on_round(
     let ends = force_at([before, after]);
     let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
+        // A cable that has come off runs straight past the round, near to where its two tangents
+        // meet: drawn by way of the mark it would cut it.
+        let turned = if radius > 0.0 { 0.5 * (after - before) } else { 0.0 };
+        let half = smaller(-0.5 * whole, mesh.tuning.remesh.max_tangent_half_turn_rad);
+        let out = if radius > 0.0 { 1.0 / half.cos() } else { 1.0 };
         return vec![OnRound {
-            arc_length: mesh.arc_length[k],
-            at: node.position(),
+            arc_length: mesh.arc_length[k] + turned * radius / stretch[usize::from(turned > 0.0)],
+            at: node.end.center + normal(turned) * (radius * out),
             tension: larger(load.tension[0], load.tension[1]),
             force: load.force[1],
             stretch: stretch[1],

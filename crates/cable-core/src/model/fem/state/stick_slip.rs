@@ -2,6 +2,7 @@
 //! the law at what it found.
 
 use crate::math::larger;
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::step_input::Unknowns;
@@ -116,15 +117,20 @@ pub(in crate::model::fem) fn update_stick_slip(
         let turn = load.turn_with(inertia);
         let presses = turn > 0.0 && load.at_material[1] > 0.0;
         let exponent = if presses { node.friction * turn } else { 0.0 };
-        next.exponent = match &mut tried {
-            Some(tried) => tried.next(k, node.exponent, exponent),
-            None if one => 0.5 * (node.exponent + exponent),
-            None => exponent,
-        };
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;
-        let stick_slip = load.stick_slip(&next, unknowns.slides[k], [inertia, slack], stiffness);
+        let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+        let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
+        changes.lawful &= lawful;
+        // Which way it slips, if at all, follows from its turn, not from a guess of it.
+        let by_turn = SlidingNode { exponent, ..node };
+        let stick_slip = load.stick_slip(&by_turn, unknowns.slides[k], [inertia, slack], stiffness);
+        next.exponent = match &mut tried {
+            Some(tried) if !lawful => tried.next(k, node.exponent, exponent),
+            None if one => 0.5 * (node.exponent + exponent),
+            _ => exponent,
+        };
         if stick_slip != node.stick_slip {
             changes.wrong += 1;
             if !one || changes.wrong == 1 {
@@ -139,8 +145,6 @@ pub(in crate::model::fem) fn update_stick_slip(
         }
         let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
         changes.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
-        let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
-        changes.lawful &= off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
         cable.mesh.sliding[k] = Some(next);
     }
     cable.input.set_scale(&cable.mesh);
