@@ -59,7 +59,7 @@ pub(in crate::model::fem) fn update_stick_slip(
     }
     let mut changes = StickSlipChanges {
         same: !floor_friction::renew_limits(
-            &mut cable.input.floor_limit,
+            &mut cable.input.loads.floor_limit,
             &cable.problem,
             &cable.mesh,
             &unknowns.positions,
@@ -82,9 +82,10 @@ pub(in crate::model::fem) fn update_stick_slip(
         let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0 && load.pull[1] > 0.0;
         let exponent = if presses { node.friction * load.turn } else { 0.0 };
         next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
-        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
+        let inertia =
+            cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
         let pulls = load.pull[0].abs() + load.pull[1].abs();
-        let slack = cable.input.tolerance + EVEN_FORCE * pulls;
+        let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;
         let stick_slip = load.stick_slip(&next, unknowns.slides[k], [inertia, slack], stiffness);
         if stick_slip != node.stick_slip {
