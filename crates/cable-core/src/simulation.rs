@@ -30,8 +30,8 @@ use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
-    CableSolution, Cost, Energy, MaxTension, ModelReason, NextCheaper, Node, SharedNodes, Solution, Warning,
-    WarningCause, WarningKind,
+    CableSolution, Cost, Energy, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node, SharedNodes, Solution,
+    TensionPeaks, Warning, WarningCause, WarningKind,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -100,6 +100,46 @@ enum RunPhase {
     AtRest,
     /// A run goes on.
     InMotion,
+}
+
+/// What several steps say together.
+struct StepSum {
+    report: StepReport,
+    /// Of each cable.
+    peaks: Vec<Option<TensionPeaks>>,
+    momentum: Vec<Option<MomentumAccount>>,
+}
+
+impl StepSum {
+    /// Of the step that a simulation has just made.
+    fn of(simulation: &mut Simulation) -> Self {
+        Self {
+            report: StepReport { cost: simulation.cost, warnings: std::mem::take(&mut simulation.warnings) },
+            peaks: simulation.answers.iter().map(|a| a.peaks).collect(),
+            momentum: simulation.answers.iter().map(|a| a.momentum).collect(),
+        }
+    }
+
+    /// With the step after those.
+    fn then(mut self, simulation: &mut Simulation) -> Self {
+        let next = Self::of(simulation);
+        self.report.add(next.report);
+        for (sum, next) in self.peaks.iter_mut().zip(next.peaks) {
+            *sum = sum.zip(next).map(|(sum, next)| sum.with(next)).or(next);
+        }
+        for (sum, next) in self.momentum.iter_mut().zip(next.momentum) {
+            *sum = sum.zip(next).map(|(sum, next)| sum.then(&next));
+        }
+        self
+    }
+
+    /// Has the simulation say it.
+    fn tell(self, simulation: &mut Simulation) {
+        (simulation.cost, simulation.warnings) = (self.report.cost, self.report.warnings);
+        for ((answer, peaks), momentum) in simulation.answers.iter_mut().zip(self.peaks).zip(self.momentum) {
+            (answer.peaks, answer.momentum) = (peaks, momentum);
+        }
+    }
 }
 
 impl Simulation {
@@ -203,7 +243,17 @@ impl Simulation {
 
     /// Reads the present instant: the answers and their warnings.
     fn refresh(&mut self, instant: RunPhase) {
+        self.read_answers();
+        self.judge_answers(instant);
+    }
+
+    /// Reads the answers of the cables, which are not judged yet.
+    fn read_answers(&mut self) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
+    }
+
+    /// Finds displacements, bends, energy and warnings of the answers, and verifies them.
+    fn judge_answers(&mut self, instant: RunPhase) {
         match instant {
             RunPhase::AtRest => self.initial_nodes = self.answers.iter().map(|a| a.nodes.clone()).collect(),
             RunPhase::InMotion => {
@@ -367,28 +417,76 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
-        Self::check_step(dt_s, inertia)?;
-        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
-        let nodes_before: Vec<_> = self.answers.iter().map(|a| a.nodes.clone()).collect();
-        let done = match self.vehicle.is_some() {
-            true => self.advance_with_robot(dt_s, inertia),
-            false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
-        };
-        // A cable alone that fails stays where it came: that is what there is to see then.
-        self.refresh(RunPhase::InMotion);
-        done?;
-        // In motion nothing else is there to go back to: the verdict stands with the answer.
-        if inertia == Inertia::Dynamic {
-            for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
-                kinematics::accelerate(&mut answer.nodes, before, dt_s);
-            }
-            return Ok(());
+        match inertia {
+            Inertia::Dynamic => self.advance_steps(1, |_| dt_s, |_| ()),
+            Inertia::QuasiStatic => self.advance_quasi_static(dt_s),
         }
+    }
+
+    fn advance_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
+        let done = self.advance_unjudged(dt_s, Inertia::QuasiStatic);
+        self.judge_answers(RunPhase::InMotion);
+        done?;
         let Err(error) = self.verify_answers() else { return Ok(()) };
         if !self.switch_model(&error) {
             return Err(error);
         }
         self.settle_until_verified()
+    }
+
+    /// Advances time with inertia by several steps, each as long (s) as `dt_s` says of the time
+    /// (s) before it, and judges the answer at the end alone: its peaks, its account of momentum
+    /// and its warnings are of all of them. `each` sees the answers after each.
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`].
+    pub(crate) fn advance_steps(
+        &mut self,
+        count: u64,
+        dt_s: impl Fn(f64) -> f64,
+        mut each: impl FnMut(&Self),
+    ) -> Result<(), SolveError> {
+        let mut sum: Option<StepSum> = None;
+        let (mut done, mut last_s, mut nodes_before) = (Ok(()), 0.0, Vec::new());
+        for _ in 0..count {
+            last_s = dt_s(self.time_s());
+            Self::check_step(last_s, Inertia::Dynamic)?;
+            nodes_before = self.answers.iter().map(|a| a.nodes.clone()).collect();
+            done = self.advance_unjudged(last_s, Inertia::Dynamic);
+            sum = Some(match sum {
+                None => StepSum::of(self),
+                Some(sum) => sum.then(self),
+            });
+            if done.is_err() {
+                break;
+            }
+            each(self);
+        }
+        let Some(sum) = sum else { return Ok(()) };
+        sum.tell(self);
+        self.judge_answers(RunPhase::InMotion);
+        done?;
+        // In motion nothing else is there to go back to: the verdict stands with the answer.
+        for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
+            kinematics::accelerate(&mut answer.nodes, before, last_s);
+        }
+        Ok(())
+    }
+
+    /// Advances time by a step (s) and reads the answers, which are not judged.
+    ///
+    /// # Errors
+    /// See [`Mechanics::advance`].
+    pub(crate) fn advance_unjudged(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        Self::check_step(dt_s, inertia)?;
+        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
+        let done = match self.vehicle.is_some() {
+            true => self.advance_with_robot(dt_s, inertia),
+            false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
+        };
+        // A cable alone that fails stays where it came: that is what there is to see then.
+        self.read_answers();
+        done
     }
 
     /// The largest tension of some cables now, N (NaN propagates).

@@ -46,11 +46,107 @@ impl Instant {
         self.0 as f64 / TICKS_PER_S
     }
 
+    /// So much later.
+    #[must_use]
+    pub fn after(self, passed: Self) -> Self {
+        Self(self.0.saturating_add(passed.0))
+    }
+
     /// So many times as late.
     #[must_use]
     pub fn times(self, count: u64) -> Self {
         Self(self.0.saturating_mul(count))
     }
+}
+
+/// The step of a run where none is given.
+#[must_use]
+pub fn usual_step(inertia: Inertia) -> Instant {
+    Instant::nearest(match inertia {
+        Inertia::Dynamic => STEP_S,
+        Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
+    })
+}
+
+/// The time that is to pass in a run which goes in whole steps alone: a display adds what it wants
+/// to see pass, and takes the steps that this makes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TimeDebt(Instant);
+
+impl TimeDebt {
+    /// Has so much time (s) pass as well.
+    pub fn add(&mut self, time_s: f64) {
+        self.0 = self.0.after(Instant::nearest(time_s));
+    }
+
+    /// Takes out the whole steps that are due, and returns how many these are.
+    pub fn take_steps(&mut self, step: Instant) -> u64 {
+        let steps = self.0.0 / step.0.max(1);
+        self.0.0 -= steps * step.0;
+        steps
+    }
+
+    /// What is left, s: less than a step.
+    #[must_use]
+    pub fn seconds(self) -> f64 {
+        self.0.seconds()
+    }
+}
+
+/// Makes whole [usual](usual_step) steps from where a run is, and reads its answer after the last
+/// of them: states are those of [`Timeline`] to the bit; peaks, warnings and the account of
+/// momentum are of all these steps. The monitor follows each.
+///
+/// # Errors
+/// As [`Simulation::step`].
+pub fn make_steps(
+    simulation: &mut Simulation,
+    inertia: Inertia,
+    count: u64,
+    mut monitor: Option<&mut RunMonitor>,
+) -> Result<(), SolveError> {
+    // Steps are counted in ticks, so that no sum of them rounds.
+    let dt_s = |time_s: f64| Instant::nearest(time_s).after(usual_step(inertia)).seconds() - time_s;
+    let mut look = |run: &Simulation| {
+        if let Some(monitor) = &mut monitor {
+            monitor.look(run);
+        }
+    };
+    match inertia {
+        Inertia::Dynamic => simulation.advance_steps(count, dt_s, look)?,
+        // Each answer is judged: one that breaks a law is sought again by another model.
+        Inertia::QuasiStatic => {
+            for _ in 0..count {
+                simulation.step_quasi_static(dt_s(simulation.time_s()))?;
+                look(simulation);
+            }
+        }
+    }
+    if let Some(monitor) = monitor {
+        monitor.tell(simulation);
+    }
+    Ok(())
+}
+
+/// The answer so much later (s) than the last step of a run, by a step of a copy.
+///
+/// # Errors
+/// As [`Simulation::step`].
+pub fn answer_between_steps(
+    simulation: &Simulation,
+    inertia: Inertia,
+    later_s: f64,
+    monitor: Option<&RunMonitor>,
+) -> Result<Solution, SolveError> {
+    let mut copy = simulation.clone();
+    match inertia {
+        Inertia::Dynamic => copy.step(later_s)?,
+        Inertia::QuasiStatic => copy.step_quasi_static(later_s)?,
+    }
+    if let Some(monitor) = monitor {
+        monitor.set_error_estimates(&mut copy);
+    }
+    Ok(copy.solution())
 }
 
 /// From what to what tensions of a cable may be, N.
@@ -109,14 +205,9 @@ impl Timeline {
     /// [`SolveError::TimeStep`]: a step that is not positive, is no number, or is longer than
     /// [`Simulation`] makes at once.
     pub fn new(simulation: Simulation, inertia: Inertia, step_s: Option<f64>) -> Result<Self, SolveError> {
-        let usual_s = match inertia {
-            Inertia::Dynamic => STEP_S,
-            Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
-        };
-        let step_s = step_s.unwrap_or(usual_s);
-        Simulation::check_step(step_s, inertia)?;
         // Less than half a tick is no step either.
-        let step = Instant::nearest(step_s).max(Instant(1));
+        let given = step_s.map(|s| Simulation::check_step(s, inertia).map(|()| Instant::nearest(s).max(Instant(1))));
+        let step = given.transpose()?.unwrap_or_else(|| usual_step(inertia));
         let monitor = RunMonitor::new(&simulation);
         Ok(Self { simulation, inertia, step, count: 0, monitor })
     }
@@ -161,10 +252,8 @@ impl Timeline {
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
-            let mut copy = self.simulation.clone();
-            advance(&mut copy, instant.seconds(), self.inertia)?;
-            self.monitor.set_error_estimates(&mut copy);
-            copy.solution()
+            let later_s = instant.seconds() - self.simulation.time_s();
+            answer_between_steps(&self.simulation, self.inertia, later_s, Some(&self.monitor))?
         } else {
             self.simulation.solution()
         };

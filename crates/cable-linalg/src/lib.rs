@@ -1,4 +1,5 @@
-//! Symmetric band matrices and their factorisation `A = L D Lᵀ`, and sparse ones with faer.
+//! Symmetric band matrices and their factorisation `A = L D Lᵀ`, sparse ones with faer, and band
+//! matrices without symmetry.
 //!
 //! A chain of nodes numbered along the cable fills nothing outside its band, so the factor has the
 //! shape of the matrix and needs no symbolic part. Row j of L and d_j follow from the rows before
@@ -10,19 +11,22 @@
 //! [`BandFactor::factor`] and [`BandFactor::solve_in_place`] allocate nothing. There is no
 //! pivoting, so a pivot ≤ 0 (or NaN) means "not positive definite" and is reported with its row,
 //! which tells the node where a structure is not stable. What couples nodes far apart is left to
-//! faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]).
+//! faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]). A matrix that is not
+//! symmetric, or may be singular on the way, is a [`PivotingBand`].
 
 mod band_factor;
 mod band_matrix;
 mod both_ends;
 mod chain;
 mod coupled;
+mod pivoting_band;
 #[cfg(test)]
 mod tests;
 
 pub use band_factor::BandFactor;
 pub use band_matrix::BandMatrix;
 pub use coupled::solve_coupled;
+pub use pivoting_band::PivotingBand;
 
 use thiserror::Error;
 

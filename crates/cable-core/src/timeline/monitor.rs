@@ -36,6 +36,7 @@ impl RunMonitor {
         let coarse = CoarseRuns::beside(simulation, inertia);
         let mut monitor = Self { coarse, ..Self::new(simulation) };
         monitor.note(simulation);
+        monitor.tell(simulation);
         monitor
     }
 
@@ -48,6 +49,12 @@ impl RunMonitor {
 
     /// Looks at a run that has made one more step, and has it say what is known.
     pub fn follow(&mut self, simulation: &mut Simulation) {
+        self.look(simulation);
+        self.tell(simulation);
+    }
+
+    /// Looks at a run that has made one more step, whose answer need not be judged yet.
+    pub(super) fn look(&mut self, simulation: &Simulation) {
         self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(simulation));
         self.note(simulation);
     }
@@ -73,18 +80,24 @@ impl RunMonitor {
         }
     }
 
-    /// Notes what the last step adds to what is known, and says it.
-    fn note(&mut self, simulation: &mut Simulation) {
-        self.set_error_estimates(simulation);
-        let mut warnings = Vec::new();
-        let cables = simulation.scene().cables.iter().zip(simulation.answers());
-        for (k, (run, (cable, answer))) in self.peaks.iter_mut().zip(cables).enumerate() {
+    /// Notes what the last step adds to what is known.
+    fn note(&mut self, simulation: &Simulation) {
+        let mut known = self.coarse.as_ref().map(CoarseRuns::errors);
+        for (k, (run, answer)) in self.peaks.iter_mut().zip(simulation.answers()).enumerate() {
             run.peaks = run.peaks.with(answer.peaks_at(simulation.time_s()));
             run.ranges = self.coarse.as_ref().map(|coarse| coarse.ranges(k));
-            warnings.extend(may_break(cable, answer, run));
-            let force = answer.errors.max_tension_n.zip(answer.errors.support_force_n).map(|(a, b)| larger(a, b));
+            let errors = known.as_mut().and_then(Iterator::next).unwrap_or(answer.errors);
+            let force = errors.max_tension_n.zip(errors.support_force_n).map(|(a, b)| larger(a, b));
             self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
         }
+    }
+
+    /// Has a run say what is known of it.
+    pub(super) fn tell(&self, simulation: &mut Simulation) {
+        self.set_error_estimates(simulation);
+        let cables = simulation.scene().cables.iter().zip(simulation.answers());
+        let warnings = cables.zip(&self.peaks).filter_map(|((cable, answer), run)| may_break(cable, answer, run));
+        let warnings = warnings.collect();
         simulation.set_break_warnings(warnings);
     }
 }

@@ -45,7 +45,7 @@ pub struct Live {
 impl Default for Live {
     fn default() -> Self {
         Self {
-            playback: Playback { paused: true, speed: 1.0 },
+            playback: Playback::default(),
             snapshot: Snapshot::default(),
             latest: Snapshot::default(),
             recording: Recording::default(),
@@ -177,6 +177,12 @@ pub struct Playback {
     pub paused: bool,
     /// Simulated seconds per second, 0.01 to 4.
     pub speed: f64,
+}
+
+impl Default for Playback {
+    fn default() -> Self {
+        Self { paused: true, speed: 1.0 }
+    }
 }
 
 impl Playback {

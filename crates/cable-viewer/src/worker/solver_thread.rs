@@ -14,8 +14,8 @@ use crate::worker::timing::{FRAME_S, IDLE_EDIT_INTERVALS, IDLE_S, MIN_IDLE_S};
 /// Called whenever there is something new to show.
 pub type UpdateCallback = Arc<dyn Fn() + Send + Sync>;
 
-/// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick
-/// mouse; larger: the hand waits.
+/// Least share of a frame that a drag lets pass at once. Smaller: many readings of single steps for
+/// a quick mouse; larger: the hand waits.
 const MIN_FRAME_FRACTION: f64 = 0.4;
 
 /// Starts a thread; `thread` is its number.
@@ -92,7 +92,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
                     // pass.
                     last_tick = Instant::now();
                     next_tick = last_tick + frame;
-                    report.merge(catch_panic(&mut engine, |e| e.advance_part_of_frame(passed.min(1.0))));
+                    report.merge(catch_panic(&mut engine, |e| e.advance_part_of_frame(passed)));
                 }
                 let pause_s = if engine.draft() { draft_s } else { MIN_IDLE_S };
                 refine_at = Instant::now() + Duration::from_secs_f64(pause_s);

@@ -60,14 +60,20 @@ fn broke(harness: &Harness<'_, ViewerApp>) -> bool {
     answer(harness).cables[0].pieces().count() > 1 || events.iter().any(|e| e.warning.kind == WarningKind::Broken)
 }
 
-/// D2: a slack cable broke at 10 kN while it was slackened, with 2 kN in the graph.
+/// D2: a slack cable broke at 10 kN while it was slackened, with 2 kN in the graph. Its greatest
+/// tension is chaotic: with ten sizes of a pixel it is 102 to 308 N, with one step a frame and with
+/// four alike. A part that comes taut at the speed of the hand pulls with v √(EAρ) more than at
+/// rest.
 #[test]
 fn a_cable_that_is_slackened_does_not_break_and_one_that_breaks_shows_why_in_the_graph() {
     let harness = slackened(catalog::over_beam());
     let hitch = answer(&harness).cables[0].supports.last().unwrap().x_m;
     assert!(hitch < 4.0, "the hitch follows the hand: {hitch} m");
     assert!(!broke(&harness), "{:?}", answer(&harness).warnings);
-    assert!(graph_most_n(&harness) < 200.0, "{} N", graph_most_n(&harness));
+    let cable = &state(&harness).document.scene.cables[0];
+    let snap_n = 1.1 * (cable.axial_stiffness_n * cable.linear_density_kg_per_m).sqrt();
+    let rest_n = state(&harness).live.history.samples[0].max_tension_n;
+    assert!(graph_most_n(&harness) < rest_n + snap_n, "{} N", graph_most_n(&harness));
     // One that holds less than its weight pulls with breaks: the graph has the tension of which it
     // did.
     let mut weak = catalog::over_beam();

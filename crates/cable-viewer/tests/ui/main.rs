@@ -33,6 +33,7 @@ mod session;
 mod sliders;
 mod spans;
 mod speed;
+mod steps;
 mod stories;
 mod timing;
 mod torn;

@@ -11,7 +11,7 @@
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `section` | free spans and contacts in a row between two end conditions: the unknowns |
 //! | `section_layout` | how supports and loads cut a cable into sections |
-//! | `newton`, `numerics` | all unknowns of a section at once; band LU, root finding |
+//! | `newton`, `numerics` | all unknowns of a section at once; root finding |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
 //! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; slack elsewhere; how much friction a sliding cable lacks |

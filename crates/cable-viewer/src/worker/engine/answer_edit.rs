@@ -6,7 +6,8 @@ use cable_core::math::Point;
 use cable_core::model::auto::Question;
 use cable_core::{Error, Model, Scene, Settings, Simulation};
 
-use super::{Engine, MOTION, Phase, is_quasi_static};
+use super::run::{MOTION, Run, RunStart, is_quasi_static};
+use super::{Engine, Phase};
 use crate::state::NoAnswer;
 use crate::worker::draft;
 use crate::worker::request::{Edit, EditStart};
@@ -19,8 +20,10 @@ impl Engine {
     pub(super) fn show_draft(&mut self, edit: &Edit, came_during_solve: bool) -> bool {
         let Some(last) = &self.edit else { return false };
         let same = edit.start != EditStart::NewScene && last.model == edit.model && last.settings == edit.settings;
-        let slow = self.solve_s > if came_during_solve || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
-        let (true, Some(old)) = (self.drafts && same && slow, &self.simulation) else {
+        let slow =
+            self.wall_times.solve_s > if came_during_solve || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
+        let later = self.refinement.is_later();
+        let (true, Some(old)) = (later && same && slow, self.run.as_ref().map(Run::simulation)) else {
             return false;
         };
         let falls = draft::settling_draft(edit, old);
@@ -29,9 +32,7 @@ impl Engine {
         let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.0);
         let draft = if is_quasi_static(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
-        self.simulation = Some(draft);
-        self.monitor = None;
-        self.before_motion = None;
+        self.run = Some(Run::new(draft, RunStart::Lost));
         self.phase = Phase::Draft { settling };
         self.edit = Some(edit.clone());
         true
@@ -49,42 +50,41 @@ impl Engine {
 
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
-        let old = if edit.start == EditStart::NewScene { None } else { self.simulation.take() };
         if edit.start == EditStart::NewScene {
-            self.simulation = None;
-            self.snapshot.solution = None;
-            self.last_answer = None;
-            self.history_restarts = true;
-            self.answers.clear();
+            self.run = None;
+            self.outbox.restart();
         }
-        self.hand = None;
-        self.monitor = None;
+        let before = self.run.take();
+        let old = before.as_ref().map(Run::simulation);
+        self.steering.hand = None;
         // Models are compared by what they answer for the scene as laid, not for where another
         // model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
-        let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
+        let from = old.filter(|o| same_model || o.time_s() > 0.0);
         // Before time has run there is nothing to go on from, whether or not it is to run next.
         let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
-        self.routes.clear();
+        self.outbox.routes.clear();
         let mut edit = edit;
         // Other histories take longer than the rest itself: each is another rest. Where nobody
         // refines the answer they are asked for at once.
-        self.histories_due = self.drafts && at_rest && edit.settings.histories;
-        let rebuilt =
-            if at_rest { self.settle_edit(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
+        self.refinement.put_off(at_rest && edit.settings.histories);
+        let rebuilt = if at_rest {
+            self.settle_edit(&mut edit, from).map(|s| Run::new(s, RunStart::Settled))
+        } else {
+            self.rebuild(&edit, from).map(|(s, start)| Run::after(before.as_ref(), s).with_start(start))
+        };
         self.edit = Some(edit);
-        self.solve_s = began.elapsed().as_secs_f64();
+        self.wall_times.solve_s = began.elapsed().as_secs_f64();
         match rebuilt {
-            Ok((simulation, start_kept)) => {
-                self.simulation = Some(simulation);
-                self.before_motion = None;
-                self.phase = Phase::Answer { start_kept };
+            Ok(run) => {
+                self.run = Some(run);
+                self.phase = Phase::Answer;
                 self.sample();
                 Ok(())
             }
             Err(e) => {
                 // The old one stays: undoing the edit goes on from it.
-                self.simulation = old;
+                self.run = before.map(Run::unmonitored);
                 self.playback.paused = true;
                 self.phase = Phase::Refused { reason: NoAnswer::Error(e.clone()) };
                 Err(e)
@@ -96,7 +96,7 @@ impl Engine {
     /// and reset give the same answer for the same scene. Where that would move a cable through an
     /// obstacle that stays where it is, the way the cable takes now becomes part of the scene.
     pub(super) fn settle_edit(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
-        let histories = edit.settings.histories && !self.histories_due;
+        let histories = edit.settings.histories && !self.refinement.histories_due();
         let settings = Settings { histories, ..edit.settings };
         let of = |scene: &Scene| laid(scene, edit.model, settings);
         let laid = of(&edit.scene);
@@ -122,7 +122,7 @@ impl Engine {
         }
         match of(&scene) {
             Ok(led) if laid.is_err() || tunnelling::tunnelled_cables(old, &led).len() < tunnelled_cables.len() => {
-                self.routes = routes;
+                self.outbox.routes = routes;
                 edit.scene = scene;
                 Ok(led)
             }
@@ -130,9 +130,8 @@ impl Engine {
         }
     }
 
-    /// The simulation of an edited scene, carrying over where the cables are, and whether it is at
-    /// its start.
-    pub(super) fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, bool), Error> {
+    /// The simulation of an edited scene, carrying over where the cables are, and its start.
+    pub(super) fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, RunStart), Error> {
         let time_s = old.map_or(0.0, Simulation::time_s);
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
         let question = if moves { MOTION } else { Question::Rest };
@@ -144,24 +143,25 @@ impl Engine {
             let mut carried = is_new_scene.clone();
             if carried.carry(old).is_ok() {
                 if !self.playback.paused {
-                    return Ok((carried, false));
+                    return Ok((carried, RunStart::Lost));
                 }
                 if carried.settle().is_ok() {
-                    return Ok((carried, time_s <= 0.0));
+                    let start = if time_s <= 0.0 { RunStart::Settled } else { RunStart::Lost };
+                    return Ok((carried, start));
                 }
             }
         }
         is_new_scene.settle()?;
-        Ok((is_new_scene, true))
+        Ok((is_new_scene, RunStart::Settled))
     }
 
     /// Lays the scene on screen once more and asks what other histories would have left. The rest
     /// is a function of the scene alone, so no figure changes.
     pub(super) fn seek_histories(&mut self) {
-        self.histories_due = false;
+        self.refinement.put_off(false);
         let sought = self.edit.as_ref().and_then(|e| laid(&e.scene, e.model, e.settings).ok());
-        if let Some(sought) = sought {
-            self.simulation = Some(sought);
+        if let (Some(sought), Some(run)) = (sought, &mut self.run) {
+            run.replace(sought);
         }
         self.sample();
         self.show(Ok(()));

@@ -2,78 +2,52 @@
 //!
 //! - `answer_edit`: the answer to an edit: a draft, a rest or a state that is carried over
 //! - `motion`: frames of simulated time, and a hand that draws meanwhile
-//! - `shown`: what the window gets of it
+//! - `outbox`: what waits for the window
+//! - `run`: the simulation in time, with its start, its whole steps and what is known of it
+//! - `shown`: what of the engine's state goes there
 
 mod answer_edit;
 mod motion;
+mod outbox;
+mod run;
 mod shown;
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use cable_core::math::Point;
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
-use cable_core::timeline::{RunMonitor, RunPeaks};
-use cable_core::{Error, Model, Scene, Simulation, Solution};
+use cable_core::{Error, Simulation};
 
-use crate::state::{NoAnswer, Playback, Snapshot};
+use self::outbox::Outbox;
+pub use self::outbox::Report;
+pub use self::run::is_quasi_static;
+use self::run::{MOTION, Run, RunStart};
+use crate::state::{NoAnswer, Playback};
 use crate::worker::draft;
 use crate::worker::request::{Edit, EditStart, Request, Resume};
 use crate::worker::timing::FRAME_S;
 
-/// The question to `auto` once time runs.
-const MOTION: Question = Question::History(Inertia::Dynamic);
-
 /// Owns the simulation.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Engine {
-    simulation: Option<Simulation>,
+    run: Option<Run>,
     /// The last edit, for rebuilding.
     edit: Option<Edit>,
-    /// The state of `simulation` relative to the last edit.
+    /// The state of `run` relative to the last edit.
     phase: Phase,
-    /// The simulation that `auto` chose for rest, kept while one that can move has taken its place.
-    before_motion: Option<Simulation>,
     playback: Playback,
-    snapshot: Snapshot,
-    /// The last answer that was no draft: what is shown of a scene that has none.
-    last_answer: Option<LastAnswer>,
-    /// Ways of cables that the scene is to keep, by the number of the cable: the last edit would
-    /// have moved them through an obstacle.
-    routes: Vec<(usize, Vec<Point>)>,
-    answers: Vec<Solution>,
-    /// The history starts again before the first of `answers`.
-    history_restarts: bool,
-    /// Speed of the robot by hand, m/s.
-    robot_speed_command: Option<f64>,
-    /// Drafts may be shown: there is a thread to replace them by the answer.
-    drafts: bool,
-    /// The figures of the run so far; None where it does not go on from a start that has settled:
-    /// a change while time runs begins another.
-    monitor: Option<RunMonitor>,
-    /// The rest was laid without asking what other histories would have left, so that it is on
-    /// screen sooner; [`Self::refine`] asks once the hand rests.
-    histories_due: bool,
-    /// Wall time of the last answer to an edit, s.
-    solve_s: f64,
-    /// Number of a drag while time runs that no frame shows yet.
-    dragged: u64,
-    /// Wall time of the last frame on the full mesh, s.
-    frame_wall_s: f64,
-    /// The support that a hand holds by a spring.
-    hand: Option<Hand>,
+    steering: Steering,
+    refinement: Refinement,
+    wall_times: WallTimes,
+    outbox: Outbox,
 }
 
 /// The state of the simulation of an [`Engine`] relative to the last edit.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 enum Phase {
     /// The answer to the last edit, if there is any.
-    Answer {
-        /// The simulation, or `before_motion` if there is one, was settled from the present scene
-        /// at t = 0: its `reset` is the start.
-        start_kept: bool,
-    },
+    #[default]
+    Answer,
     /// A draft of the last edit, with few segments; time stands still.
     Draft {
         /// It has not come to rest: it goes on falling frame by frame.
@@ -91,12 +65,55 @@ enum Phase {
     },
 }
 
-/// The last answer that was no draft.
-#[derive(Clone, Debug)]
-struct LastAnswer {
-    scene: Option<Arc<Scene>>,
-    solution: Arc<Solution>,
-    peaks: Vec<RunPeaks>,
+/// What hands and the robot's remote control ask for.
+#[derive(Clone, Copy, Debug, Default)]
+struct Steering {
+    /// The support that a hand holds by a spring.
+    hand: Option<Hand>,
+    /// Number of a drag while time runs that no frame shows yet.
+    drag_number: u64,
+    /// Speed of the robot by hand, m/s.
+    robot_speed_command: Option<f64>,
+}
+
+/// The instant when an answer is what it comes to in the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Refinement {
+    /// At once: nobody would replace a draft.
+    #[default]
+    AtOnce,
+    /// Once the hand rests, by [`Engine::refine`]: drafts may be shown until then.
+    Later {
+        /// The rest was laid without asking what other histories would have left, so that it is on
+        /// screen sooner.
+        histories_due: bool,
+    },
+}
+
+impl Refinement {
+    fn is_later(self) -> bool {
+        self != Self::AtOnce
+    }
+
+    fn histories_due(self) -> bool {
+        self == Self::Later { histories_due: true }
+    }
+
+    /// Other histories are to be asked for later, or are not, where nothing is done later.
+    fn put_off(&mut self, histories: bool) {
+        if self.is_later() {
+            *self = Self::Later { histories_due: histories };
+        }
+    }
+}
+
+/// Wall times, s.
+#[derive(Clone, Copy, Debug, Default)]
+struct WallTimes {
+    /// Of the last answer to an edit.
+    solve_s: f64,
+    /// Of the last frame on the full mesh.
+    frame_s: f64,
 }
 
 /// A hand that holds a support by a spring.
@@ -110,67 +127,21 @@ struct Hand {
     at_m: Point,
 }
 
-/// A message to the window.
-#[derive(Clone, Debug, Default)]
-pub struct Report {
-    /// The latest answer.
-    pub snapshot: Snapshot,
-    /// Forget the history shown so far.
-    pub history_restarts: bool,
-    /// New answers; at most [`crate::worker::timing::MAX_ANSWERS`].
-    pub answers: Vec<Solution>,
-    /// Ways of cables (by number) that the scene of this answer is to keep.
-    pub routes: Vec<(usize, Vec<Point>)>,
-    /// The worker paused itself because a step failed.
-    pub paused_itself: bool,
-}
-
-impl Default for Engine {
-    fn default() -> Self {
-        Self {
-            simulation: None,
-            edit: None,
-            phase: Phase::Answer { start_kept: false },
-            before_motion: None,
-            playback: Playback { paused: true, speed: 1.0 },
-            snapshot: Snapshot::default(),
-            last_answer: None,
-            routes: Vec::new(),
-            answers: Vec::new(),
-            robot_speed_command: None,
-            history_restarts: false,
-            drafts: false,
-            monitor: None,
-            histories_due: false,
-            solve_s: 0.0,
-            dragged: 0,
-            frame_wall_s: 0.0,
-            hand: None,
-        }
-    }
-}
-
 impl Engine {
     /// One that answers an edit of a slow scene with a draft first; [`Self::refine`] is to follow.
     #[must_use]
     pub fn with_drafts() -> Self {
-        Self { drafts: true, ..Self::default() }
+        Self { refinement: Refinement::Later { histories_due: false }, ..Self::default() }
     }
 
     /// As it is now, to go on from where what follows is given up.
     #[must_use]
     pub fn checkpoint(&self) -> Self {
         Self {
-            simulation: self.simulation.clone(),
+            run: self.run.as_ref().map(Run::checkpoint),
             edit: self.edit.clone(),
             phase: self.phase.clone(),
-            before_motion: self.before_motion.clone(),
-            snapshot: self.snapshot.clone(),
-            last_answer: self.last_answer.clone(),
-            routes: self.routes.clone(),
-            answers: self.answers.clone(),
-            // Two coarser runs beside this one: they begin again with the next start.
-            monitor: None,
+            outbox: self.outbox.clone(),
             ..*self
         }
     }
@@ -194,7 +165,7 @@ impl Engine {
     /// Time runs.
     #[must_use]
     pub fn playing(&self) -> bool {
-        !self.playback.paused && self.simulation.is_some() && !self.refused()
+        !self.playback.paused && self.run.is_some() && !self.refused()
     }
 
     /// Does what is asked; returns what to show.
@@ -203,7 +174,7 @@ impl Engine {
             self.playback = playback;
         }
         if let Some(order) = request.robot {
-            self.robot_speed_command = order;
+            self.steering.robot_speed_command = order;
         }
         let began = Instant::now();
         let runs = !self.playback.paused;
@@ -228,14 +199,16 @@ impl Engine {
         }
         if let Some(drag) = request.drag {
             solved = true;
-            result = result.and_then(|()| self.drag(drag));
+            if result.is_ok() {
+                self.drag(drag);
+            }
         }
         if request.reset {
             result = result.and_then(|()| self.reset());
         }
         if !self.refused() {
             for _ in 0..request.steps {
-                result = result.and_then(|()| self.step(FRAME_S));
+                result = result.and_then(|()| self.let_pass(FRAME_S));
             }
         }
         // Time must not run in a scene that is no longer the one on screen.
@@ -243,20 +216,21 @@ impl Engine {
         self.playback.paused |= held_back;
         if dragging && self.playing() {
             // The next frame shows it, not this report.
-            self.dragged = self.dragged.max(request.number);
+            self.steering.drag_number = self.steering.drag_number.max(request.number);
             return self.report(held_back);
         }
-        self.snapshot.edit = request.number.max(self.dragged).max(self.snapshot.edit);
+        let snapshot = &mut self.outbox.snapshot;
+        snapshot.edit = request.number.max(self.steering.drag_number).max(snapshot.edit);
         if solved {
-            self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+            self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
             let resumed = resumed.filter(|_| result.is_ok() && request.steps == 0);
+            let stepped = result.is_ok() && request.steps > 0;
+            let between = if stepped { self.answer_between_steps() } else { None };
             self.show(result);
+            self.outbox.show_between_steps(between);
             if let Some(answer) = resumed {
                 // No step was taken yet: what held the cable then is known from the recording only.
-                self.answers.clear();
-                self.answers.push((*answer).clone());
-                self.snapshot.solution = Some(answer);
-                self.keep_answer();
+                self.outbox.show_recorded(answer);
             }
         }
         self.report(held_back)
@@ -271,11 +245,11 @@ impl Engine {
     /// Lets a frame of a draft pass.
     pub fn settle_frame(&mut self) -> Report {
         let began = Instant::now();
-        if let Some(simulation) = &mut self.simulation {
+        if let Some(run) = &mut self.run {
             // One that cannot go on stays as it is until the answer comes.
-            self.phase = Phase::Draft { settling: draft::advance_frame(simulation).is_ok() };
+            self.phase = Phase::Draft { settling: draft::advance_frame(run.simulation_mut()).is_ok() };
         }
-        self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+        self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(Ok(()));
         self.report(false)
     }
@@ -283,9 +257,9 @@ impl Engine {
     /// An answer at rest is shown whose other histories have not been sought yet.
     #[must_use]
     pub fn seeks_histories(&self) -> bool {
-        let at_start = self.simulation.as_ref().is_some_and(|s| s.time_s() <= 0.0);
-        let rests = self.playback.paused && matches!(self.phase, Phase::Answer { start_kept: true });
-        self.histories_due && rests && at_start
+        let at_start = self.run.as_ref().is_some_and(|run| run.keeps_start() && run.simulation().time_s() <= 0.0);
+        let rests = self.playback.paused && matches!(self.phase, Phase::Answer);
+        self.refinement.histories_due() && rests && at_start
     }
 
     /// Replaces a draft by the answer, or asks of an answer what other histories would have left.
@@ -296,29 +270,27 @@ impl Engine {
         }
         let began = Instant::now();
         let result = self.solve_draft();
-        self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+        self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(result);
         self.report(false)
     }
 
     /// The solver panicked: what it held cannot be trusted any more.
     pub fn abandon(&mut self, message: &str) -> Report {
-        self.simulation = None;
-        self.monitor = None;
-        self.before_motion = None;
+        self.run = None;
         if !self.refused() {
-            self.phase = Phase::Answer { start_kept: false };
+            self.phase = Phase::Answer;
         }
         self.playback.paused = true;
-        self.snapshot.error = Some(NoAnswer::Panicked { message: message.to_owned() });
-        self.snapshot.stale = true;
+        self.outbox.snapshot.error = Some(NoAnswer::Panicked { message: message.to_owned() });
+        self.outbox.snapshot.stale = true;
         self.report(true)
     }
 
     /// The scene stays without an answer.
     fn cancel(&mut self, edit: Option<Edit>) {
         if let Some(edit) = edit {
-            self.history_restarts |= edit.start == EditStart::NewScene;
+            self.outbox.history_restarts |= edit.start == EditStart::NewScene;
             self.edit = Some(edit);
         }
         self.phase = Phase::Refused { reason: NoAnswer::Cancelled };
@@ -330,47 +302,33 @@ impl Engine {
         let Resume { edit, answer } = resume;
         let mut then = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, MOTION)?;
         then.resume(&answer)?;
-        self.simulation = Some(then);
-        self.monitor = None;
-        self.before_motion = None;
-        self.histories_due = false;
+        self.run = Some(Run::new(then, RunStart::Lost));
+        self.refinement.put_off(false);
         self.edit = Some(edit);
-        self.phase = Phase::Answer { start_kept: false };
-        self.hand = None;
+        self.phase = Phase::Answer;
+        self.steering.hand = None;
         self.sample();
         Ok(())
     }
 
     fn reset(&mut self) -> Result<(), Error> {
-        self.history_restarts = true;
+        self.outbox.history_restarts = true;
         if self.coarse() {
-            self.phase = Phase::Answer { start_kept: false };
+            self.phase = Phase::Answer;
         }
-        self.answers.clear();
-        (self.monitor, self.hand) = (None, None);
-        // At the start already: lay the cable anew, which forgets the friction of edits since.
-        if matches!(self.phase, Phase::Answer { start_kept: true })
-            && let Some(simulation) = &mut self.simulation
-            && simulation.time_s() > 0.0
+        self.outbox.answers.clear();
+        self.steering.hand = None;
+        let answers = matches!(self.phase, Phase::Answer);
+        if !self.run.as_mut().is_some_and(|run| answers && run.back_to_start())
+            && let Some(edit) = self.edit.clone()
         {
-            if let Some(start) = self.before_motion.take() {
-                *simulation = start;
-            }
-            simulation.reset();
-        } else if let Some(edit) = self.edit.clone() {
             let mut edit = edit;
-            self.histories_due = self.drafts && edit.settings.histories;
-            self.simulation = Some(self.settle_edit(&mut edit, None)?);
-            self.before_motion = None;
-            self.phase = Phase::Answer { start_kept: true };
+            self.refinement.put_off(edit.settings.histories);
+            let laid = self.settle_edit(&mut edit, None)?;
+            self.run = Some(Run::new(laid, RunStart::Settled));
+            self.phase = Phase::Answer;
         }
         self.sample();
         Ok(())
     }
-}
-
-/// Returns whether a model that was asked for by name lets time run without inertia: it has none.
-#[must_use]
-pub fn is_quasi_static(model: Model) -> bool {
-    !model.capabilities().inertia
 }

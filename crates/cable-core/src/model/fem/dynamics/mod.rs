@@ -167,7 +167,7 @@ impl Dynamics {
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.cable.problem.supports.get(k)?);
             let (problem, at) = (&self.cable.problem, self.cable.motion.positions[node]);
-            let short = self.cable.input.target.get(node)? - at;
+            let short = self.cable.input.supports.target.get(node)? - at;
             let by = problem.world.signed_gap(at, problem.length);
             let obstacle = by.map_or_else(String::new, |gap| problem.world.obstacle_name(gap.obstacle).to_owned());
             let cause = WarningCause::Blocked { support: s.name.clone(), obstacle, short_m: short.into() };
@@ -200,7 +200,7 @@ impl Dynamics {
         set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
         self.cable.contacts.list_neighbours(&self.cable.problem, mesh, &m.positions, |k| {
-            if mesh.held[k] { (input.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
+            if mesh.held[k] { (input.supports.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
         weights
     }
@@ -234,16 +234,17 @@ impl Dynamics {
     ) -> Result<Converged, Failure> {
         let weights = self.begin_step(h, dragged);
         let a = weights.rate;
-        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
+        let (mut unknowns, exact) =
+            (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
         self.cable.contacts.prepare(
             &self.cable.problem,
             &self.cable.mesh,
             &unknowns.positions,
             &self.cable.motion.positions,
         );
-        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
+        self.cable.input.stopping.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
         let done = self.solver.minimise_with_friction(&mut self.cable, &mut unknowns);
-        self.cable.input.tolerance = exact;
+        self.cable.input.stopping.tolerance = exact;
         let done = done?;
         let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
         if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {

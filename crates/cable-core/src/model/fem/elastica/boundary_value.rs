@@ -1,8 +1,8 @@
 //! An elastica is a boundary value problem: this module has its pieces and joints, their equations
 //! (derived in the module above), and Newton's method for them.
 
+use crate::linalg::PivotingBand;
 use crate::math::{Vec2, perp};
-use crate::model::fem::elastica::band_lu::BandLu;
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 pub(super) const STATES: usize = 8;
@@ -362,7 +362,7 @@ impl Elastica {
     /// One Newton step for all unknowns; None where the equations are singular.
     fn newton_step(&mut self, sizes: &[f64; STATES]) -> Option<Vec<f64>> {
         let count: usize = self.pieces.iter().map(|p| p.nodes.len()).sum();
-        let mut band = BandLu::new(STATES * count, HALF_BAND);
+        let mut band = PivotingBand::<HALF_BAND, { 3 * HALF_BAND + 1 }>::new(STATES * count);
         let mut right: Vec<f64> = Vec::with_capacity(STATES * count);
         let last = self.pieces.len() - 1;
         let (mut first, mut column) = (Vec::new(), 0);
@@ -386,7 +386,7 @@ impl Elastica {
                 for r in 0..rows {
                     let slope = (high[r] - low[r]) / (2.0 * by);
                     if slope != 0.0 {
-                        band.set(row + r, column + j, slope);
+                        band.add(row + r, column + j, slope);
                     }
                 }
             }
@@ -416,6 +416,8 @@ impl Elastica {
         }
         self.residual = right.iter().fold(0.0, |m: f64, r| if r.abs() <= m { m } else { r.abs() });
         right.iter_mut().for_each(|r| *r = -*r);
+        // Equations of length, angle and force stand side by side.
+        band.scale(&mut right);
         band.solve(&mut right).then_some(right)
     }
 

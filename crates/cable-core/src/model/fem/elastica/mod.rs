@@ -35,11 +35,9 @@
 //! | `answer` | the answer of an elastica, with its error |
 //! | `chain/` | a chain of bars that is let go: another way to the contacts, and a test of stability |
 //! | `buckled_equilibria` | the other equilibria of a cable that is compressed |
-//! | `band_lu` | elimination in a band of any width |
 
 mod active_set;
 mod answer;
-mod band_lu;
 mod boundary_value;
 pub(in crate::model::fem) mod buckled_equilibria;
 mod chain;

@@ -19,7 +19,8 @@ pub(in crate::model::fem) struct Lagged {
 impl Lagged {
     /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
     pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
-        self.changes.are_lawful() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
+        self.changes.are_lawful()
+            && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.stopping.tolerance
     }
 }
 
@@ -63,7 +64,7 @@ impl SolverMemory {
                 }
                 off = now;
             }
-            cable.input.shift = cable.meshing.soft_shift();
+            cable.input.stopping.shift = cable.meshing.soft_shift();
             let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
@@ -74,7 +75,7 @@ impl SolverMemory {
                 spare = spare.saturating_sub(1);
             }
             // A round that needed no iteration found the normal forces it had used.
-            let found = done.iterations == 0 && off <= cable.input.tolerance;
+            let found = done.iterations == 0 && off <= cable.input.stopping.tolerance;
             if (found || cable.contacts.friction_contacts.is_empty()) && changes.wrong == 0 && changes.same {
                 return Ok(Lagged { done: total, changes, off: 0.0 });
             }

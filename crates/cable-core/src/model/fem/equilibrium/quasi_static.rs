@@ -88,9 +88,9 @@ impl Dynamics {
             prepare_way(&mut self.cable, [to, to], Some(dragged));
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
-            self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
-            self.cable.input.max_noise =
-                self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance;
+            self.cable.input.stopping.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
+            self.cable.input.stopping.max_noise =
+                self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.stopping.tolerance;
             let mut unknowns = self.solver.present_unknowns(&self.cable);
             let mut done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent)
@@ -130,15 +130,15 @@ impl Dynamics {
     /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = self.rollback.with_saved();
-        let (exact, to) = (self.cable.input.tolerance, self.cable.motion.time);
+        let (exact, to) = (self.cable.input.stopping.tolerance, self.cable.motion.time);
         let rounding = self.rounding_of_bars();
         let mut all = found;
         let tuning = self.cable.mesh.tuning.equilibrium;
         for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
             self.rollback.save(&self.cable);
             prepare_way(&mut self.cable, [to, to], Some(dragged));
-            self.cable.input.max_noise = exact;
-            (self.cable.input.tolerance, self.cable.input.max_iterations) =
+            self.cable.input.stopping.max_noise = exact;
+            (self.cable.input.stopping.tolerance, self.cable.input.stopping.max_iterations) =
                 (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
             let Ok(done) = self.solver.solve_with_lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
@@ -149,7 +149,7 @@ impl Dynamics {
             // With the bars it balances on: new ones would have to be brought to rest again.
             self.accept_unknowns(&unknowns, to);
         }
-        self.cable.input.tolerance = exact;
+        self.cable.input.stopping.tolerance = exact;
         self.rollback = kept;
         all
     }
@@ -289,16 +289,16 @@ impl Dynamics {
         // that little force is left over.
         let now = self.cable.motion.time;
         prepare_input(&mut self.cable, now, Some(dragged));
-        self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
-        let exact = self.cable.input.tolerance;
-        self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
+        self.cable.input.stopping.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
+        let exact = self.cable.input.stopping.tolerance;
+        self.cable.input.stopping.tolerance = tolerance(&self.cable.problem, 0.0);
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
             self.cable.motion.positions.clone_from(&unknowns.positions);
             self.forget_history();
         }
         self.solver.unknowns = unknowns;
-        self.cable.input.tolerance = exact;
+        self.cable.input.stopping.tolerance = exact;
     }
 
     /// Finds the equilibrium. One in which the cable does not touch itself is sought first as if it

@@ -117,9 +117,9 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         let squeezed = self.cable.mesh.tuning.equilibrium.squeezed_residual;
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found
-            .is_err_and(|f| f.cause != FailureCause::WorkSpent && f.residual > squeezed * self.cable.input.tolerance)
-        {
+        if found.is_err_and(|f| {
+            f.cause != FailureCause::WorkSpent && f.residual > squeezed * self.cable.input.stopping.tolerance
+        }) {
             self.rollback.restore(&mut self.cable);
             found = self.relax_within(squeezed, to, dragged);
         }
@@ -158,7 +158,7 @@ impl Dynamics {
             if moved_away(self.cable.problem.length, &self.cable.motion.positions, &begun_at).is_some() {
                 return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
             }
-            let exact = self.cable.input.tolerance;
+            let exact = self.cable.input.stopping.tolerance;
             let squeezed = self.cable.mesh.tuning.equilibrium.squeezed_residual;
             if remeshed {
                 moved = moved.max(REMESHED_MOVE_M);
@@ -198,19 +198,19 @@ impl Dynamics {
         prepare_input(&mut self.cable, to, Some(dragged));
         self.cable.adapt_slip();
         let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-        self.cable.input.inertia.fill(relaxation.resistance);
+        self.cable.input.inertial.stiffness.fill(relaxation.resistance);
         for k in 0..self.cable.mesh.nodes() {
-            self.cable.input.inertia[k] *= self.cable.mesh.tributary_length(k) / even;
+            self.cable.input.inertial.stiffness[k] *= self.cable.mesh.tributary_length(k) / even;
         }
-        let exact = self.cable.input.tolerance;
-        self.cable.input.tolerance = if relaxation.exact_rounds { exact } else { LOOSE_TOLERANCE * exact };
-        self.cable.input.max_noise = noise * exact;
+        let exact = self.cable.input.stopping.tolerance;
+        self.cable.input.stopping.tolerance = if relaxation.exact_rounds { exact } else { LOOSE_TOLERANCE * exact };
+        self.cable.input.stopping.max_noise = noise * exact;
         // The contacts of a first shape carry no normal force yet: without refreshing, the cable
         // would slide as if on ice.
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         let rounds = self.cable.mesh.tuning.equilibrium.whole_lag_rounds;
         let solved = self.solver.solve_rounds(&mut self.cable, &mut unknowns, rounds);
-        self.cable.input.tolerance = exact;
+        self.cable.input.stopping.tolerance = exact;
         (unknowns, solved)
     }
 
@@ -221,7 +221,7 @@ impl Dynamics {
         for (k, (a, b)) in unknowns.positions.iter().zip(&self.cable.motion.positions).enumerate() {
             let moved = (a - b).norm().max(unknowns.slides[k].abs());
             motion.moved = motion.moved.max(moved);
-            let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
+            let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertial.stiffness[k] };
             drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
             let force = larger(moved * free, drift.norm() / self.cable.mesh.tuning.newton.stretch_residual);
             if force > motion.resists {

@@ -122,6 +122,16 @@ impl Rounding {
     }
 }
 
+/// What the minimisation knows of the cable's contacts with itself.
+#[derive(Debug, Default)]
+pub struct SelfContactWork {
+    /// Those of the last assembly.
+    pub(in crate::model::fem) pairs: Vec<SelfPair>,
+    pub(in crate::model::fem) order: SortedNodes,
+    /// Entries of the Hessian outside its band.
+    pub(in crate::model::fem) coupling: Coupling,
+}
+
 /// Memory of the minimisation.
 #[derive(Debug)]
 pub struct Workspace {
@@ -136,10 +146,7 @@ pub struct Workspace {
     pub(in crate::model::fem) rounding: Rounding,
     /// Targets of held nodes, or the points where they had to stop, m.
     pub(in crate::model::fem) goal: Vec<Vec2>,
-    own_pairs: Vec<SelfPair>,
-    pub(in crate::model::fem) order: SortedNodes,
-    /// Entries of the Hessian outside its band, from contacts of the cable with itself.
-    pub(in crate::model::fem) coupling: Coupling,
+    pub(in crate::model::fem) self_contact: SelfContactWork,
     pub(in crate::model::fem) predicted_contacts: PredictedContacts,
     pub(in crate::model::fem) mixed: MixedIterate,
     /// Iterations times nodes that may still be spent.
@@ -172,9 +179,7 @@ impl Workspace {
             magnitude: 0.0,
             rounding: Rounding::default(),
             goal: Vec::new(),
-            own_pairs: Vec::new(),
-            order: SortedNodes::default(),
-            coupling: Coupling::new(),
+            self_contact: SelfContactWork::default(),
             predicted_contacts: PredictedContacts::new(mesh.nodes()),
             mixed: MixedIterate::new(mesh.nodes()),
             work_left: WorkBudget::Unlimited,
@@ -210,39 +215,39 @@ impl Workspace {
         let s = &mut self.system;
         s.hessian.clear();
         s.gradient.fill(0.0);
-        let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
+        let mut round = Rounding { tolerance: input.stopping.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.mixed.carried.is_empty();
         let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.mixed.carried);
         self.magnitude = size;
-        if !input.coupling.is_empty() {
+        if !input.inertial.coupling.is_empty() {
             value += add_coupling(s, input, x);
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
-            if input.bending_damping > 0.0 {
-                value += s.add_bends(mesh, input.bending_damping, Some(&input.start), x, curvature);
+            if input.losses.bending > 0.0 {
+                value += s.add_bends(mesh, input.losses.bending, Some(&input.supports.start), x, curvature);
             }
         }
         self.magnitude += value.abs();
         for i in 0..x.len() {
-            let (k, scale) = (input.inertia[i], node_scale(input, i));
+            let (k, scale) = (input.inertial.stiffness[i], node_scale(input, i));
             let (kinetic, work) = if mesh.sliding[i].is_some() {
-                let away = unknowns.slides[i] - input.predicted_slide[i];
+                let away = unknowns.slides[i] - input.inertial.predicted_slide[i];
                 s.gradient[2 * i] += scale * k * away;
                 s.hessian.add(2 * i, 2 * i, scale * k);
                 (0.5 * k * away * away, 0.0)
             } else {
-                let away = x[i] - input.predicted[i];
+                let away = x[i] - input.inertial.predicted[i];
                 if measured {
                     self.magnitude +=
-                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.force[i].norm()) * x[i].norm();
+                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.loads.force[i].norm()) * x[i].norm();
                 }
-                s.add_gradient(i, (away * k - input.force[i]) * scale);
+                s.add_gradient(i, (away * k - input.loads.force[i]) * scale);
                 s.hessian.add_diagonal(2 * i, k * scale);
                 // Work is measured from the start of the step, so that its size is that of the
                 // change.
-                (0.5 * k * away.norm_squared(), input.force[i].dot(&(x[i] - input.start[i])))
+                (0.5 * k * away.norm_squared(), input.loads.force[i].dot(&(x[i] - input.supports.start[i])))
             };
             value += scale * (kinetic - work);
             self.magnitude += scale * (kinetic + work.abs());
@@ -262,20 +267,26 @@ impl Workspace {
                 x,
                 &mesh.arc_length,
                 contacts.barrier.reach,
-                &mut self.order,
-                &mut self.own_pairs,
+                &mut self.self_contact.order,
+                &mut self.self_contact.pairs,
             );
-            self.coupling.clear();
+            self.self_contact.coupling.clear();
             let laws = SelfContactLaws {
                 self_contacts: &contacts.self_contacts,
                 barrier: &contacts.barrier,
                 slip: contacts.tuning.slip_m,
             };
-            let (energy, size) =
-                self_contact::add(&mut self.system, &mut self.coupling, laws, &self.own_pairs, x, curvature);
+            let (energy, size) = self_contact::add(
+                &mut self.system,
+                &mut self.self_contact.coupling,
+                laws,
+                &self.self_contact.pairs,
+                x,
+                curvature,
+            );
             value += energy;
             self.magnitude += size;
-            for pair in &self.own_pairs {
+            for pair in &self.self_contact.pairs {
                 let stiffness = contacts.barrier.at(pair.gap_m).curvature;
                 round.add(&contacts.barrier, pair.gap_m, stiffness, GAP_ROUNDING * x[pair.node].norm());
             }
@@ -291,9 +302,13 @@ impl Workspace {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
         // where an outline squeezes the cable.
-        let hidden = if input.moves && !input.has_moving_outline { self.rounding.relief } else { self.rounding.noise };
-        let known = smaller(hidden, input.max_noise);
-        let accepted = larger(input.tolerance, known);
+        let hidden = if input.inertial.moves && !input.supports.has_moving_outline {
+            self.rounding.relief
+        } else {
+            self.rounding.noise
+        };
+        let known = smaller(hidden, input.stopping.max_noise);
+        let accepted = larger(input.stopping.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
             if mesh.held[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
@@ -305,7 +320,7 @@ impl Workspace {
             let r = if slides { left.x.abs() } else { left.norm() };
             let mut most = worst.drift;
             let mut counts = r;
-            if !input.moves {
+            if !input.inertial.moves {
                 drift = if slides { Vec2::zeros() } else { drift + left };
                 let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
                 (most, counts) = (larger(adds_up, most), larger(r, adds_up));
@@ -333,7 +348,7 @@ impl Workspace {
                     for i in k.saturating_sub(band)..(k + band + 1).min(rows) {
                         self.direction[i] -= s.hessian.get(i, k) * go;
                     }
-                    for &(i, j, v) in self.coupling.iter().filter(|c| c.0 == k || c.1 == k) {
+                    for &(i, j, v) in self.self_contact.coupling.iter().filter(|c| c.0 == k || c.1 == k) {
                         self.direction[i + j - k] -= v * go;
                     }
                 }
@@ -356,10 +371,10 @@ impl Workspace {
                 }
             }
         }
-        if !self.coupling.is_empty() {
-            self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
+        if !self.self_contact.coupling.is_empty() {
+            self.self_contact.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
             self.predicted_contacts.keep(&self.direction);
-            return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
+            return solve_coupled(&s.hessian, &self.self_contact.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
         self.predicted_contacts.keep(&self.direction);
@@ -380,8 +395,8 @@ impl Workspace {
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let StepContext { mesh, input, .. } = *step;
-        self.goal.clone_from(&input.target);
-        let mut shift = input.shift;
+        self.goal.clone_from(&input.supports.target);
+        let mut shift = input.stopping.shift;
         let mut pushes = 0;
         let mut done = Converged::default();
         let mut value = self.assemble(step, unknowns, Curvature::Exact);
@@ -394,7 +409,7 @@ impl Workspace {
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
             // A support that squeezes the cable harder than numbers can tell has come as far as it
             // can.
-            let squeezed = left && input.may_lag && self.rounding.noise > input.tolerance;
+            let squeezed = left && input.supports.may_lag && self.rounding.noise > input.stopping.tolerance;
             if squeezed {
                 self.goal.clone_from(&unknowns.positions);
             }
@@ -403,11 +418,12 @@ impl Workspace {
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            let enough = larger(residual, drift) <= mesh.tuning.newton.stalled_residual * input.tolerance && !left;
-            if done.iterations >= input.max_iterations && enough {
+            let enough =
+                larger(residual, drift) <= mesh.tuning.newton.stalled_residual * input.stopping.tolerance && !left;
+            if done.iterations >= input.stopping.max_iterations && enough {
                 return Ok(done);
             }
-            if done.iterations >= input.max_iterations {
+            if done.iterations >= input.stopping.max_iterations {
                 return failed(FailureCause::TooManyIterations);
             }
             if self.work_left.is_spent() {
@@ -430,7 +446,7 @@ impl Workspace {
                     }
                 }
             }
-            if input.moves {
+            if input.inertial.moves {
                 self.predict_contacts(step, unknowns);
             }
             let mut slope = self.slope();
@@ -442,15 +458,15 @@ impl Workspace {
                     value = new_value;
                     if fraction > LONG_STEP_FRACTION {
                         shift *= SHIFT_DECREASE;
-                        if shift < MIN_SHIFT_FRACTION * input.shift {
+                        if shift < MIN_SHIFT_FRACTION * input.stopping.shift {
                             shift = 0.0;
                         }
-                    } else if fraction < SHORT_STEP_FRACTION && input.shift > 0.0 {
+                    } else if fraction < SHORT_STEP_FRACTION && input.stopping.shift > 0.0 {
                         shift = grow(shift, input);
                     }
                     if left && fraction < SHORT_PUSH_FRACTION {
                         pushes += 1;
-                        if pushes > mesh.tuning.newton.max_pushes && !input.may_lag {
+                        if pushes > mesh.tuning.newton.max_pushes && !input.supports.may_lag {
                             return failed(FailureCause::SupportShort);
                         } else if pushes > mesh.tuning.newton.max_pushes {
                             self.goal.clone_from(&unknowns.positions);
@@ -462,7 +478,7 @@ impl Workspace {
                     if enough {
                         return Ok(done);
                     }
-                    if shift > MAX_SHIFT_GROWTH * input.shift.max(MIN_FIRST_SHIFT) {
+                    if shift > MAX_SHIFT_GROWTH * input.stopping.shift.max(MIN_FIRST_SHIFT) {
                         return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, input);
@@ -489,7 +505,8 @@ impl Workspace {
         if needs_descent {
             self.predicted_contacts.plain.clone_from(&self.direction);
         }
-        let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
+        let equations =
+            Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.self_contact.coupling };
         self.predicted_contacts.solve(step, equations, &unknowns.positions, &mut self.direction);
         if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
             self.direction.clone_from(&self.predicted_contacts.plain);
@@ -541,7 +558,7 @@ impl Workspace {
 #[inline(never)]
 fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
-    for (e, (coupling, chord)) in input.coupling.iter().enumerate() {
+    for (e, (coupling, chord)) in input.inertial.coupling.iter().enumerate() {
         let (late, k) = (x[e + 1] - x[e] - chord, coupling * input.scale[e]);
         s.add_gradient(e, late * k);
         s.add_gradient(e + 1, late * -k);
@@ -552,6 +569,6 @@ fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
 }
 
 fn grow(shift: f64, input: &StepInput) -> f64 {
-    let least = if input.shift > 0.0 { input.shift } else { 1.0 };
+    let least = if input.stopping.shift > 0.0 { input.stopping.shift } else { 1.0 };
     if shift > 0.0 { SHIFT_INCREASE * shift } else { least }
 }

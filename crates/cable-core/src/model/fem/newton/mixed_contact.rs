@@ -53,7 +53,7 @@ impl Workspace {
         step: &StepContext<'_>,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        if !step.input.moves {
+        if !step.input.inertial.moves {
             return self.minimise_by_line_search(step, unknowns);
         }
         let found = self.undamped_newton(step, SelfTouch::Avoid, unknowns);
@@ -94,7 +94,7 @@ impl Workspace {
     ) -> Option<Converged> {
         self.mixed.begun.positions.clone_from(&unknowns.positions);
         self.mixed.begun.slides.clone_from(&unknowns.slides);
-        self.goal.clone_from(&step.input.target);
+        self.goal.clone_from(&step.input.supports.target);
         self.init_bar_iterates(step.mesh, unknowns);
         let done = self.iterate_undamped(step, self_touch, unknowns);
         self.mixed.carried.clear();
@@ -148,7 +148,7 @@ impl Workspace {
         for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {
             let to = match (mesh.held[k], mesh.is_free(k)) {
                 (true, _) => self.goal[k],
-                (_, true) => input.predicted[k],
+                (_, true) => input.inertial.predicted[k],
                 _ => unknowns.positions[k],
             };
             (d[0], d[1]) = (to.x - unknowns.positions[k].x, to.y - unknowns.positions[k].y);
@@ -176,7 +176,7 @@ impl Workspace {
         for iterations in 0..=mesh.tuning.newton.mixed_iterations {
             self.mixed.undamped_iterations = iterations;
             let value = self.assemble(step, unknowns, Curvature::Exact);
-            if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
+            if self_touch == SelfTouch::Avoid && !self.self_contact.coupling.is_empty() {
                 self.mixed.near_enough = false;
                 return None;
             }
@@ -185,19 +185,23 @@ impl Workspace {
             if iterations == 0 {
                 first = residual;
             }
-            let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= input.tolerance;
-            if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.positions) {
+            let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= input.stopping.tolerance;
+            if sound
+                && residual <= input.stopping.tolerance
+                && !left
+                && self.flags_hold(mesh, contacts, &unknowns.positions)
+            {
                 return Some(Converged { iterations, residual });
             }
             self.mixed.near_enough = sound && residual < mesh.tuning.newton.handed_on_residual_fraction * first;
             if iterations == mesh.tuning.newton.mixed_iterations || !sound {
                 return None;
             }
-            if !self.solve(mesh, input, &unknowns.positions, input.shift)
+            if !self.solve(mesh, input, &unknowns.positions, input.stopping.shift)
                 && !self.reduce_compression(mesh, input, &unknowns.positions)
             {
                 self.assemble(step, unknowns, Curvature::Clipped);
-                if !self.solve(mesh, input, &unknowns.positions, input.shift) {
+                if !self.solve(mesh, input, &unknowns.positions, input.stopping.shift) {
                     return None;
                 }
             }
@@ -220,7 +224,7 @@ impl Workspace {
     /// that matrix is far from the equations, and its steps oscillate. Returns false where no part
     /// helps; the system is pinned then, and its values are lost.
     fn reduce_compression(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
-        if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
+        if !self.self_contact.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
         }
         let mut counted = 1.0;

@@ -102,11 +102,12 @@ impl MixedFreeSolver {
                 self.begin(mesh, input);
             }
             let balance = self.assemble(mesh, input, x, Curvature::Exact);
-            let left = mesh.held.iter().zip(x.iter().zip(&input.target)).any(|(held, (x, to))| *held && x != to);
+            let left =
+                mesh.held.iter().zip(x.iter().zip(&input.supports.target)).any(|(held, (x, to))| *held && x != to);
             if !(balance.force.is_finite() && balance.pull.is_finite()) {
                 return None;
             }
-            if balance.force <= input.tolerance && balance.pull <= input.tolerance && !left {
+            if balance.force <= input.stopping.tolerance && balance.pull <= input.stopping.tolerance && !left {
                 return Some(Converged { iterations, residual: balance.force });
             }
             if iterations == mesh.tuning.newton.free_iterations {
@@ -127,7 +128,7 @@ impl MixedFreeSolver {
     /// on each by itself.
     fn begin(&mut self, mesh: &Mesh, input: &StepInput) {
         for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
-            let strain = (input.start[e + 1] - input.start[e]).norm() / mesh.rest_length[e] - 1.0;
+            let strain = (input.supports.start[e + 1] - input.supports.start[e]).norm() / mesh.rest_length[e] - 1.0;
             *taut = strain >= 0.0;
             *pull = bar_energy::stiffness(mesh, *taut) * strain;
         }
@@ -137,8 +138,8 @@ impl MixedFreeSolver {
     /// present lengths (the right side) into `step`.
     fn assemble(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], curvature: Curvature) -> EquilibriumResidual {
         for i in 0..x.len() {
-            let (k, away) = (input.inertia[i], x[i] - input.predicted[i]);
-            let rest = away * k - input.force[i];
+            let (k, away) = (input.inertial.stiffness[i], x[i] - input.inertial.predicted[i]);
+            let rest = away * k - input.loads.force[i];
             self.gradient[i] = rest;
             self.step[i] = -rest;
             self.diagonal[i] = [k, 0.0, k];
@@ -154,7 +155,7 @@ impl MixedFreeSolver {
             let pull = self.pull[e];
             let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();
             balance.pull = larger(balance.pull, off);
-            let (coupling, chord) = input.coupling.get(e).copied().unwrap_or_default();
+            let (coupling, chord) = input.inertial.coupling.get(e).copied().unwrap_or_default();
             let inertia = (d - chord) * coupling;
             self.gradient[e] -= t * pull - inertia;
             self.gradient[e + 1] += t * pull - inertia;
@@ -185,7 +186,7 @@ impl MixedFreeSolver {
         let n = x.len();
         for k in 0..n {
             if mesh.held[k] {
-                let go = input.target[k] - x[k];
+                let go = input.supports.target[k] - x[k];
                 if k > 0 {
                     self.step[k - 1] -= times(&self.between[k - 1], go);
                     self.between[k - 1] = [0.0; 3];
@@ -235,7 +236,7 @@ impl MixedFreeSolver {
         for s in &self.step {
             longest = larger(longest, s.norm());
         }
-        let part = if longest > input.max_move { input.max_move / longest } else { 1.0 };
+        let part = if longest > input.stopping.max_move { input.stopping.max_move / longest } else { 1.0 };
         for (e, &(stiffness, t)) in self.hold.iter().enumerate() {
             let by = t.dot(&(self.step[e + 1] - self.step[e])) * part;
             let l = mesh.rest_length[e];
@@ -245,7 +246,7 @@ impl MixedFreeSolver {
         for (k, x) in x.iter_mut().enumerate() {
             *x += self.step[k] * part;
             if mesh.held[k] && part == 1.0 {
-                *x = input.target[k];
+                *x = input.supports.target[k];
             }
         }
     }
@@ -295,12 +296,12 @@ mod tests {
                 d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
             }
             let (n, mut input) = (d.cable.mesh.nodes(), d.cable.input.clone());
-            input.tolerance = 1e-7;
+            input.stopping.tolerance = 1e-7;
             for k in 0..n {
                 let s = k as f64 / (n - 1) as f64 * std::f64::consts::PI;
                 let push = Vec2::new(waves[0] * s.sin() + waves[1] * (2.0 * s).sin(), waves[2] * s.sin() + waves[3] * (3.0 * s).sin());
-                input.predicted[k] = d.cable.motion.positions[k] + push * 0.004;
-                input.inertia[k] = d.cable.mesh.tributary_length(k) * a * a;
+                input.inertial.predicted[k] = d.cable.motion.positions[k] + push * 0.004;
+                input.inertial.stiffness[k] = d.cable.mesh.tributary_length(k) * a * a;
             }
             let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; n] };
             let (mut free, mut found) = (MixedFreeSolver::default(), start.clone());
@@ -321,7 +322,7 @@ mod tests {
         let mut d = dynamics(1e5, false);
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
         let mut input = d.cable.input.clone();
-        input.predicted[7].x = f64::NAN;
+        input.inertial.predicted[7].x = f64::NAN;
         let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; d.cable.mesh.nodes()] };
         let mut unknowns = start.clone();
         assert_eq!(MixedFreeSolver::default().solve(&d.cable.mesh, &input, &mut unknowns), None);

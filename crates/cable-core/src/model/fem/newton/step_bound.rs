@@ -12,7 +12,7 @@ impl Workspace {
     /// The part of the direction in which no node moves too far.
     pub(in crate::model::fem) fn max_step_fraction(&self, input: &StepInput) -> f64 {
         let largest = longest(&self.direction);
-        if largest > input.max_move { input.max_move / largest } else { 1.0 }
+        if largest > input.stopping.max_move { input.stopping.max_move / largest } else { 1.0 }
     }
 
     /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some
@@ -76,7 +76,7 @@ impl Workspace {
             &mesh.arc_length,
             &move_of,
             limits,
-            &mut self.order,
+            &mut self.self_contact.order,
         )
     }
 

@@ -97,7 +97,7 @@ pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2]
         let comes = hitch_on(cable, &outline_motion);
         let positions = OutlineStep::of(cable, outline_motion).and_then(|step| step.positions_clear_of_it(&ends));
         if let Some(cleared) = positions.filter(|_| comes) {
-            cable.input.cleared = cleared;
+            cable.input.supports.cleared = cleared;
             cable.contacts.outline_motion = Some(outline_motion);
             return;
         }
@@ -120,17 +120,18 @@ fn hitch_on(cable: &mut CableState, outline_motion: &OutlineMotion) -> bool {
         return true;
     };
     let on_it = outline_motion.to.place(outline.shape.hitch);
-    if (cable.input.target[k] - on_it).norm() > STANDS_M {
-        cable.input.target[k] = stopped_by_obstacles(&cable.problem, &cable.mesh, cable.input.start[k], on_it);
+    if (cable.input.supports.target[k] - on_it).norm() > STANDS_M {
+        cable.input.supports.target[k] =
+            stopped_by_obstacles(&cable.problem, &cable.mesh, cable.input.supports.start[k], on_it);
     }
     let far = |p: Vec2| (p - on_it).norm();
-    let now = cable.input.start[k];
+    let now = cable.input.supports.start[k];
     // One that was stopped by a wall stays there until the robot is as far from it as it may be
     // left behind.
     let gap =
         |p: Vec2| cable.problem.world.signed_gap(p, cable.problem.radius).map_or(cable.problem.radius, |g| g.gap_m);
-    if far(now) <= cable.mesh.tuning.outline.max_hitch_lag_m && gap(cable.input.target[k]) < gap(now) {
-        cable.input.target[k] = now;
+    if far(now) <= cable.mesh.tuning.outline.max_hitch_lag_m && gap(cable.input.supports.target[k]) < gap(now) {
+        cable.input.supports.target[k] = now;
     }
     far(now) <= cable.mesh.tuning.outline.max_hitch_lag_m
         || far(now) <= (now - outline_motion.from.place(outline.shape.hitch)).norm()
@@ -181,7 +182,7 @@ impl<'a> OutlineStep<'a> {
         if !near.contains(&true) {
             return Some(Vec::new());
         }
-        let start = &self.step.input.start;
+        let start = &self.step.input.supports.start;
         let goes = |k: usize| (k > 0 && near.get(k - 1) == Some(&true)) || near.get(k) == Some(&true);
         let mut x = start.clone();
         for (k, p) in x.iter_mut().enumerate().filter(|(k, _)| goes(*k)) {
@@ -190,7 +191,7 @@ impl<'a> OutlineStep<'a> {
             }
         }
         if let Some(k) = self.hitch {
-            x[k] = self.step.input.target[k];
+            x[k] = self.step.input.supports.target[k];
         }
         self.restore_gaps(larger(2.0 * way, self.step.contacts.barrier.reach), &mut x);
         self.is_free_way(ends, &x, &near).then_some(x)
@@ -208,7 +209,7 @@ impl<'a> OutlineStep<'a> {
 
     /// Gives back the gaps that were lost; see the module.
     fn restore_gaps(&self, within: f64, x: &mut [Vec2]) {
-        let (mesh, start) = (self.step.mesh, &self.step.input.start);
+        let (mesh, start) = (self.step.mesh, &self.step.input.supports.start);
         let gone: Vec<Vec2> = start.iter().map(|p| self.motion.carried(*p)).collect();
         let mut kept: Vec<(ContactPair, Vec2)> = Vec::new();
         let mut found: Vec<ContactPair> = Vec::new();
@@ -272,11 +273,11 @@ impl<'a> OutlineStep<'a> {
             (!moved || swept(e, *from, false))
                 && (!(moved || near[e]) || swept(e, from.map(|p| self.motion.carried(p)), true))
         });
-        let step = |k: usize| x[k] - self.step.input.start[k];
+        let step = |k: usize| x[k] - self.step.input.supports.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
             self.step.contacts.self_contacts.shape.free_fraction(
-                &self.step.input.start,
+                &self.step.input.supports.start,
                 arc,
                 &step,
                 [self.swept_gap_fraction(), f64::INFINITY, 1.0],

@@ -23,7 +23,7 @@ pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let flexible = d.mesh.is_flexible();
     if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-        return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
+        return Weight::of(&d.mesh, e, &path, d.input.loads.body).in_the_middle(t, material, flexible);
     }
     let t = if t > 0.0 || !flexible { t + loss_memory::force(d, e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
@@ -34,7 +34,7 @@ pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
 pub(super) fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.body).carried(material)[1 - side]
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.loads.body).carried(material)[1 - side]
 }
 
 /// The force of the ground on the half bar at a held end that lies on it.
@@ -126,7 +126,7 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     for rub in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + d.contacts.friction_force(rub, x);
     }
-    if let Some(&limit) = d.input.floor_limit.get(node) {
+    if let Some(&limit) = d.input.loads.floor_limit.get(node) {
         sum -= friction::at_plane(d.contacts.floor_slip[node], limit, d.contacts.slip).1;
     }
     sum
@@ -152,8 +152,12 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
         sum += d.contacts.friction_force(rub, x);
     }
     for k in 0..x.len() {
-        let floor =
-            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slip[k], l, d.contacts.slip).1);
+        let floor = d
+            .input
+            .loads
+            .floor_limit
+            .get(k)
+            .map(|&l| friction::at_plane(d.contacts.floor_slip[k], l, d.contacts.slip).1);
         if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
             let [before, after] = [k - 1, k].map(|e| {
                 let path = d.mesh.path(e, x);

@@ -82,7 +82,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + d.input.body * half(d, k, 1, x),
+            k => bar(k) + d.input.loads.body * half(d, k, 1, x),
         };
         // A round that reaches to the node within a step ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
@@ -121,7 +121,7 @@ fn on_round(
     // The stretch between the node and the point where the cable meets or leaves the round, at an
     // angle (rad) from it, has its own weight.
     let force_at = |arcs: [f64; 2]| {
-        [0, 1].map(|j| load.force[j] - d.input.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]))
+        [0, 1].map(|j| load.force[j] - d.input.loads.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]))
     };
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
@@ -179,10 +179,10 @@ fn on_round(
     let [a, b] = [a - f0, b + f2];
     // dT = −b·dx without friction.
     let first = normal(-before);
-    let unrubbed = |normal: Vec2| a - d.input.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
+    let unrubbed = |normal: Vec2| a - d.input.loads.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = RoundFloorFriction::between([a, b - (last - a)], floor);
-    let load = [perp(first) * sense, first].map(|v| d.input.body.dot(&v) * radius / mesh.thermal_stretch);
+    let load = [perp(first) * sense, first].map(|v| d.input.loads.body.dot(&v) * radius / mesh.thermal_stretch);
     // Where the weight of a bar hangs over the round, it comes or goes at an angle to its tangent
     // and presses at that one point.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);

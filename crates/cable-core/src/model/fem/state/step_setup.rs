@@ -31,10 +31,10 @@ pub(in crate::model::fem) fn prepare_step(
     cable.answers.stepped = None;
     set_forces(cable, to);
     let (mesh, input) = (&mut cable.mesh, &mut cable.input);
-    input.start.clone_from(&cable.motion.positions);
-    input.target.clone_from(&cable.motion.positions);
-    input.cleared.clear();
-    input.hands.clear();
+    input.supports.start.clone_from(&cable.motion.positions);
+    input.supports.target.clone_from(&cable.motion.positions);
+    input.supports.cleared.clear();
+    input.inertial.hands.clear();
     mesh.held.fill(false);
     mesh.clamps.clear();
     let dragged_to = |support: usize| dragged.and_then(|d| d.get(support).copied().flatten());
@@ -42,7 +42,7 @@ pub(in crate::model::fem) fn prepare_step(
         set_support(cable, support, [from, to], dragged_to(support));
     }
     set_wheels(cable, [from, to], dragged_to);
-    cable.input.may_lag = to > from;
+    cable.input.supports.may_lag = to > from;
     clear_inertia_and_loss(cable);
     cable.input.set_scale(&cable.mesh);
     set_weight_on_rounds(cable);
@@ -52,12 +52,12 @@ pub(in crate::model::fem) fn prepare_step(
 fn set_forces(cable: &mut CableState, to: f64) {
     let input = &mut cable.input;
     let body = cable.problem.body_force(to);
-    input.body = body;
-    input.to = to;
-    input.force.clear();
-    input.force.extend((0..cable.mesh.nodes()).map(|k| body * cable.mesh.tributary_length(k)));
+    input.loads.body = body;
+    input.loads.time_s = to;
+    input.loads.force.clear();
+    input.loads.force.extend((0..cable.mesh.nodes()).map(|k| body * cable.mesh.tributary_length(k)));
     for (node, force) in &cable.meshing.loads {
-        input.force[*node] += force.at(to);
+        input.loads.force[*node] += force.at(to);
     }
 }
 
@@ -74,9 +74,9 @@ fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dra
         return;
     }
     if s.kind == SupportKind::Load {
-        input.force[node] += s.force.at(to);
+        input.loads.force[node] += s.force.at(to);
     }
-    input.force[node] += gravity * s.mass;
+    input.loads.force[node] += gravity * s.mass;
     let Some((at, _)) = s.place_at(to).filter(|_| s.holds_from(from)) else { return };
     let follower = cable.motion.followers[support];
     let at = follower.map_or(dragged.unwrap_or(at), |f| f.position());
@@ -88,8 +88,8 @@ fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dra
     // A support that a hand holds by a spring is a node that moves.
     if cable.motion.hands[support].is_none() {
         mesh.held[node] = true;
-        input.target[node] = stopped_by_obstacles(problem, mesh, cable.motion.positions[node], at);
-        if input.target[node] != at && !cable.answers.held_back.contains(&support) {
+        input.supports.target[node] = stopped_by_obstacles(problem, mesh, cable.motion.positions[node], at);
+        if input.supports.target[node] != at && !cable.answers.held_back.contains(&support) {
             cable.answers.held_back.push(support);
         }
     }
@@ -112,7 +112,7 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
         let follower = cable.motion.followers.get(support).copied().flatten();
         node.end.center = follower.map_or(dragged_to(support).unwrap_or(at), |f| f.position());
         cable.motion.positions[k] = node.position();
-        cable.input.start[k] = cable.motion.positions[k];
+        cable.input.supports.start[k] = cable.motion.positions[k];
     }
 }
 
@@ -120,33 +120,33 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
 fn clear_inertia_and_loss(cable: &mut CableState) {
     let (mesh, input) = (&cable.mesh, &mut cable.input);
     let n = mesh.nodes();
-    input.has_moving_outline = cable.outline.is_some();
-    input.max_iterations = mesh.tuning.step.max_iterations;
-    input.max_move = mesh.tuning.newton.max_move_m;
-    input.moves = false;
-    input.shift = 0.0;
-    input.loss.clear();
-    input.loss.resize(mesh.rest_length.len(), [0.0; 2]);
-    input.bending_damping = 0.0;
-    input.max_noise = f64::INFINITY;
-    input.inertia.clear();
-    input.inertia.resize(n, 0.0);
-    input.predicted.clone_from(&cable.motion.positions);
-    input.coupling.clear();
-    input.predicted_length.clear();
-    input.predicted_length.extend_from_slice(&mesh.rest_length);
-    input.predicted_slide.clear();
-    input.predicted_slide.resize(n, 0.0);
+    input.supports.has_moving_outline = cable.outline.is_some();
+    input.stopping.max_iterations = mesh.tuning.step.max_iterations;
+    input.stopping.max_move = mesh.tuning.newton.max_move_m;
+    input.inertial.moves = false;
+    input.stopping.shift = 0.0;
+    input.losses.bars.clear();
+    input.losses.bars.resize(mesh.rest_length.len(), [0.0; 2]);
+    input.losses.bending = 0.0;
+    input.stopping.max_noise = f64::INFINITY;
+    input.inertial.stiffness.clear();
+    input.inertial.stiffness.resize(n, 0.0);
+    input.inertial.predicted.clone_from(&cable.motion.positions);
+    input.inertial.coupling.clear();
+    input.losses.predicted_length.clear();
+    input.losses.predicted_length.extend_from_slice(&mesh.rest_length);
+    input.inertial.predicted_slide.clear();
+    input.inertial.predicted_slide.resize(n, 0.0);
 }
 
 /// Sets the greatest friction of a rough floor, and the part of the weight of bars that rests on
 /// the rounds beside them.
 fn set_weight_on_rounds(cable: &mut CableState) {
     let x = std::mem::take(&mut cable.motion.positions);
-    floor_friction::renew_limits(&mut cable.input.floor_limit, &cable.problem, &cable.mesh, &x, None);
+    floor_friction::renew_limits(&mut cable.input.loads.floor_limit, &cable.problem, &cable.mesh, &x, None);
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
         if cable.mesh.sliding[k].is_some() {
-            let lying = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.body);
+            let lying = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.loads.body);
             if let Some(node) = &mut cable.mesh.sliding[k] {
                 node.lying_fractions = lying;
             }

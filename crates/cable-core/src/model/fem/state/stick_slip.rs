@@ -92,7 +92,7 @@ pub(in crate::model::fem) fn update_stick_slip(
     }
     let mut changes = StickSlipChanges {
         same: !floor_friction::renew_limits(
-            &mut cable.input.floor_limit,
+            &mut cable.input.loads.floor_limit,
             &cable.problem,
             &cable.mesh,
             &unknowns.positions,
@@ -110,7 +110,8 @@ pub(in crate::model::fem) fn update_stick_slip(
             continue;
         }
         let mut next = node;
-        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
+        let inertia =
+            cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
         // What would push where it leaves has no tension that friction could raise: with that
         // tension friction goes to nothing. (What pulls where it comes is found in the step: with
         // a test of it friction came and went in one jump, and no state was lawful.)
@@ -118,7 +119,7 @@ pub(in crate::model::fem) fn update_stick_slip(
         let presses = turn > 0.0 && load.at_material[1] > 0.0;
         let exponent = if presses { node.friction * turn } else { 0.0 };
         let pulls = load.pull[0].abs() + load.pull[1].abs();
-        let slack = cable.input.tolerance + EVEN_FORCE * pulls;
+        let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;
         let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
         let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;

@@ -81,7 +81,7 @@ impl BarEnergy {
     /// a slack bar on a round whose loss pushed would rub by a force that nothing presses on.
     fn of(mesh: &Mesh, input: &StepInput, e: usize, at: [f64; 2]) -> Self {
         let (ea, loss) = (mesh.axial_stiffness, input.damping(e));
-        let ratio = input.predicted_length[e] / mesh.rest_length[e];
+        let ratio = input.losses.predicted_length[e] / mesh.rest_length[e];
         let (elastic, viscous) = (Self::spring(ea, 1.0, at), Self::spring(loss, ratio, at));
         if !mesh.is_flexible() || elastic.slope[0] > 0.0 && elastic.slope[0] + viscous.slope[0] > 0.0 {
             return elastic.and(viscous);
@@ -101,7 +101,7 @@ impl BarEnergy {
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, input: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let at = [mesh.path(e, x).length, rest_length(mesh, e, slide)];
-    -mesh.thermal_stretch * BarEnergy::of(mesh, input, e, at).slope[1] + lifted(mesh, input.body, e, j, x)
+    -mesh.thermal_stretch * BarEnergy::of(mesh, input, e, at).slope[1] + lifted(mesh, input.loads.body, e, j, x)
 }
 
 /// Tension along its path of a bar with a sliding node at an end, N, at the present length of its
@@ -212,12 +212,12 @@ fn add_sliding(
     }
     let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.positions[e].norm();
     let carried = mesh.thermal_stretch;
-    let hung = Weight::of(mesh, e, &path, input.body);
+    let hung = Weight::of(mesh, e, &path, input.loads.body);
     let sign = [-1.0, 1.0];
     // Work is measured from the sliding node itself: with friction the two sides of it count
     // differently.
     let weight =
-        [0, 1].map(|j| if slides[j] { input.body.dot(&(hung.center - unknowns.positions[e + j])) } else { 0.0 });
+        [0, 1].map(|j| if slides[j] { input.loads.body.dot(&(hung.center - unknowns.positions[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
     let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
@@ -226,9 +226,9 @@ fn add_sliding(
     // Half of what the bar held at first is among the forces on its nodes.
     let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
     let half = (unknowns.positions[e] + unknowns.positions[e + 1]) * 0.5;
-    let shifted = input.body.dot(&(hung.center - half)) * held;
+    let shifted = input.loads.body.dot(&(hung.center - half)) * held;
     let hang = [0, 1].map(|j| {
-        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - input.body * 0.5) * held }
+        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - input.loads.body * 0.5) * held }
     });
     let across = Mat2::identity() - t * t.transpose();
     for j in 0..2 {
@@ -243,7 +243,7 @@ fn add_sliding(
             if curvature == Curvature::Exact {
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
-                    block -= Weight::bend(mesh, e, j, &path, unknowns.positions[e + j], input.body)
+                    block -= Weight::bend(mesh, e, j, &path, unknowns.positions[e + j], input.loads.body)
                         * ((held + change) * scale);
                 }
             }

@@ -313,7 +313,9 @@ mod tests {
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
             prop_assume!(mesh.rest_length[0] > 0.5);
-            let input = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
+            let mut input = StepInput { scale: vec![1.4], ..StepInput::default() };
+            input.loads.body = BODY;
+            input.losses.predicted_length.clone_from(&mesh.rest_length);
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let unknowns = Unknowns { positions: x.to_vec(), slides: slide.to_vec() };

@@ -38,7 +38,7 @@ impl StepContext<'_> {
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.contacts.meets_nothing(self.problem)
             || (!self.contacts.self_contacts.shape.is_on()
-                && self.contacts.out_of_reach(self.mesh, [&self.input.start, to]))
+                && self.contacts.out_of_reach(self.mesh, [&self.input.supports.start, to]))
     }
 
     /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.
@@ -56,13 +56,13 @@ impl StepContext<'_> {
         let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| bar_energy::rest_length(mesh, e, s)));
         // A step balances the pull with its loss.
         let tension = [0, 1].map(|j| {
-            if slide.is_some() && self.input.moves {
+            if slide.is_some() && self.input.inertial.moves {
                 return bar_energy::pull_on(mesh, self.input, k - 1 + j, x, rest[j]);
             }
             let elastic = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
             if elastic < 0.0 { 0.0 } else { elastic }
         });
-        let body = self.input.body;
+        let body = self.input.loads.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
         let material = rest.map(|l| l / mesh.thermal_stretch);
         let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);

@@ -35,34 +35,70 @@ pub struct Unknowns {
     pub slides: Vec<f64>,
 }
 
-/// The input of a step: supports, loads, inertia and tolerances.
+/// The input of a step.
 #[derive(Clone, Debug, Default)]
 pub struct StepInput {
     /// Factor of each bar's energy (see `sliding_node`); 1 without friction at sliding nodes.
     pub scale: Vec<f64>,
-    /// Distributed force, N/m.
-    pub body: Vec2,
-    /// Predicted slide of each sliding node, m.
-    pub predicted_slide: Vec<f64>,
+    /// Inertia, and hands, which are a part of it.
+    pub inertial: InertialTerms,
+    /// Loss of bars and bends.
+    pub losses: LossTerms,
+    /// Forces from outside.
+    pub loads: Loads,
+    /// Where supports are led, and where the step begins.
+    pub supports: SupportTargets,
+    /// When the iteration ends.
+    pub stopping: StoppingCriteria,
+}
+
+/// Inertia of the nodes in a step.
+#[derive(Clone, Debug, Default)]
+pub struct InertialTerms {
+    /// True if it is a step with inertia.
+    pub moves: bool,
     /// mᵢ a², N/m.
-    pub inertia: Vec<f64>,
+    pub stiffness: Vec<f64>,
     /// x̃, m.
     pub predicted: Vec<Vec2>,
+    /// Predicted slide of each sliding node, m.
+    pub predicted_slide: Vec<f64>,
     /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m);
     /// empty: nothing does.
     pub coupling: Vec<(f64, Vec2)>,
-    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a
-    /// viscous one (0: no loss).
-    pub loss: Vec<[f64; 2]>,
-    /// EI τ/h, N m² (0: no damping).
-    pub bending_damping: f64,
-    /// Predicted length of each bar, m.
-    pub predicted_length: Vec<f64>,
     /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in
     /// this step: a part of inertia and prediction there.
     pub hands: Vec<(usize, f64, Vec2)>,
+}
+
+/// Loss in a step.
+#[derive(Clone, Debug, Default)]
+pub struct LossTerms {
+    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a
+    /// viscous one (0: no loss).
+    pub bars: Vec<[f64; 2]>,
+    /// Predicted length of each bar, m.
+    pub predicted_length: Vec<f64>,
+    /// EI τ/h, N m² (0: no damping).
+    pub bending: f64,
+}
+
+/// Forces from outside in a step.
+#[derive(Clone, Debug, Default)]
+pub struct Loads {
+    /// Distributed force, N/m.
+    pub body: Vec2,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
+    /// Plan view: largest friction force of each node, N (empty otherwise).
+    pub floor_limit: Vec<f64>,
+    /// The time that forces are of, s.
+    pub time_s: f64,
+}
+
+/// Targets of the supports of a step, and the positions that it begins with.
+#[derive(Clone, Debug, Default)]
+pub struct SupportTargets {
     /// Target of each held node, m (others: ignored).
     pub target: Vec<Vec2>,
     /// True if held nodes may stop short of it where an obstacle or the cable is in the way.
@@ -73,8 +109,11 @@ pub struct StepInput {
     pub start: Vec<Vec2>,
     /// Positions from which the iteration begins, m, if an outline moved; else empty.
     pub cleared: Vec<Vec2>,
-    /// Plan view: largest friction force of each node, N (empty otherwise).
-    pub floor_limit: Vec<f64>,
+}
+
+/// When the iteration of a step ends.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StoppingCriteria {
     /// Unbalanced force to reach, N.
     pub tolerance: f64,
     /// Unbalanced force that is accepted at most where contact forces are known no better, N.
@@ -83,10 +122,6 @@ pub struct StepInput {
     pub max_iterations: usize,
     /// Largest move of a node in one iteration, m.
     pub max_move: f64,
-    /// The time that forces are of, s.
-    pub to: f64,
-    /// True if it is a step with inertia.
-    pub moves: bool,
     /// Regularisation to begin with, N/m.
     pub shift: f64,
 }
@@ -98,8 +133,8 @@ impl StepInput {
     #[inline]
     #[must_use]
     pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
-        let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
-        let late = self.predicted_length[e];
+        let [c, slack] = self.losses.bars.get(e).copied().unwrap_or_default();
+        let late = self.losses.predicted_length[e];
         if taut || c == slack {
             (c / l * (p - late), c / l)
         } else {
@@ -111,8 +146,8 @@ impl StepInput {
     #[inline]
     #[must_use]
     pub fn loss_energy(&self, e: usize, taut: bool, l: f64, p: f64) -> f64 {
-        let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
-        let late = self.predicted_length[e];
+        let [c, slack] = self.losses.bars.get(e).copied().unwrap_or_default();
+        let late = self.losses.predicted_length[e];
         if taut || c == slack {
             return 0.5 * (c / l) * (p - late) * (p - late);
         }
@@ -123,13 +158,13 @@ impl StepInput {
     #[inline]
     #[must_use]
     pub fn damping(&self, e: usize) -> f64 {
-        self.loss.get(e).map_or(0.0, |c| c[0])
+        self.losses.bars.get(e).map_or(0.0, |c| c[0])
     }
 
     /// Positions from which the iteration begins, m.
     #[must_use]
     pub fn begins(&self) -> &[Vec2] {
-        if self.cleared.is_empty() { &self.start } else { &self.cleared }
+        if self.supports.cleared.is_empty() { &self.supports.start } else { &self.supports.cleared }
     }
 
     /// The factor of each bar's energy from the grips of the sliding nodes before it.
@@ -148,8 +183,8 @@ impl StepInput {
     /// at positions `at` (m). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their
     /// force to 1e-6 N only.
     pub(in crate::model::fem) fn rounded_tolerance(&self, at: &[Vec2]) -> f64 {
-        let mut tolerance = self.tolerance;
-        for (inertia, x) in self.inertia.iter().zip(at) {
+        let mut tolerance = self.stopping.tolerance;
+        for (inertia, x) in self.inertial.stiffness.iter().zip(at) {
             let rounding = INERTIA_ROUNDINGS * f64::EPSILON * inertia * x.norm();
             if rounding > tolerance {
                 tolerance = rounding;

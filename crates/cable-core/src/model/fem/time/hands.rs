@@ -28,7 +28,7 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
 
 /// Keeps the force of the cable on what hands hold, as unknowns balances it.
 pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unknowns) {
-    for &(k, stiffness, at) in &cable.input.hands {
+    for &(k, stiffness, at) in &cable.input.inertial.hands {
         cable.answers.reaction[k] = (unknowns.positions[k] - at) * stiffness;
     }
 }
@@ -98,7 +98,7 @@ impl HandDrive {
 pub(in crate::model::fem) fn report_held_back(cable: &mut CableState, unknowns: &Unknowns) {
     for (support, node) in cable.meshing.support_node.iter().enumerate() {
         let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
-        if unknowns.positions[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {
+        if unknowns.positions[k] != cable.input.supports.target[k] && !cable.answers.held_back.contains(&support) {
             cable.answers.held_back.push(support);
         }
         if let Some(f) = &mut cable.motion.followers[support]

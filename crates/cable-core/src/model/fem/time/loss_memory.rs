@@ -85,9 +85,9 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
             0.0
         };
         let l = cable.mesh.rest_length[e];
-        let late = cable.input.predicted_length[e];
+        let late = cable.input.losses.predicted_length[e];
         let part = viscous / stiffness;
-        cable.input.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
-        cable.input.loss[e][0] = stiffness;
+        cable.input.losses.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
+        cable.input.losses.bars[e][0] = stiffness;
     }
 }

@@ -54,16 +54,16 @@ impl Sleep {
         self.since = motion.time;
         self.place.clone_from(&motion.positions);
         self.arc_length.clone_from(&mesh.arc_length);
-        self.force.clone_from(&input.force);
-        self.target.clone_from(&input.target);
+        self.force.clone_from(&input.loads.force);
+        self.target.clone_from(&input.supports.target);
         self.held.clone_from(&mesh.held);
         falls_asleep
     }
 
     /// True if the forces and targets of the cable are those of the last look.
     fn same_input(&self, cable: &CableState) -> bool {
-        let (held, target) = (&cable.mesh.held, &cable.input.target);
-        self.force == cable.input.force
+        let (held, target) = (&cable.mesh.held, &cable.input.supports.target);
+        self.force == cable.input.loads.force
             && self.held == *held
             && self.target.len() == target.len()
             && (0..target.len()).filter(|k| held[*k]).all(|k| self.target[k] == target[k])

@@ -68,8 +68,8 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
     let mut sum = [Vec2::zeros(); 4];
     sum[WEIGHT] = problem.weight * problem.length;
-    sum[LOADS] = (input.body - problem.weight) * problem.length;
-    let to = input.to;
+    sum[LOADS] = (input.loads.body - problem.weight) * problem.length;
+    let to = input.loads.time_s;
     for (s, _) in problem.supports.iter().zip(&cable.meshing.support_node).filter(|(_, node)| node.is_some()) {
         sum[WEIGHT] += gravity * s.mass;
         if s.kind == SupportKind::Load {
@@ -82,7 +82,7 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
         sum[SUPPORTS] -= cable.answers.reaction[k];
     }
-    for &(k, stiffness, at) in &input.hands {
+    for &(k, stiffness, at) in &input.inertial.hands {
         sum[SUPPORTS] += (at - x[k]) * stiffness;
     }
     if cable.meshing.was_contact_free {
@@ -96,8 +96,8 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
         let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.slip);
         sum[CONTACTS] -= rub.tangent * (slope * rub.touch.material_share(moves));
     }
-    for (k, &limit) in input.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
-        let slid = cable.contacts.floor_slip[k] + (x[k] - input.start[k]);
+    for (k, &limit) in input.loads.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
+        let slid = cable.contacts.floor_slip[k] + (x[k] - input.supports.start[k]);
         sum[CONTACTS] -= friction::at_plane(slid, limit, cable.contacts.slip).1;
     }
     for k in 1..mesh.nodes().saturating_sub(1) {
@@ -111,7 +111,7 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
             *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, l(k));
         }
         for (e, side) in [(k - 1, 1), (k, 0)] {
-            *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slides), input.body)[side];
+            *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slides), input.loads.body)[side];
         }
     }
     sum

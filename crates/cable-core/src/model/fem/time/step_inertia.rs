@@ -19,39 +19,39 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
     for k in 0..m.positions.len() {
-        input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
-        input.inertia[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;
+        input.inertial.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+        input.inertial.stiffness[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;
         if mesh.sliding[k].is_some() {
             let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
             let s = mesh.arc_length[k];
-            input.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
+            input.inertial.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
         }
     }
     // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
-    let predicted = &input.predicted;
-    input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+    let predicted = &input.inertial.predicted;
+    input.inertial.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
         let chord = predicted[e + 1] - predicted[e];
         (cable.problem.linear_density * length * a * a, chord)
     }));
     for (s, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {
         if let Some(k) = node {
-            input.inertia[*k] += s.mass * a * a;
+            input.inertial.stiffness[*k] += s.mass * a * a;
         }
     }
     for (hand, node) in m.hands.iter().zip(&cable.meshing.support_node) {
         let (Some(hand), Some(k)) = (hand, *node) else { continue };
         let (stiffness, at) = hand.pull(h, m.positions[k]);
-        let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
-        input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
-        input.inertia[k] = both;
-        input.hands.push((k, stiffness, at));
+        let (inertia, both) = (input.inertial.stiffness[k], input.inertial.stiffness[k] + stiffness);
+        input.inertial.predicted[k] = (input.inertial.predicted[k] * inertia + at * stiffness) / both;
+        input.inertial.stiffness[k] = both;
+        input.inertial.hands.push((k, stiffness, at));
     }
-    input.moves = true;
+    input.inertial.moves = true;
     let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubs));
-    input.loss.fill([cable.problem.axial_stiffness * time * rate; 2]);
-    input.bending_damping = mesh.bending_stiffness * time / h;
+    input.losses.bars.fill([cable.problem.axial_stiffness * time * rate; 2]);
+    input.losses.bending = mesh.bending_stiffness * time / h;
     for e in 0..mesh.rest_length.len() {
-        input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+        input.losses.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
             mesh.path(e, &m.positions).length
         } else {
             let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();

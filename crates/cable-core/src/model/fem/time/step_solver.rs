@@ -26,7 +26,7 @@ impl SolverMemory {
             } else if cable.mesh.held[k] {
                 // Short bars beside a support would have to turn by large angles if it stayed
                 // behind.
-                *x = cable.input.target[k];
+                *x = cable.input.supports.target[k];
             }
         }
         if cable.step_context().is_out_of_reach(&unknowns.positions) {

@@ -53,7 +53,8 @@ pub(in crate::model::fem) fn cable_along_route(
     let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
     let (normal_per_m, whole) = load_scale(&problem);
     let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
-    let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
+    let mut input = StepInput::default();
+    input.stopping.tolerance = tolerance(&problem, whole);
     let mut cable = CableState {
         contacts: ContactSet::new(barrier, contact, n),
         motion: NodalMotion {
@@ -105,7 +106,7 @@ pub(in crate::model::fem) fn cable_along_route(
     prepare_input(&mut cable, 0.0, None);
     for k in 0..n {
         if cable.mesh.held[k] {
-            cable.motion.positions[k] = cable.input.target[k];
+            cable.motion.positions[k] = cable.input.supports.target[k];
         }
     }
     thread_pulleys(&mut cable, None);

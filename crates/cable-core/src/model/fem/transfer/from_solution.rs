@@ -295,14 +295,16 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
     }
     let s = &cable.mesh.arc_length;
     let near = NEAR * cable.even();
-    for (k, limit) in cable.input.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !cable.mesh.held[*k]) {
+    for (k, limit) in
+        cable.input.loads.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !cable.mesh.held[*k])
+    {
         let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
         let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
         let asked = match cable.mesh.sliding[k] {
             // The floor holds there first, and the round the rest.
             Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
             None => match (curve.force(low, near), curve.force(high, near)) {
-                (Some(before), Some(after)) => Some(after - before + cable.input.body * (high - low)),
+                (Some(before), Some(after)) => Some(after - before + cable.input.loads.body * (high - low)),
                 _ => None,
             },
         };
@@ -327,7 +329,7 @@ pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &Solu
             (0.5 * (s[k] + s[k.saturating_sub(1)]), 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]))
         };
         let (Some(before), Some(after)) = (curve.force(low, near), curve.force(high, near)) else { continue };
-        let pushed = before - after - cable.input.body * (high - low);
+        let pushed = before - after - cable.input.loads.body * (high - low);
         let normal = pushed.dot(&touch.pair.gap.normal);
         let limit = touch.pair.gap.friction * normal;
         if limit > 0.0 {

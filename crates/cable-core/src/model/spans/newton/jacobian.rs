@@ -1,5 +1,6 @@
 //! The system of a section has its unknowns, its equations, and their derivatives.
 
+use crate::linalg::PivotingBand;
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::ContactPath;
 use crate::model::spans::boundary::curve::BoundaryPoint;
@@ -8,8 +9,10 @@ use crate::model::spans::boundary::segment_cursor::CachedPiece;
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::point_load;
-use crate::model::spans::numerics::band_lu::Band;
 use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
+
+/// A row sees the unknowns of its contact and of both spans beside it: four on either side.
+type Band = PivotingBand<4, 13>;
 
 fn count(section: &CableSection) -> usize {
     6 * section.contacts.len() + 2

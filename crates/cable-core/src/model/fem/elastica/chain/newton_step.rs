@@ -8,9 +8,8 @@
 use crate::contact::Gap;
 use crate::energy::bending::{BendingEnergy, ClampBend};
 use crate::energy::{Curvature, Energy};
-use crate::linalg::{BandFactor, BandMatrix};
+use crate::linalg::{BandFactor, BandMatrix, PivotingBand};
 use crate::math::{Mat2, Vec2, perp};
-use crate::model::fem::elastica::band_lu::BandLu;
 use crate::model::fem::elastica::chain::Chain;
 use crate::model::fem::elastica::chain::contacts::ChainContact;
 
@@ -26,6 +25,9 @@ const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
 
 /// Half-bandwidth: a node sees two neighbours on each side.
 const HALF_BAND: usize = 5;
+
+/// The matrix with friction, which is not symmetric.
+type FrictionMatrix = PivotingBand<HALF_BAND, { 3 * HALF_BAND + 1 }>;
 
 /// The second derivative with which a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +88,9 @@ impl Chain<'_> {
             self.assemble(&mut system.matrix, &mut right, resistance, hessian);
             system.factor.factor(&system.matrix).ok()?;
             if self.contacts.iter().any(ChainContact::rubs) {
-                self.matrix_with_friction(&system.matrix).solve(&mut right).then_some(())?;
+                let mut matrix = self.matrix_with_friction(&system.matrix);
+                matrix.scale(&mut right);
+                matrix.solve(&mut right).then_some(())?;
             } else {
                 system.factor.solve_in_place(&mut right);
             }
@@ -253,12 +257,12 @@ impl Chain<'_> {
     /// The matrix with friction that follows its normal force within the step. With the normal
     /// force of the step before, each change of one force changes the other by more where an end is
     /// pressed against a corner, and the iteration diverges.
-    fn matrix_with_friction(&self, matrix: &BandMatrix) -> BandLu {
+    fn matrix_with_friction(&self, matrix: &BandMatrix) -> FrictionMatrix {
         let size = matrix.rows();
-        let mut band = BandLu::new(size, HALF_BAND);
+        let mut band = FrictionMatrix::new(size);
         for i in 0..size {
             for j in i.saturating_sub(HALF_BAND)..(i + HALF_BAND + 1).min(size) {
-                band.set(i, j, matrix.get(i, j));
+                band.add(i, j, matrix.get(i, j));
             }
         }
         for t in self.contacts.iter().filter(|t| t.rubs()) {

@@ -110,7 +110,7 @@ pub fn add_friction(
 /// Plan view: friction of every node on the floor; returns its energy, J.
 pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, unknowns: &Unknowns) -> f64 {
     let mut value = 0.0;
-    for (i, &limit) in input.floor_limit.iter().enumerate() {
+    for (i, &limit) in input.loads.floor_limit.iter().enumerate() {
         let scale = node_scale(input, i);
         if let Some(sliding) = &mesh.sliding[i] {
             let (d, slope, bend) = friction::at(
@@ -122,7 +122,7 @@ pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &Cont
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);
         } else {
-            let slid = contacts.floor_slip[i] + (unknowns.positions[i] - input.start[i]);
+            let slid = contacts.floor_slip[i] + (unknowns.positions[i] - input.supports.start[i]);
             let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
             value += d * scale;
             s.add_gradient(i, slope * scale);
