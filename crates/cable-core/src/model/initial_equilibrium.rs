@@ -70,7 +70,9 @@ pub fn initial_equilibrium(
         warnings.iter_mut().for_each(of_flexible);
     }
     let answer = spans.solution();
-    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer.nodes);
+    let clear = !meets_outline(problem, robot_pose, &answer)
+        && !meets_itself(problem, &answer.nodes)
+        && !is_buried(problem, &answer.nodes);
     Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
 }
 
@@ -127,10 +129,10 @@ pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     Warning::new(WarningCause::SlidFromRoute { why }, &problem.cable.name, 0.0, [0.0; 2])
 }
 
-/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one,
-/// it bends from there; and supports that let go later hold it.
+/// The cable as `spans` can lay it: without the robot, which moves; as one that can pass itself; a
+/// stiff one as a flexible one, it bends from there; and supports that let go later hold it.
 fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
-    let plain = Problem::without_outline(problem.clone());
+    let plain = Problem::without_self_contact(Problem::without_outline(problem.clone()));
     let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
     if plain.bending_stiffness == 0.0 && !plain.supports.iter().any(lets_go) {
         return plain;
