@@ -62,7 +62,8 @@ impl CableSolution {
 fn unknown_slack_end(contact: &ContactReport, problem: &Problem, rounding_m: f64) -> Option<f64> {
     let [a, b] = [contact.tension_before_n, contact.tension_after_n];
     let (low, high, length) = (smaller(a, b), larger(a, b), contact.ends_m - contact.begins_m);
-    if !(low > 0.0 && length > 0.0) || !problem.cable.friction_mobilised.is_default() {
+    let may_slide = problem.cable.friction_mobilised.is_default();
+    if !(may_slide && low > 0.0 && length > 0.0) {
         return None;
     }
     let missing_n = problem.axial_stiffness * rounding_m * (high / low).ln() / length;

@@ -89,6 +89,8 @@ fn without(problem: &Problem, neglects: NeglectedEffect) -> Problem {
             this.world = Arc::new(World::new(&[], this.cable.friction, this.radius));
             this.outline = None;
         }
+        // A rest has none.
+        NeglectedEffect::Inertia => {}
         NeglectedEffect::WheelFriction => this.supports.iter_mut().for_each(|s| s.friction = 0.0),
     }
     this

@@ -72,6 +72,7 @@ impl Sentence for NextCheaper {
             NeglectedEffect::FloorFriction => "the friction of the floor",
             NeglectedEffect::Obstacles => "obstacles",
             NeglectedEffect::WheelFriction => "the friction of wheels",
+            NeglectedEffect::Inertia => "inertia",
         };
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
             return format!("{}, without {what}: no answer", self.model);
