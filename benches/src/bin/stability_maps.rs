@@ -3,7 +3,8 @@
 //! Run from the root of the repository:
 //! `cargo run --release -p cable-benches --bin stability-maps`. It writes `docs/charts/maps.csv`,
 //! `maps.svg` and `maps.md`, and fails where a cell is wrong in silence; `-- drag-fem` measures
-//! some maps and prints what is not right.
+//! some maps and prints what is not right, `-- anew drag-fem` measures them anew, takes the others
+//! as they are in `maps.csv`, and writes all.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -28,12 +29,17 @@ struct Cell {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let mut asked: Vec<String> = std::env::args().skip(1).collect();
+    let anew = asked.first().is_some_and(|a| a == "anew");
+    if anew {
+        asked.remove(0);
+    }
+    let is_asked = |m: &Map| asked.is_empty() || asked.iter().any(|a| a == m.id);
     let mut measured = Vec::new();
-    for map in maps().into_iter().filter(|m| asked.is_empty() || asked.iter().any(|a| a == m.id)) {
-        let cells = cells(&map);
+    for map in maps().into_iter().filter(|m| anew || is_asked(m)) {
+        let cells = if is_asked(&map) { cells(&map) } else { measured_before(&map)? };
         println!("{}: {}", map.id, counts(&cells).join(", "));
-        for cell in cells.iter().filter(|c| !asked.is_empty() && c.verdict != Verdict::Right) {
+        for cell in cells.iter().filter(|c| is_asked(&map) && !asked.is_empty() && c.verdict != Verdict::Right) {
             println!("  {:.4e} {:.4e}: {}, {:?}", cell.at[0], cell.at[1], cell.verdict.name(), cell.error);
         }
         measured.push((map, cells));
@@ -43,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let wrong = measured.iter().flat_map(|m| &m.1).filter(|c| c.verdict == Verdict::Wrong).count();
     println!("{wrong} cells are wrong in silence");
-    if asked.is_empty() {
+    if asked.is_empty() || anew {
         std::fs::create_dir_all(FOLDER)?;
         table(&measured)?;
         std::fs::write(format!("{FOLDER}/maps.svg"), picture(&measured))?;
@@ -70,6 +76,26 @@ fn cells(map: &Map) -> Vec<Cell> {
     });
     numbered.sort_by_key(|(k, _)| *k);
     numbered.into_iter().map(|(_, cell)| cell).collect()
+}
+
+/// The cells of a map as they are in the table.
+fn measured_before(map: &Map) -> Result<Vec<Cell>, Box<dyn Error>> {
+    let mut found = Vec::new();
+    for row in csv::Reader::from_path(format!("{FOLDER}/maps.csv"))?.into_records() {
+        let row = row?;
+        if row.get(0) != Some(map.id) {
+            continue;
+        }
+        let k = found.len();
+        let at = [map.axes[0].value(k % CELLS, CELLS), map.axes[1].value(k / CELLS, CELLS)];
+        let verdict = Verdict::ALL.into_iter().find(|v| row.get(4) == Some(v.name()));
+        let verdict = verdict.ok_or_else(|| format!("{}: no verdict in {row:?}", map.id))?;
+        found.push(Cell { at, verdict, error: row.get(5).and_then(|e| e.parse().ok()) });
+    }
+    match found.len() == CELLS * CELLS {
+        true => Ok(found),
+        false => Err(format!("{}: {} cells in the table", map.id, found.len()).into()),
+    }
 }
 
 /// Returns how many cells have each verdict, but for none.

@@ -2,8 +2,8 @@
 //! not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, NextCheaper, Node, Pressure,
-    Solution, SupportReaction, TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, InertiaEffect, ModelReason, NextCheaper, Node,
+    Pressure, Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -20,7 +20,8 @@ pub struct Answer<'a> {
     pub time_s: Option<f64>,
     pub model: &'static str,
     pub reason: &'a ModelReason,
-    /// The error of the next cheaper choice, of a choice by `auto` at rest.
+    /// The error of the next cheaper choice, of a choice by `auto` at rest; in motion with errors,
+    /// that of a run without inertia so far.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_cheaper: Option<NextCheaper>,
     pub converged: bool,
@@ -39,6 +40,9 @@ pub struct Answer<'a> {
     /// The greatest tensions of the run so far and their errors, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
+    /// How fast the run is so far, and whether masses matter in it; of one with inertia only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<InertiaEntry>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// The place at which a cable is pressed hardest against what leads it; null where nothing
@@ -97,6 +101,30 @@ impl RunPeaksEntry {
     }
 }
 
+/// Speeds of a run so far beside those at which inertia shows.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct InertiaEntry {
+    pub greatest_speed_m_per_s: f64,
+    /// Over the speed of waves of stretch.
+    pub mach_number: f64,
+    /// Over the square root of gravity times length; null without gravity.
+    pub froude_number: Option<f64>,
+    /// True if a run without inertia differs by more than the tolerance or has no answer; null
+    /// where none goes beside this one.
+    pub matters: Option<bool>,
+}
+
+impl InertiaEntry {
+    fn of(effect: &InertiaEffect) -> Self {
+        Self {
+            greatest_speed_m_per_s: effect.numbers.greatest_speed_m_per_s,
+            mach_number: effect.numbers.mach,
+            froude_number: effect.numbers.froude,
+            matters: effect.matters(),
+        }
+    }
+}
+
 /// A warning as data, the unit of its value and limit, and the sentence.
 #[derive(Debug, Serialize)]
 pub struct WarningEntry<'a> {
@@ -138,6 +166,8 @@ pub struct Figures {
     pub bending: Vec<NeglectedBending>,
     /// The greatest tensions of a run so far, one a cable.
     pub run_peaks: Vec<RunPeaksEntry>,
+    /// How fast the motion is, and what it would be without inertia.
+    pub inertia: Option<InertiaEffect>,
     /// The answers of other models and meshes, where they were asked for.
     pub compared: Vec<ComparedEntry>,
 }
@@ -240,6 +270,7 @@ pub fn answer<'a>(
         max_tension_arc_length_m: top.arc_length_m,
         peaks: s.cables.iter().filter_map(|c| c.peaks.map(|of| OfCable { cable: name(c), of })).collect(),
         run_peaks: s.cables.iter().zip(&figures.run_peaks).map(|(c, &of)| OfCable { cable: name(c), of }).collect(),
+        inertia: figures.inertia.as_ref().map(InertiaEntry::of),
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
         sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),
         summary: figures.cables.iter().map(|of| summary(of, figures)).collect(),

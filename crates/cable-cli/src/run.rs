@@ -13,7 +13,7 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
-use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
+use cable_core::solution::{InertiaEffect, Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
@@ -78,6 +78,7 @@ struct Outputs {
     totals: Option<RunTotals>,
     /// The greatest tensions of each cable in the run so far.
     run_peaks: Vec<RunPeaksEntry>,
+    inertia: Option<InertiaEffect>,
 }
 
 /// Totals of a whole run.
@@ -85,13 +86,18 @@ struct RunTotals {
     /// Of the cable that is pulled hardest.
     peaks: RunPeaks,
     relative_error: Option<f64>,
+    /// How fast the motion is, and what it would be without inertia.
+    inertia: Option<InertiaEffect>,
+    /// True if errors were asked for.
+    errors_asked: bool,
 }
 
 impl RunTotals {
-    fn of(timeline: &Timeline) -> Option<Self> {
+    fn of(timeline: &Timeline, errors_asked: bool) -> Option<Self> {
         let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
         let peaks = timeline.monitor().peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
-        Some(Self { peaks, relative_error: timeline.monitor().relative_error() })
+        let relative_error = timeline.monitor().relative_error();
+        Some(Self { peaks, relative_error, inertia: timeline.inertia_effect(), errors_asked })
     }
 
     fn lines(&self, tolerance: f64) -> Vec<String> {
@@ -120,7 +126,10 @@ impl RunTotals {
                 false => String::new(),
             };
             lines.push(format!("Greatest error of its forces {error:.1e} of that{asked}"));
+        } else if self.errors_asked {
+            lines.push("Errors of its forces are not known: no coarser run goes beside it".to_owned());
         }
+        lines.extend(self.inertia.map(|effect| effect.to_string()));
         lines
     }
 }
@@ -131,7 +140,8 @@ impl Outputs {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
-        let figures = Figures { cables, run_peaks: self.run_peaks.clone(), ..Figures::default() };
+        let figures =
+            Figures { cables, run_peaks: self.run_peaks.clone(), inertia: self.inertia, ..Figures::default() };
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| {
@@ -151,7 +161,8 @@ impl Outputs {
 
     /// Notes what is known of the run so far.
     fn update_totals(&mut self, timeline: &Timeline) {
-        self.totals = RunTotals::of(timeline);
+        self.totals = RunTotals::of(timeline, !self.arguments.no_errors);
+        self.inertia = timeline.inertia_effect();
         self.run_peaks = timeline.monitor().peaks().iter().map(RunPeaksEntry::of).collect();
     }
 
@@ -261,6 +272,7 @@ pub fn run(a: RunArguments) -> CommandResult {
         progress: Progress::new(),
         totals: None,
         run_peaks: Vec::new(),
+        inertia: None,
         peaks_since_output: Vec::new(),
         warning_log: WarningLog::default(),
         last: None,
@@ -382,7 +394,7 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
         Err(e) => return Err(end_with_error(outputs, &at_rest, e)),
     };
     if !outputs.arguments.no_errors {
-        timeline = timeline.with_errors();
+        timeline = timeline.with_errors().with_next_cheaper();
     }
     outputs.update_totals(&timeline);
     for k in 1..=count {

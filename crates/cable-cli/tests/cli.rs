@@ -247,6 +247,7 @@ fn run_says_that_a_greatest_tension_depends_on_small_differences() {
     };
     let told = run(&[]);
     assert!(told.contains("It depends on small differences"), "{told}");
+    assert!(told.contains("Mach number ") && told.contains(": inertia matters at tolerance 1.0e-3 ("), "{told}");
     let lines = run(&["--json"]);
     let last: Value = serde_json::from_str(lines.lines().last().expect("a line")).unwrap();
     let of_run = &last["run_peaks"][0];
@@ -254,8 +255,12 @@ fn run_says_that_a_greatest_tension_depends_on_small_differences() {
     let range = |key: &str, end: usize| of_run[key][end].as_f64().expect("a range");
     assert!(range("greatest_tension_range_n", 0) <= greatest && greatest <= range("greatest_tension_range_n", 1));
     assert_eq!(of_run["depends_on_small_differences"], true, "{of_run}");
+    let inertia = &last["inertia"];
+    assert!(inertia["mach_number"].as_f64() > Some(0.0) && inertia["froude_number"].as_f64() > Some(0.1), "{inertia}");
+    assert_eq!((&inertia["matters"], &last["next_cheaper"]["neglects"]), (&true.into(), &"inertia".into()), "{last}");
     let unknown: Value = serde_json::from_str(run(&["--json", "--no-errors"]).lines().last().expect("a line")).unwrap();
     assert!(unknown["run_peaks"][0]["depends_on_small_differences"].is_null(), "{unknown}");
+    assert!(unknown["inertia"]["matters"].is_null() && unknown["inertia"]["mach_number"].is_f64(), "{unknown}");
 }
 
 #[test]

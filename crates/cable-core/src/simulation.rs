@@ -166,6 +166,12 @@ impl Simulation {
     /// # Errors
     /// As [`Self::new`].
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
+        settings.validate()?;
+        Self::of_models(scene, model, settings, question)
+    }
+
+    /// The same, with settings that may be those of a coarser run.
+    fn of_models(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
         if !model.is_automatic() {
             let source = ModelSource::Registered(model);
@@ -200,13 +206,14 @@ impl Simulation {
     where
         F: Fn(Arc<Problem>, Settings) -> Result<Box<dyn Mechanics>, SolveError> + Send + Sync + 'static,
     {
+        settings.validate()?;
         Self::by_source(scene, settings, ModelSource::External(Arc::new(constructor)))
     }
 
     /// As [`Self::with_settings`], by a model of the program or of the user.
     fn by_source(scene: Scene, settings: Settings, source: ModelSource) -> Result<Self, Error> {
         if let ModelSource::Registered(model) = source {
-            return Self::with_settings(scene, model, settings);
+            return Self::of_models(scene, model, settings, Question::Rest);
         }
         let problems = problems(&scene)?;
         let choice = Choice { model: source.model(), source, reason: ModelReason::Requested };
@@ -548,6 +555,7 @@ impl Simulation {
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
+        settings.validate()?;
         let mut next = Self::by_source(scene, settings, self.source.clone())?;
         next.reason.clone_from(&self.reason);
         next.carry(self)?;

@@ -7,14 +7,16 @@
 
 mod coarse;
 mod monitor;
+mod without_inertia;
 
 pub use self::monitor::RunMonitor;
+use self::without_inertia::RunWithoutInertia;
 
 use crate::error::SolveError;
 use crate::model::Inertia;
 pub use crate::simulation::STEP_S;
 use crate::simulation::Simulation;
-use crate::solution::{Solution, TensionPeaks};
+use crate::solution::{InertiaEffect, Solution, TensionPeaks};
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60,
 /// 1/240 and 1/3840 s are whole.
@@ -185,6 +187,7 @@ pub struct Timeline {
     /// Steps made.
     count: u64,
     monitor: RunMonitor,
+    without_inertia: Option<RunWithoutInertia>,
 }
 
 impl std::fmt::Debug for Timeline {
@@ -209,7 +212,7 @@ impl Timeline {
         let given = step_s.map(|s| Simulation::check_step(s, inertia).map(|()| Instant::nearest(s).max(Instant(1))));
         let step = given.transpose()?.unwrap_or_else(|| usual_step(inertia));
         let monitor = RunMonitor::new(&simulation);
-        Ok(Self { simulation, inertia, step, count: 0, monitor })
+        Ok(Self { simulation, inertia, step, count: 0, monitor, without_inertia: None })
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where
@@ -218,6 +221,25 @@ impl Timeline {
     pub fn with_errors(mut self) -> Self {
         self.monitor = RunMonitor::with_errors(&mut self.simulation, self.inertia);
         self
+    }
+
+    /// The same, with a run without inertia beside it, as `auto` has it: answers say what that next
+    /// cheaper choice would have cost in error so far. Beside one without inertia there is none.
+    #[must_use]
+    pub fn with_next_cheaper(mut self) -> Self {
+        self.without_inertia = RunWithoutInertia::beside(&self.simulation, self.inertia, self.step_s());
+        self
+    }
+
+    /// The Mach and Froude numbers of the motion so far, and what it would be without inertia; None
+    /// of a run that has none.
+    #[must_use]
+    pub fn inertia_effect(&self) -> Option<InertiaEffect> {
+        (self.inertia == Inertia::Dynamic).then(|| InertiaEffect {
+            numbers: self.monitor.motion_numbers(),
+            without: self.without_inertia.as_ref().map(|run| run.next_cheaper(&self.monitor)),
+            tolerance: self.simulation.settings().tolerance,
+        })
     }
 
     /// The simulation at the last step made.
@@ -249,6 +271,9 @@ impl Timeline {
             advance(&mut self.simulation, next.seconds(), self.inertia)?;
             self.count += 1;
             self.monitor.follow(&mut self.simulation);
+            if let Some(run) = &mut self.without_inertia {
+                run.follow(&self.simulation, self.count);
+            }
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
@@ -257,6 +282,9 @@ impl Timeline {
         } else {
             self.simulation.solution()
         };
+        if let Some(run) = &self.without_inertia {
+            solution.next_cheaper = Some(run.next_cheaper(&self.monitor));
+        }
         // Adding steps up rounds; the instant asked for is the one meant.
         solution.time_s = instant.max(self.step.times(self.count)).seconds();
         Ok(solution)

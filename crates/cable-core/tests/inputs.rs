@@ -279,8 +279,8 @@ fn a_similarity_is_none_where_solvers_are_at_home() {
 fn a_very_fine_mesh_begins_at_a_coarse_one() {
     let flat = ground("[[-20.0, 0.0], [30.0, 0.0]]");
     let ends = format!("{}, {}", fixed("a", 0.0, 5.0), fixed("b", 10.0, 5.0));
-    let s = rest(&scene(&(cable(16.0, 0.028, "self_contact = true\nsegments = 3000", &ends) + &flat)), Model::Auto)
-        .unwrap();
+    let s =
+        rest(&scene(&(cable(16.0, 0.028, "self_contact = true\nsegments = 3000", &ends) + &flat)), Model::Fem).unwrap();
     let held: f64 = s.cables[0].supports.iter().map(|r| -r.reaction_y_n).sum();
     let lies: f64 = s.cables[0].contacts.iter().map(|c| c.normal_n).sum();
     let weight = 16.0 * 9.80665 * scene(&cable(16.0, 0.028, "", &ends)).cables[0].linear_density_kg_per_m;

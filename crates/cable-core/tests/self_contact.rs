@@ -6,6 +6,7 @@
 use cable_core::contact::distance::cross_properly;
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
+use cable_core::solution::ModelReason;
 use cable_core::{Model, Settings, Simulation};
 
 const FLOOR: f64 = -0.5;
@@ -181,6 +182,63 @@ fn a_cable_that_does_not_meet_itself_is_as_it_was() {
     };
     let (with, without) = (tension(true), tension(false));
     assert!((with / without - 1.0).abs() < 1e-6, "{with} {without}");
+}
+
+/// Every such scene was answered by `fem`.
+#[test]
+fn auto_rests_a_cable_that_does_not_meet_itself_as_one_that_can_pass_itself_and_moves_it_as_one_that_cannot() {
+    for ends in [[[-2.0, 1.5], [2.0, 1.0]], [[0.0, 6.0], [1.5, 5.0]]] {
+        let mut settled = [true, false].map(|self_contact| {
+            let mut scene = scene(5.0, 80, ends);
+            scene.cables[0].self_contact = self_contact;
+            let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+            sim.settle().unwrap();
+            assert_eq!(sim.model(), Model::Spans);
+            sim
+        });
+        let [with, without] = settled.each_ref().map(Simulation::solution);
+        assert_eq!(settled[0].reason(), &ModelReason::ClearOfItself);
+        assert_eq!(with.cables[0].nodes, without.cables[0].nodes);
+        assert!(with.cables[0].assumptions.self_contact && !without.cables[0].assumptions.self_contact);
+        // Once time runs it is an obstacle to itself.
+        let [sim, _] = &mut settled;
+        let mut without_inertia = sim.clone();
+        sim.step(1.0 / 60.0).unwrap();
+        assert_eq!((sim.model(), sim.reason()), (Model::Fem, &ModelReason::Inertia));
+        for _ in 0..3 {
+            without_inertia.step_quasi_static(1.0 / 60.0).unwrap();
+            assert_eq!((without_inertia.model(), without_inertia.reason()), (Model::Fem, &ModelReason::SelfContact));
+        }
+    }
+}
+
+/// An end that is drawn through the other leg, by `auto`.
+#[test]
+fn auto_lets_no_end_through_its_own_leg() {
+    let mut sim = Simulation::new(scene(6.0, 60, [[0.0, 3.0], [1.5, 2.0]]), Model::Auto).unwrap();
+    sim.settle().unwrap();
+    assert_eq!(sim.model(), Model::Spans);
+    for k in 0..60 {
+        sim.drag_support(0, 1, Vec2::new(1.5 - 0.03 * f64::from(k), 2.0));
+        sim.step(1.0 / 60.0).unwrap();
+        assert!(own_gap(&sim) > 0.0 && !crosses(&sim), "{k}");
+    }
+}
+
+/// The legs of a long cable between near supports come nearer than the cable is thick at its
+/// lowest point.
+#[test]
+fn auto_asks_fem_where_strands_meet() {
+    let scene = scene(3.0, 60, [[0.0, 6.0], [0.04, 6.0]]);
+    let mut passing = scene.clone();
+    passing.cables[0].self_contact = false;
+    let mut sim = Simulation::new(passing, Model::Auto).unwrap();
+    sim.settle().unwrap();
+    assert!(own_gap(&sim) < 0.0, "{}", own_gap(&sim));
+    let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+    sim.settle().unwrap();
+    assert_eq!((sim.model(), sim.reason()), (Model::Fem, &ModelReason::SelfContact));
+    assert!(own_gap(&sim) > 0.0 && !crosses(&sim), "{}", own_gap(&sim));
 }
 
 #[test]

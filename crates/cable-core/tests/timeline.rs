@@ -1,12 +1,13 @@
 //! Outputs change nothing: whatever is shown in between, states and greatest tensions are the same.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_core::math::Vec2;
 use cable_core::model::Inertia;
-use cable_core::scene::{Motion, Scene, catalog};
+use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
 use cable_core::solution::TensionPeaks;
 use cable_core::solution::WarningKind;
 use cable_core::state::State;
-use cable_core::timeline::{Instant, Timeline};
+use cable_core::timeline::{Instant, RunMonitor, Timeline};
 use cable_core::{Model, Settings, Simulation, SolveError};
 
 /// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the
@@ -181,4 +182,45 @@ fn one_verdict_on_every_mesh() {
     one_verdict("draped-slipping", &catalog::draped_slipping(), &[42, 84, 168, 336], 4.0);
     one_verdict("pile", &catalog::pile(), &[30, 60, 100, 150, 200], 2.0);
     one_verdict("robot-drive", &catalog::robot_drive(), &[42, 84, 168, 336], 10.0);
+}
+
+/// Coarser runs beside steps of more than a third of a second were refused, as their own are more
+/// than a second long: nothing was said of errors.
+#[test]
+fn steps_of_more_than_a_third_of_a_second_have_errors_too() {
+    let (length_m, bob_kg, swing) = (2.0, 10.0, 0.1f64);
+    let top = Support::fixed("top", [0.0, 0.0]);
+    let bob = Support { mass_kg: Some(bob_kg), force_n: Some([0.0, 0.0]), ..Support::new("bob", SupportKind::Load) };
+    let scene = catalog::cable_alone([length_m, 1e-4, 1e8], vec![top, bob]);
+    let aside = |sim: &mut Simulation| {
+        let mut states = sim.states();
+        for state in &mut states {
+            state.position_m.iter_mut().for_each(|at| *at = Vec2::new(swing.sin(), -swing.cos()) * at.norm());
+            state.in_motion = true;
+        }
+        sim.set_states(&states).unwrap();
+    };
+    for step_s in [0.25, 0.4, 0.6, 0.9] {
+        let settings =
+            Settings { segments: Some(12), inner_step_s: Some(step_s), histories: false, ..Settings::default() };
+        let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, settings).unwrap();
+        sim.settle().unwrap();
+        let mut monitor = RunMonitor::with_errors(&mut sim, Inertia::Dynamic);
+        aside(&mut sim);
+        monitor.steer(aside);
+        let (mut off, mut said) = (0.0f64, 0.0f64);
+        for _ in 0..12 {
+            sim.step(step_s).unwrap();
+            monitor.follow(&mut sim);
+            let turned = swing * ((9.80665 / length_m).sqrt() * (1.0 - swing * swing / 16.0) * sim.time_s()).cos();
+            let answer = &sim.answers()[0];
+            let at = answer.nodes[answer.nodes.len() - 1].at();
+            off = off.max((at - Vec2::new(turned.sin(), -turned.cos()) * length_m).norm());
+            said = said.max(answer.errors.position_m.expect("an error"));
+        }
+        println!("steps of {step_s} s: {off:.3} m off, {said:.3} m said");
+        assert!(said >= off, "steps of {step_s} s: {off} m off and {said} m said");
+    }
+    let longer = Settings { inner_step_s: Some(1.5), ..Settings::default() };
+    assert!(Simulation::with_settings(scene, Model::Fem, longer).is_err());
 }

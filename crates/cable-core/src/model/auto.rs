@@ -31,10 +31,11 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, ModelReason) {
         (Model::Spans, ModelReason::MobilisedFriction)
     } else if problem.bending_stiffness > 0.0 {
         (Model::Fem, ModelReason::BendingStiffness)
-    } else if problem.cable.self_contact {
-        (Model::Fem, ModelReason::SelfContact)
     } else if problem.floor_friction.is_some() {
         (Model::Fem, ModelReason::FloorFriction)
+    } else if problem.cable.self_contact {
+        // Where its strands meet `fem` takes over.
+        (Model::Spans, ModelReason::ClearOfItself)
     } else if !problem.world.is_empty() || problem.outline.is_some() {
         (Model::Spans, ModelReason::Obstacles)
     } else if runs_free(problem) {

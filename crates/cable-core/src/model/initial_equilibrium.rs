@@ -5,9 +5,11 @@ use std::sync::Arc;
 
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
+use crate::contact::self_contact_pairs::SelfContact;
+use crate::contact::self_crossings::crossings;
 use crate::error::{NoEquilibrium, SolveError};
 use crate::math::RigidPose;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, ShownEquilibrium, SlideReason, Warning, WarningCause};
 use crate::state::State;
@@ -20,6 +22,11 @@ const ROBOT_CLEARANCE_M: f64 = 0.02;
 const MAX_BURIAL_M: f64 = 0.02;
 /// Depth of the search, m: a node deeper inside came in elsewhere.
 const BURIAL_SEARCH_M: f64 = 0.5;
+
+/// Strands whose surfaces are nearer than this, m, or than this part of the diameter, whichever is
+/// more, are answered by the model that knows of their contact, whose forces begin at 1e-4 m. Less:
+/// a contact may be missed by rounding; more: bends are taken for contacts.
+const STRAND_CLEARANCE: (f64, f64) = (2e-4, 0.1);
 
 /// A first rest.
 #[derive(Clone, Debug)]
@@ -63,7 +70,9 @@ pub fn initial_equilibrium(
         warnings.iter_mut().for_each(of_flexible);
     }
     let answer = spans.solution();
-    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer.nodes);
+    let clear = !meets_outline(problem, robot_pose, &answer)
+        && !meets_itself(problem, &answer.nodes)
+        && !is_buried(problem, &answer.nodes);
     Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
 }
 
@@ -120,10 +129,10 @@ pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     Warning::new(WarningCause::SlidFromRoute { why }, &problem.cable.name, 0.0, [0.0; 2])
 }
 
-/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one,
-/// it bends from there; and supports that let go later hold it.
+/// The cable as `spans` can lay it: without the robot, which moves; as one that can pass itself; a
+/// stiff one as a flexible one, it bends from there; and supports that let go later hold it.
 fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
-    let plain = Problem::without_outline(problem.clone());
+    let plain = Problem::without_self_contact(Problem::without_outline(problem.clone()));
     let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
     if plain.bending_stiffness == 0.0 && !plain.supports.iter().any(lets_go) {
         return plain;
@@ -140,6 +149,26 @@ fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
 pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
     let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
+}
+
+/// Returns whether the cable is an obstacle to itself and two of its strands cross, or touch but
+/// for [`STRAND_CLEARANCE`]. Strands are apart along the cable as [`SelfContact`] has it.
+#[must_use]
+pub(crate) fn meets_itself(problem: &Problem, nodes: &[Node]) -> bool {
+    if !problem.cable.self_contact {
+        return false;
+    }
+    let at: Vec<Vec2> = nodes.iter().map(Node::at).collect();
+    let arc: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
+    let sagitta = |pair: &[Node]| {
+        let bend = pair[0].curvature_per_m.abs().min(pair[1].curvature_per_m.abs());
+        0.125 * bend * (pair[1].at() - pair[0].at()).norm_squared()
+    };
+    let sagitta = nodes.windows(2).map(sagitta).fold(0.0, larger);
+    let diameter = 2.0 * problem.radius;
+    let (least, of_diameter) = STRAND_CLEARANCE;
+    let clearance = larger(least, of_diameter * diameter) + 2.0 * sagitta;
+    SelfContact { diameter }.smallest_gap(&at, &arc, clearance).is_some() || !crossings(&at, |_| true).is_empty()
 }
 
 /// Returns whether a cable lies in an obstacle, deeper than what the models disagree by.

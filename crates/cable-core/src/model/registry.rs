@@ -236,7 +236,7 @@ impl ModelSource {
         match self {
             Self::Registered(model) => build(*model, problem, settings),
             Self::External(constructor) => {
-                settings.validate()?;
+                settings.validate_for_coarse_runs()?;
                 at_natural_scale(problem, settings, &|problem, settings| constructor(problem, settings))
             }
         }
@@ -250,7 +250,7 @@ impl ModelSource {
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene
 /// needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
-    settings.validate()?;
+    settings.validate_for_coarse_runs()?;
     at_natural_scale(problem, settings, &|problem, settings| construct(model, problem, settings))
 }
 

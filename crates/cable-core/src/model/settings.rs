@@ -72,6 +72,8 @@ const SEGMENT_RANGE: (usize, usize) = (1, 100_000);
 /// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that
 /// moves is seen.
 const INNER_STEP_RANGE_S: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
+/// Coarser runs beside one take inner steps up to so many times as long, which nobody is shown.
+const COARSEST_STEP_FACTOR: f64 = 3.0;
 
 impl Settings {
     /// Refuses what no model can work by.
@@ -79,11 +81,20 @@ impl Settings {
     /// # Errors
     /// `Setting`, with the value and what is allowed.
     pub fn validate(&self) -> Result<(), SolveError> {
+        if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEP_RANGE_S.contains(step)) {
+            return Err(refused("inner_step_s", value, ends(&INNER_STEP_RANGE_S), Quantity::Time));
+        }
+        self.validate_for_coarse_runs()
+    }
+
+    /// The same, of a run that may be one of the coarser ones beside another.
+    pub(crate) fn validate_for_coarse_runs(&self) -> Result<(), SolveError> {
         if !(self.tolerance >= MIN_TOLERANCE && self.tolerance.is_finite()) {
             let allowed = [MIN_TOLERANCE, f64::INFINITY];
             return Err(refused("tolerance", self.tolerance, allowed, Quantity::Number));
         }
-        if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEP_RANGE_S.contains(step)) {
+        let coarsest = *INNER_STEP_RANGE_S.start()..=COARSEST_STEP_FACTOR * INNER_STEP_RANGE_S.end();
+        if let Some(value) = self.inner_step_s.filter(|step| !coarsest.contains(step)) {
             return Err(refused("inner_step_s", value, ends(&INNER_STEP_RANGE_S), Quantity::Time));
         }
         if !(MIN_HAND_SPEED..=smoothed_target::MAX_SPEED).contains(&self.hand_speed_m_per_s) {

@@ -178,6 +178,17 @@ impl Problem {
         Arc::new(Self { outline: None, ..Self::clone(&this) })
     }
 
+    /// The same for a model in which the cable can pass itself.
+    #[must_use]
+    pub(crate) fn without_self_contact(this: Arc<Self>) -> Arc<Self> {
+        if !this.cable.self_contact {
+            return this;
+        }
+        let mut passing = Self::clone(&this);
+        passing.cable.self_contact = false;
+        Arc::new(passing)
+    }
+
     /// Distributed force per metre of arc length at a time, N/m: weight + wind.
     #[must_use]
     pub fn body_force(&self, time_s: f64) -> Vec2 {

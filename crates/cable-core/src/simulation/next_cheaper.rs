@@ -24,7 +24,8 @@ pub(super) fn next_cheaper<'a>(
     let settings = Settings { histories: false, ..settings };
     let mut found: Option<NextCheaper> = None;
     for (problem, answer) in cables {
-        if !supports_as_in_scene(problem, answer) {
+        let among_none = problem.world.is_empty() && problem.outline.is_none();
+        if !supports_as_in_scene(problem, answer) || (neglects == NeglectedEffect::Obstacles && among_none) {
             return None;
         }
         let simpler = Arc::new(without(problem, neglects));
@@ -66,7 +67,7 @@ fn neglected_by(reason: &ModelReason) -> Option<NeglectedEffect> {
         ModelReason::BendingStiffness => NeglectedEffect::BendingStiffness,
         ModelReason::SelfContact => NeglectedEffect::SelfContact,
         ModelReason::FloorFriction => NeglectedEffect::FloorFriction,
-        ModelReason::Obstacles => NeglectedEffect::Obstacles,
+        ModelReason::Obstacles | ModelReason::ClearOfItself => NeglectedEffect::Obstacles,
         ModelReason::WheelFriction => NeglectedEffect::WheelFriction,
         ModelReason::Bending { reason, .. } => return neglected_by(reason),
         _ => return None,
@@ -88,6 +89,8 @@ fn without(problem: &Problem, neglects: NeglectedEffect) -> Problem {
             this.world = Arc::new(World::new(&[], this.cable.friction, this.radius));
             this.outline = None;
         }
+        // A rest has none.
+        NeglectedEffect::Inertia => {}
         NeglectedEffect::WheelFriction => this.supports.iter_mut().for_each(|s| s.friction = 0.0),
     }
     this

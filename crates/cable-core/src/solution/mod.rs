@@ -7,10 +7,12 @@
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
 //! | `shared_nodes.rs` | [`SharedNodes`]: the copies of an answer have them in common |
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
+//! | `inertia_effect.rs` | [`InertiaEffect`]: how fast a motion is, and what it would be without inertia |
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
+mod inertia_effect;
 mod model_reason;
 mod next_cheaper;
 pub mod robot_report;
@@ -24,6 +26,7 @@ use crate::model_id::Model;
 use crate::verification::Verification;
 
 pub use self::error_estimates::ErrorEstimates;
+pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
 pub use self::next_cheaper::{NeglectedEffect, NextCheaper};
 use self::robot_report::RobotReport;

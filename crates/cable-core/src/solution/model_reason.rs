@@ -18,8 +18,10 @@ pub enum ModelReason {
     MobilisedFriction,
     /// The cable has bending stiffness.
     BendingStiffness,
-    /// The cable can touch itself.
+    /// The cable can touch itself: its strands meet, or time runs.
     SelfContact,
+    /// The cable could touch itself, and does so nowhere at rest.
+    ClearOfItself,
     /// The floor of a plan view rubs everywhere.
     FloorFriction,
     /// A taut cable among obstacles.

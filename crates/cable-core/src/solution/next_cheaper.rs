@@ -19,6 +19,8 @@ pub enum NeglectedEffect {
     Obstacles,
     /// The friction of wheels and eyes.
     WheelFriction,
+    /// The inertia of all masses.
+    Inertia,
 }
 
 /// The next cheaper choice of a model, with its error.

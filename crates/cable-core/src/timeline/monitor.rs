@@ -7,7 +7,7 @@ use crate::math::larger;
 use crate::model::Inertia;
 use crate::scene::Cable;
 use crate::simulation::Simulation;
-use crate::solution::{CableSolution, Warning, WarningCause};
+use crate::solution::{CableSolution, MotionNumbers, Warning, WarningCause};
 
 /// Looks at each step of a run, and remembers.
 #[derive(Debug)]
@@ -17,6 +17,7 @@ pub struct RunMonitor {
     peaks: Vec<RunPeaks>,
     /// Greatest error of a force so far, N; None where one was not known.
     worst_n: Option<f64>,
+    motion_numbers: MotionNumbers,
 }
 
 impl RunMonitor {
@@ -25,7 +26,7 @@ impl RunMonitor {
     pub fn new(simulation: &Simulation) -> Self {
         let so_far = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };
         let peaks = simulation.answers().iter().map(so_far).collect();
-        Self { coarse: None, peaks, worst_n: Some(0.0) }
+        Self { coarse: None, peaks, worst_n: Some(0.0), motion_numbers: MotionNumbers::default().with(simulation) }
     }
 
     /// The same, with errors in motion: coarser runs go beside one that has settled at its start,
@@ -73,6 +74,12 @@ impl RunMonitor {
         self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
     }
 
+    /// The Mach and Froude numbers of the run so far.
+    #[must_use]
+    pub fn motion_numbers(&self) -> MotionNumbers {
+        self.motion_numbers
+    }
+
     /// Has a simulation say the errors that are known now.
     pub(super) fn set_error_estimates(&self, simulation: &mut Simulation) {
         if let Some(coarse) = &self.coarse {
@@ -82,6 +89,7 @@ impl RunMonitor {
 
     /// Notes what the last step adds to what is known.
     fn note(&mut self, simulation: &Simulation) {
+        self.motion_numbers = self.motion_numbers.with(simulation);
         let mut known = self.coarse.as_ref().map(CoarseRuns::errors);
         for (k, (run, answer)) in self.peaks.iter_mut().zip(simulation.answers()).enumerate() {
             run.peaks = run.peaks.with(answer.peaks_at(simulation.time_s()));

@@ -7,6 +7,7 @@
 //! | `scene_error.rs` | why a scene is refused |
 //! | `solve_error.rs` | why a model has no answer |
 //! | `model_reason.rs` | why a model was taken |
+//! | `inertia.rs` | how fast a motion is, and whether masses matter in it |
 //! | `file_error.rs` | why a file is not read or written |
 //! | `import.rs` | what an import changed, and why it is refused |
 //! | `verification.rs` | verdicts of the laws of mechanics |
@@ -15,6 +16,7 @@
 
 mod file_error;
 mod import;
+mod inertia;
 mod model_reason;
 mod scene_error;
 mod solve_error;

@@ -16,6 +16,9 @@ impl Sentence for ModelReason {
             Self::MobilisedFriction => "friction is fully mobilised towards one end",
             Self::BendingStiffness => "the cable has bending stiffness",
             Self::SelfContact => "the cable can touch itself",
+            Self::ClearOfItself => {
+                "the cable could touch itself, and at rest does so nowhere: contacts as intervals have no discretisation error"
+            }
             Self::FloorFriction => "in plan view the floor rubs everywhere",
             Self::Obstacles => "a taut cable among obstacles: contacts as intervals have no discretisation error",
             Self::EndOverPulleys => "an end hangs over pulleys: contacts as intervals find where it stops running",
@@ -69,6 +72,7 @@ impl Sentence for NextCheaper {
             NeglectedEffect::FloorFriction => "the friction of the floor",
             NeglectedEffect::Obstacles => "obstacles",
             NeglectedEffect::WheelFriction => "the friction of wheels",
+            NeglectedEffect::Inertia => "inertia",
         };
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
             return format!("{}, without {what}: no answer", self.model);

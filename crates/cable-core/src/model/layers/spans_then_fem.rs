@@ -3,8 +3,10 @@
 //!
 //! `spans` goes first. Where it loses the tension, cannot lay the cable, or finds no answer, `fem`
 //! continues from the last state with the friction that acts there ([`Mechanics::warm_start`]);
-//! with inertia it is always `fem`. From time to time an answer of `fem` without inertia is offered
-//! back; `spans` takes it if its own answer there cannot be distinguished from it.
+//! with inertia it is always `fem`. A cable that is an obstacle to itself is answered at rest as if
+//! it could pass itself, and by `fem` where its strands then meet and once time runs. From time to
+//! time an answer of `fem` without inertia is offered back; `spans` takes it if its own answer
+//! there cannot be distinguished from it.
 
 use std::sync::Arc;
 
@@ -13,7 +15,7 @@ use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::gauge::TensionGauge;
-use crate::model::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
+use crate::model::initial_equilibrium::{is_buried, meets_itself, meets_outline, slid_first, slides_on, work};
 use crate::model::mobilised_friction::refuse_mobilised;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -35,7 +37,7 @@ const MAX_INTERVAL: usize = 8;
 #[derive(Clone, Debug)]
 pub struct SwitchingModel {
     settings: Settings,
-    /// With the outline of the robot, of which `spans` knows nothing.
+    /// With the outline of the robot and contact with itself, of which `spans` knows nothing.
     problem: Arc<Problem>,
     spans: SpansModel,
     /// Holds the present state where it is there.
@@ -61,7 +63,8 @@ impl SwitchingModel {
     /// `Unsupported` when the scene needs what `spans` never has.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let dragged = vec![None; problem.supports.len()];
-        let spans = SpansModel::new(Problem::without_outline(problem.clone()), settings)?;
+        let simpler = Problem::without_self_contact(Problem::without_outline(problem.clone()));
+        let spans = SpansModel::new(simpler, settings)?;
         Ok(Self {
             settings,
             robot_pose: problem.outline.as_ref().map(|o| o.placement),
@@ -94,8 +97,10 @@ impl SwitchingModel {
     fn hand_over_to_fem(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
-        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes)) {
-            // Found without knowing of the robot, or no answer: laid anew.
+        let is_buried = || self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes);
+        if self.meets_robot(&answer) || meets_itself(&self.problem, &answer.nodes) || is_buried() {
+            // Found without knowing of the robot or of contact with itself, or no answer: laid
+            // anew.
         } else if let Some(state) = &self.adopted {
             fem.set_state(state)?;
         } else if self.spans.has_equilibrium() {
@@ -160,7 +165,7 @@ impl SwitchingModel {
             return None;
         }
         let answer = fem.solution();
-        if self.meets_robot(&answer) {
+        if self.problem.cable.self_contact || self.meets_robot(&answer) {
             self.interval[0] = self.interval[1];
             return None;
         }
@@ -217,6 +222,9 @@ impl Mechanics for SwitchingModel {
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => why = Some(ModelReason::TouchesRobot),
+                Ok(_) if meets_itself(&self.problem, &self.spans.solution().nodes) => {
+                    why = Some(ModelReason::SelfContact);
+                }
                 Ok(_) if is_buried(&self.problem, &self.spans.solution().nodes) => {
                     why = Some(ModelReason::BuriedWithoutMesh);
                 }
@@ -282,8 +290,9 @@ impl Mechanics for SwitchingModel {
             return self.fem(Some(ModelReason::Inertia))?.advance_gauged(dt_s, inertia, gauge);
         }
         let end_s = self.time_s() + dt_s;
-        let mut why = None;
-        if self.fem.is_none() {
+        // On its way a strand may pass another, which no instant shows.
+        let mut why = self.problem.cable.self_contact.then_some(ModelReason::SelfContact);
+        if self.fem.is_none() && why.is_none() {
             let before = self.robot_pose.map(|_| self.spans.clone());
             match self.spans.advance(dt_s, inertia) {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => {
@@ -332,6 +341,7 @@ impl Mechanics for SwitchingModel {
         self.reason = None;
         let taken = match self.meets_robot(answer) {
             true => Err(ModelReason::TouchesRobot),
+            false if meets_itself(&self.problem, &answer.nodes) => Err(ModelReason::SelfContact),
             false => self.spans.warm_start(answer, time_s).map_err(|e| ModelReason::NoAnswer(Box::new(e))),
         };
         if let Err(why) = taken {
@@ -394,7 +404,14 @@ impl Mechanics for SwitchingModel {
     }
 
     fn solution(&self) -> CableSolution {
-        self.fem.as_ref().map_or_else(|| self.spans.solution(), Mechanics::solution)
+        self.fem.as_ref().map_or_else(
+            || {
+                let mut answer = self.spans.solution();
+                answer.assumptions.self_contact = self.problem.cable.self_contact;
+                answer
+            },
+            Mechanics::solution,
+        )
     }
 
     fn problem(&self) -> &Arc<Problem> {

@@ -47,9 +47,10 @@ mod refinement;
 mod stiffening;
 
 use crate::contact::swept_corners;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
+use crate::scene::SupportKind;
+use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use chain::{Chain, ChainInput, RestState, StabilityOutcome};
@@ -57,6 +58,11 @@ use chain::{Chain, ChainInput, RestState, StabilityOutcome};
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
+
+/// Most of the tension somewhere by which that of a bent cable may fall for its flexible answer to
+/// be taken. Smaller: chains of bars for cables that they take for flexible ones; larger: the
+/// places where a slack cable bends sharply are those of a flexible one.
+const SLIGHT_BEND: f64 = 1e-2;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
@@ -71,6 +77,9 @@ pub fn rest(
     flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
+    if let Some(limit) = flexible.and_then(|flexible| flexible_limit(problem, flexible, tolerance)) {
+        return Some((limit, Cost::default()));
+    }
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.and_then(|flexible| {
         let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
@@ -101,8 +110,48 @@ pub fn rest(
     }
     let cost = Cost { iterations: chain.steps + fine.steps, ..Cost::default() };
     let (coarse, finer) = (chain.solution(), fine.solution());
-    let errors = ErrorEstimates::between(&coarse, &finer);
+    let mut errors = ErrorEstimates::between(&coarse, &finer);
+    if let Some(flexible) = flexible.filter(|answer| bend_length(problem, answer) < fine.bar) {
+        // On bars longer than its bends it is a flexible chain, which cuts off what they are round.
+        errors = errors.componentwise_max(&ErrorEstimates::between(&finer, flexible));
+    }
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
+}
+
+/// Length over which a cable bends at the tension of an answer, √(EI/T), m.
+fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
+    let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(f64::MIN_POSITIVE, larger);
+    (problem.bending_stiffness / greatest).sqrt()
+}
+
+/// The answer for the flexible cable, where its stiffness changes less than the `tolerance`; None
+/// where it changes more, or where the flexible shape has angles, which stiffness rounds off.
+///
+/// Where a cable is bent by κ its tension falls by EI κ²/2, and it leaves what it lies on over a
+/// length √(EI/T) that is short beside 1/κ. The chain of bars knows neither on bars that are
+/// longer.
+fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
+    let has_angles = problem.supports.len() > 2
+        || !problem.loads.is_empty()
+        || problem.supports.iter().any(|s| s.angle.is_some() || s.kind == SupportKind::Pulley);
+    if has_angles || !flexible.breaks.is_empty() {
+        return None;
+    }
+    let greatest = flexible.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+    let fall = |n: &Node| problem.bending_stiffness * n.curvature_per_m * n.curvature_per_m;
+    let hardly = |n: &Node| fall(n) <= smaller(SLIGHT_BEND * n.tension_n, tolerance * greatest);
+    if !flexible.nodes.iter().all(hardly) {
+        return None;
+    }
+    let force_n = flexible.nodes.iter().map(fall).fold(0.0, larger);
+    let bent = ErrorEstimates {
+        max_tension_n: Some(force_n),
+        support_force_n: Some(force_n),
+        contact_force_n: (!flexible.contacts.is_empty()).then_some(force_n),
+        position_m: Some(bend_length(problem, flexible)),
+    };
+    let assumptions = Assumptions { bending_stiffness_n_m2: problem.bending_stiffness, ..flexible.assumptions };
+    Some(CableSolution { assumptions, ..flexible.clone() }.known_to(flexible.errors.plus(&bent)))
 }
 
 /// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the

@@ -1,0 +1,18 @@
+//! This sentence says how fast a motion is, and whether masses matter in it.
+
+use super::{Sentence, display_in_si};
+use crate::solution::InertiaEffect;
+use crate::units::UnitSystem;
+
+display_in_si!(InertiaEffect);
+
+impl Sentence for InertiaEffect {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let mach = format!("Mach number {:.1e}", self.numbers.mach);
+        let froude = self.numbers.froude.map_or_else(String::new, |froude| format!(", Froude number {froude:.1e}"));
+        let (Some(without), Some(matters)) = (self.without, self.matters()) else { return format!("{mach}{froude}") };
+        let verdict = if matters { "matters" } else { "does not matter" };
+        let tolerance = format!("{:.1e}", self.tolerance);
+        format!("{mach}{froude}: inertia {verdict} at tolerance {tolerance} ({})", without.sentence(units))
+    }
+}
