@@ -60,6 +60,9 @@ const OSCILLATION_RATIO: f64 = 40.0;
 /// be told from the background.
 const BAND_OPACITY: f32 = 0.45;
 
+/// Half the size of the mark of a line that is one point, points.
+const PEAK_RADIUS: f32 = 4.5;
+
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
 
@@ -197,6 +200,11 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
             let (colour, style, width) = line_appearance(line, k);
             draw_band(plot, line, colour, [x_si, si]);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
+            if let [_] = points[..] {
+                let mark = egui_plot::Points::new(line.name.clone(), points).color(colour).radius(PEAK_RADIUS);
+                plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
+                continue;
+            }
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
         }
         draw_limits(plot, graph.limits, si, symbol);
