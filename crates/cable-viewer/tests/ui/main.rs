@@ -35,6 +35,7 @@ mod spans;
 mod speed;
 mod stories;
 mod timing;
+mod tools;
 mod torn;
 mod truth;
 mod units;
