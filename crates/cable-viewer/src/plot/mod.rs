@@ -33,7 +33,7 @@ pub const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
 pub const TIME: &str = "time";
 
 /// The time shown, where it is not the present.
-pub const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
+pub const TIME_MARK: Color32 = Color32::from_gray(118);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
