@@ -51,12 +51,13 @@ pub fn ui(
             ribbon.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
         },
         mark: None,
+        hint: None,
         export: view.export == Some(TITLE),
     };
     let mut touched = show(ui, &graph, &shown);
     if let Some(sheet) = &mut touched.export {
-        // Every node, not only those that can be told apart on screen; a column of places has no row
-        // for the peak.
+        // Every node, not only those that can be told apart on screen; a column of places has no
+        // row for the peak.
         sheet.lines = line(all().collect());
     }
     touched

@@ -149,3 +149,23 @@ fn no_warning_names_a_tension_that_the_graph_does_not_show() {
     }
     assert!(warned > 0, "nothing is warned of");
 }
+
+/// The legend above a graph had named limits, each in the other's way and one of them cut.
+#[test]
+fn limits_are_named_at_their_lines_and_hide_each_other_nowhere() {
+    for [service, breaking] in [[80.0, 93.5], [92.0, 93.5], [60.0, 160.0]] {
+        let mut scene = catalog::hanging_span();
+        (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (service, breaking);
+        let harness = open(scene);
+        let graph = harness.get_by_role_and_label(egui::accesskit::Role::Figure, "Along the cable").rect();
+        let mut found = Vec::new();
+        harness.output().shapes.iter().for_each(|s| crate::warnings::galleys(&s.shape, &mut found));
+        let names = found.iter().filter(|(text, ..)| text.starts_with("Service ") || text.starts_with("Breaking "));
+        let inside: Vec<egui::Rect> = names.map(|(_, r, _)| *r).filter(|r| graph.contains_rect(*r)).collect();
+        let over_each_other = |k: usize| inside[..k].iter().any(|r| r.intersects(inside[k]));
+        assert!((1..inside.len()).all(|k| !over_each_other(k)), "{service}, {breaking}: {inside:?}");
+        // A limit that is twice as far as the tension is out of view.
+        let in_view = [service, breaking].iter().filter(|limit| 92.0 > 0.5 * *limit).count();
+        assert_eq!(inside.len(), in_view, "{service}, {breaking}: {found:?}");
+    }
+}
