@@ -6,7 +6,7 @@ use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui, UiB
 use crate::app::{first_steps, menu, tutorial_bar};
 use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
-use crate::state::AppState;
+use crate::state::{AppState, ToolSection};
 use crate::widgets::highlight;
 use crate::{canvas, panels};
 
@@ -38,6 +38,18 @@ impl Section {
             Self::Compare => "Compare",
             Self::UnmarkedPlace => "Tension at a place",
             Self::FrictionRange => "Friction range",
+        }
+    }
+
+    /// The section in which a tool is answered.
+    fn of_tool(tool: ToolSection) -> Self {
+        match tool {
+            ToolSection::MarkedPlace => Self::MarkedPlace,
+            ToolSection::Readouts => Self::Readouts,
+            ToolSection::SafeReach => Self::SafeReach,
+            ToolSection::Compare => Self::Compare,
+            ToolSection::FrictionRange => Self::FrictionRange,
+            ToolSection::Solver => Self::Selected,
         }
     }
 
@@ -141,7 +153,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
-    state.ui.legend_beside = wide && open.results;
+    state.ui.results_beside = wide && open.results;
+    state.ui.legend_beside = told_in_panel;
     if wide && open.results {
         side(ui, Panel::right("read"), INSPECTOR_WIDTH.of(width), |ui| {
             legend::beside(ui, state);
@@ -206,6 +219,12 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
     Panel::left("narrow").default_size(most.min(300.0)).size_range(range).show(ui, |ui| {
         let id = Id::unique("narrow tab");
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+        if let (count @ 1.., Some(tool)) = state.ui.section_request
+            && is_new(ui, Id::unique("tools used in tabs"), count)
+        {
+            let in_results = Column::Results.sections().contains(&Section::of_tool(tool));
+            tab = if in_results && tool != ToolSection::Solver { Tab::Read } else { Tab::Edit };
+        }
         ui.horizontal(|ui| {
             ui.selectable_value(&mut tab, Tab::Edit, "Edit")
                 .on_hover_text("The outline, and what edits the selected thing");
@@ -217,6 +236,9 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
             }
         });
         ui.data_mut(|d| d.insert_temp(id, tab));
+        // On the canvas they would lie over the handles of things.
+        legend::beside(ui, state);
+        safe_reach::legend_beside(ui, state);
         panels::warnings::worst(ui, state, commands);
         ui.separator();
         match tab {
@@ -246,13 +268,20 @@ fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
     if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(Section::SafeReach) {
         return Some(Section::SafeReach);
     }
+    let (count, tool) = state.ui.section_request;
+    let used = is_new(ui, Id::unique((id, "tools used")), count) && count > 0;
+    if let Some(section) = tool.filter(|_| used).map(Section::of_tool)
+        && holds(section)
+    {
+        return Some(section);
+    }
     let pins = state.analysis.references.len();
     let pinned = is_new(ui, Id::unique((id, "pinned")), pins) && pins > 0;
     if pinned && from_elsewhere && holds(Section::Compare) {
         return Some(Section::Compare);
     }
     // The form stands on the right where there is such a panel, else below the outline.
-    match (selected, column, state.ui.legend_beside) {
+    match (selected, column, state.ui.results_beside) {
         (true, Column::Results, true) if panels::warnings::has_more(state) => Some(Section::Warnings),
         (true, Column::Results, true) => Some(Section::Selected),
         (true, Column::Edit, false) => Some(Section::Selected),
@@ -280,7 +309,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
             let hidden = match section {
                 // On the right where there is such a panel, else below the outline.
                 Section::Selected => {
-                    state.selection.selected.is_none() || (column == Column::Results) != state.ui.legend_beside
+                    state.selection.selected.is_none() || (column == Column::Results) != state.ui.results_beside
                 }
                 Section::MarkedPlace => state.analysis.tension_marker.is_none(),
                 Section::UnmarkedPlace => state.analysis.tension_marker.is_some(),
@@ -293,12 +322,14 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
                 }
                 continue;
             }
-            let panel = section.panel(state.ui.legend_beside);
+            let panel = section.panel(state.ui.results_beside);
             let top = ui.cursor().top();
             // What comes and goes above changes no identity below: a drag in a section would end.
             let named = UiBuilder::new().scope_id(ui.scope_id().with(title));
             let drawn = ui.scope_builder(named, |ui| {
-                CollapsingHeader::new(title).default_open(true).show_unindented(ui, |ui| {
+                // What is asked for is unfolded.
+                let open = (shown == Some(section)).then_some(true);
+                CollapsingHeader::new(title).default_open(true).open(open).show_unindented(ui, |ui| {
                     // One section that is too wide does not widen the others.
                     ui.set_max_width(width);
                     panel(ui, state, commands);

@@ -21,6 +21,9 @@ use crate::widgets::tick::{checkbox, radio_value};
 /// Width of the worst warning in the strip as a part of what is left, and the most, points: the
 /// name of the scene stands beside it.
 const WARNING_WIDTH: (f32, f32) = (0.6, 300.0);
+/// Narrower windows (points) have the last entries of the bar in a menu: the figures on the right
+/// would lie over them.
+const MIN_WHOLE_WIDTH: f32 = 760.0;
 
 /// The menu bar; `with_warning`: no panel says the worst warning.
 pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<Command>) {
@@ -29,16 +32,13 @@ pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<
         let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
         highlight::register(&edit.response, "Edit menu");
         ui.menu_button("View", |ui| view(ui, state, commands));
+        ui.menu_button("Tools", |ui| crate::app::tools::menu(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
         ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
-        if ui.button("Help").on_hover_text("Pointer and keys (F1)").clicked() {
-            commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
-        }
-        if ui.button("About").on_hover_text("What was checked and what was not").clicked() {
-            commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::About))));
-        }
-        if ui.button("Feedback").on_hover_text("Four questions, saved to a CSV file on this computer").clicked() {
-            commands.push(Command::File(feedback()));
+        if ui.ctx().content_rect().width() < MIN_WHOLE_WIDTH {
+            ui.menu_button("More", |ui| dialogs(ui, commands));
+        } else {
+            dialogs(ui, commands);
         }
         ui.separator();
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -52,6 +52,20 @@ pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<
             });
         });
     });
+}
+
+/// What opens a dialog that is about the program.
+fn dialogs(ui: &mut Ui, commands: &mut Vec<Command>) {
+    for (text, help, command) in [
+        ("Help", "Pointer and keys (F1)", FileCommand::SetDialog(Some(Dialog::Help))),
+        ("About", "What was checked and what was not", FileCommand::SetDialog(Some(Dialog::About))),
+        ("Feedback", "Four questions, saved to a CSV file on this computer", feedback()),
+    ] {
+        if ui.button(text).on_hover_text(help).clicked() {
+            commands.push(Command::File(command));
+            ui.close();
+        }
+    }
 }
 
 /// Draws the figures that an engineer looks at first, always in sight: the greatest tension, how
@@ -257,7 +271,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     checkbox(ui, &mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
     checkbox(ui, &mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
     checkbox(ui, &mut layers.contacts, "Contacts").on_hover_text(
-        "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
+        "Where the cable touches: normal force and friction; filled where it holds, hollow where it slides",
     );
     checkbox(ui, &mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
     checkbox(ui, &mut layers.components, "Force components")

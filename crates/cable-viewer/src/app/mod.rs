@@ -5,6 +5,7 @@
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
 //! - `early_clicks`: clicks that come before the first frame
+//! - `tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
 //! - `canvas_picture`: the canvas with its legend as a picture file
@@ -23,6 +24,7 @@ mod palette_entries;
 mod path_picker;
 pub mod screenshot;
 mod start_here;
+pub mod tools;
 mod tutorial_bar;
 pub mod tutorials;
 

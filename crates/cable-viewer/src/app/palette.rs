@@ -5,6 +5,7 @@ use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
 use crate::app::palette_entries;
+use crate::app::tools::tools;
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
@@ -16,7 +17,7 @@ use crate::units::labels;
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 27] = [
+const SYNONYMS: [(&str, &str); 29] = [
     ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
@@ -36,6 +37,8 @@ const SYNONYMS: [(&str, &str); 27] = [
     ("real-time speed", "1x normal"),
     ("slow motion", "slower"),
     ("find safe reach", "map reachability range"),
+    ("mark the largest", "maximum tension budget break down where from"),
+    ("friction range", "less more friction ribbon uncertainty sensitivity"),
     ("resume from", "go on continue"),
     ("show the latest", "present now end"),
     ("restart the solver", "crash thread"),
@@ -82,15 +85,10 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
-        ("Pin this result", Command::View(ViewCommand::AddReference)),
-        ("Compare all models", Command::View(ViewCommand::CompareModels(true))),
-        ("Unpin all", Command::View(ViewCommand::RemoveReferences(None))),
-        ("Chart error over cost of every model", Command::View(ViewCommand::ChartWorkPrecision(true))),
         ("Edit the scene: name, map, robot", select(Item::Scene)),
         ("Edit the cable", select(Item::Cable(0))),
         ("Edit the environment", select(Item::Environment)),
         ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
-        ("Find safe reach", Command::View(ViewCommand::SearchSafeReach(true))),
         ("Cancel or clear the safe reach", Command::View(ViewCommand::SearchSafeReach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
@@ -120,6 +118,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         (name, Command::View(ViewCommand::ExportGraph(title)))
     });
     all.extend(graphs);
+    all.extend(tools(state).into_iter().filter_map(|tool| Some((tool.name.to_owned(), tool.command?))));
     let added =
         [("Add waypoint", supports::new_waypoint(state, state.current_cable())), ("Add load", loads::new_load(state))];
     all.extend(added.into_iter().filter_map(|(name, command)| Some((name.to_owned(), Command::Scene(command?)))));

@@ -139,7 +139,6 @@ fn analyses(state: &AppState) -> Vec<Entry> {
         view("Cancel chart", ViewCommand::ChartWorkPrecision(false)),
         view("Safe reach: there and back, or there only", ViewCommand::SetSafeReachOptions(both_ways)),
         view("Show less and more friction", ViewCommand::SetFrictionRange(!friction.on, friction.factors)),
-        view("Compare with the likely bending stiffness", ViewCommand::AskBending),
         view("Unmark the place on the cable", ViewCommand::SetTensionMarker(None)),
     ];
     let most = tension_budget::at_the_largest(state);
@@ -250,7 +249,7 @@ fn places(state: &AppState) -> Vec<Entry> {
     }
     for (name, bend) in [
         ("tightest bend", told.tightest_bend),
-        ("bend as stiff as it is", told.judged_bend.map(|j| j.bend)),
+        ("bend with its stiffness", told.judged_bend.map(|j| j.bend)),
         ("bend that is free", found.free_bend),
     ] {
         all.extend(bend.map(|b| to(name, [b.x_m, b.y_m])));

@@ -118,7 +118,11 @@ pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>)
 
 fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
-        FileCommand::New => open(state, new_scene(), None, effects),
+        FileCommand::New => {
+            // Another new scene is not the one before.
+            state.analysis.references.clear();
+            open(state, new_scene(), None, effects);
+        }
         FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
         FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         FileCommand::Open(path) => match scene_file::load(&path) {
@@ -252,9 +256,21 @@ fn new_scene() -> Scene {
     Scene { name: "New scene".to_owned(), ..catalog::hanging_span() }
 }
 
+/// Returns whether what is opened is what the document was opened from: the same file, or, where
+/// neither has one, the same scene. Names do not tell: two files may have the same.
+fn is_same_source(document: &Document, scene: &Scene, path: Option<&Path>) -> bool {
+    match (document.path.as_deref(), path) {
+        (Some(before), Some(now)) => std::path::absolute(before).ok() == std::path::absolute(now).ok(),
+        (None, None) => document.saved == *scene,
+        _ => false,
+    }
+}
+
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
-    // Pins belong to their scene.
-    state.analysis.references.retain(|pin| pin.scene.name == scene.name);
+    if !is_same_source(&state.document, &scene, path.as_deref()) {
+        // Pins belong to the file that they were made in.
+        state.analysis.references.clear();
+    }
     if let Some(path) = &path {
         state.ui.add_recent(path.clone());
     }

@@ -12,7 +12,7 @@ use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Grab, GraphRequest, Item, Layers, OpenPanels, Reference, TensionMarker};
+use crate::state::{AppState, Grab, GraphRequest, Item, Layers, OpenPanels, Reference, TensionMarker, ToolSection};
 use crate::units::labels;
 use crate::units::system::System;
 
@@ -54,6 +54,8 @@ pub enum ViewCommand {
     ZoomOn(Point),
     /// Opens and folds parts of the window.
     ShowPanels(OpenPanels),
+    /// Does something, and shows the section in which it is answered.
+    UseTool(ToolSection, Box<ViewCommand>),
     /// Shows another measure in the graphs, or has them keep up with the data.
     AskGraph(GraphRequest),
     /// Asks where to export the graph of this title to.
@@ -150,6 +152,14 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
+        ViewCommand::UseTool(section, command) => {
+            apply(state, *command, effects);
+            if section == ToolSection::Solver {
+                apply(state, ViewCommand::Select(Some(Item::Solver)), effects);
+            }
+            state.ui.panels.results = true;
+            state.ui.section_request = (state.ui.section_request.0 + 1, Some(section));
+        }
         ViewCommand::AskGraph(request) => {
             state.ui.panels.graphs = true;
             state.ui.graph_request = (state.ui.graph_request.0 + 1, Some(request));

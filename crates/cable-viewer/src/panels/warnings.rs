@@ -9,6 +9,7 @@ use egui::{Align, Atom, Button, Color32, Layout, RichText, ScrollArea, TextStyle
 
 use crate::command::scene::is_refused_pull;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::quality;
 use crate::panels::scene_errors::{self, Fix};
 use crate::panels::warning_figures::{figures, short_title};
 use crate::state::{AppState, Item, NoAnswer, OpenPanels, WorkerStatus};
@@ -179,6 +180,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
     // What a draft or the answer to another scene warns of says nothing of this one.
     if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
+        list.extend(quality::problems(state, answer).into_iter().map(of_problem));
     }
     // A stable sort: equals stay in the order of the answer.
     list.sort_by_key(|e| (e.severity, !e.of_tension));
@@ -280,6 +282,18 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         item: index.map(Item::Cable),
         fixes: remedy(state, answer, warning, index).into_iter().collect(),
         no_use: (everywhere && !can_be_laid_anew(state, index)).then_some(LIES_AS_LAID),
+    }
+}
+
+/// What makes the figures doubtful, which the form of the solver shows.
+fn of_problem(problem: quality::Problem) -> Entry {
+    let quality::Problem { title, figure, why } = problem;
+    Entry {
+        kind: title.to_owned(),
+        title: format!("{title}: {figure}"),
+        parts: Some([title.to_owned(), figure, String::new()]),
+        item: Some(Item::Solver),
+        ..entry(Severity::Caution, format!("{why}. The form of the solver has more."))
     }
 }
 
@@ -422,9 +436,10 @@ fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
 fn show(entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         commands.push(Command::View(ViewCommand::ZoomOn(at_m)));
-        if entry.item.is_some() {
-            commands.push(Command::View(ViewCommand::Select(entry.item)));
-        }
+    }
+    // What has no place has a form, or nothing to show.
+    if entry.item.is_some() && (entry.at_m.is_some() || entry.item == Some(Item::Solver)) {
+        commands.push(Command::View(ViewCommand::Select(entry.item)));
     }
 }
 

@@ -10,7 +10,7 @@ mod cursors;
 mod keys;
 pub mod time;
 
-use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::{Align2, Color32, Id, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_in_view::GraphInView;
@@ -33,7 +33,7 @@ pub const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
 pub const TIME: &str = "time";
 
 /// The time shown, where it is not the present.
-pub const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
+pub const TIME_MARK: Color32 = Color32::from_gray(118);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
@@ -59,6 +59,9 @@ const OSCILLATION_RATIO: f64 = 40.0;
 /// Opacity of the band between least and greatest. More: it hides the lines behind; less: it cannot
 /// be told from the background.
 const BAND_OPACITY: f32 = 0.45;
+
+/// Half the size of the mark of a line that is one point, points.
+const PEAK_RADIUS: f32 = 4.5;
 
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
@@ -115,6 +118,8 @@ pub struct Graph<'a> {
     pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
+    /// How there comes to be something to show, where there is nothing yet.
+    pub hint: Option<&'a str>,
     /// Its export was asked for elsewhere than beside it.
     pub export: bool,
 }
@@ -151,7 +156,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     };
     let follow = graph.follow;
     let top = ui.cursor().top();
-    let (title, export) = legend(ui, graph, lines, high);
+    let (title, export) = legend(ui, graph, lines);
     let mut cursors = Cursors::load(ui, graph.group);
     // Those of a run that is no more read nothing.
     cursors.forget_without_data(ui, graph.group, graph.last);
@@ -197,15 +202,25 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
             let (colour, style, width) = line_appearance(line, k);
             draw_band(plot, line, colour, [x_si, si]);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
+            if graph.hint.is_none() && points.len() == 1 {
+                let mark = egui_plot::Points::new(line.name.clone(), points).color(colour).radius(PEAK_RADIUS);
+                plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
+                continue;
+            }
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
         }
-        draw_limits(plot, graph.limits, si, symbol);
+        draw_limits(plot, graph, high, si);
+        if let Some(hint) = graph.hint {
+            let words = RichText::new(hint).color(plot.ctx().global_style().visuals.weak_text_color());
+            plot.text(egui_plot::Text::new("hint", plot.plot_bounds().center(), words).allow_hover(false));
+        }
         let places: Vec<f64> = cursors.0.iter().map(|x| x / x_si).collect();
         draw_marks(plot, graph.mark, &places, cursor_text.as_deref());
         let wheel = wheel(plot);
         let asked = keys::read(plot, places.last().copied());
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
+    name_limits(ui, graph, &response.transform, high, si);
     let asked = response.inner;
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
@@ -372,19 +387,13 @@ fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: O
     }
 }
 
-/// Returns what the colours mean, on one line above the graph, where it hides nothing. Limits out
-/// of view are not drawn and so not named; what finds no room is told on hover.
-fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
+/// Returns what the colours mean, on one line above the graph, where it hides nothing; what finds
+/// no room is told on hover. Limits are named at their lines.
+fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
         lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.reference.is_some())).collect();
     if graph.ribbon.len() >= 2 {
         entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), false));
-    }
-    for (name, limit, colour) in named_limits(graph.limits) {
-        if limit <= high {
-            let value = graph.measure.text(limit);
-            entries.push((format!("{name} {value}"), colour, true));
-        }
     }
     let row = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 2.0);
@@ -429,13 +438,38 @@ fn named_limits(limits: [f64; 2]) -> [(&'static str, f64, Color32); 2] {
     [("Service", limits[0], SERVICE), ("Breaking", limits[1], BREAKING)]
 }
 
-fn draw_limits(plot: &mut PlotUi<'_>, limits: [f64; 2], si: f64, symbol: &str) {
-    for (name, limit, colour) in named_limits(limits) {
-        if limit.is_finite() {
-            let name = format!("{name} {} {symbol}", significant(limit / si, DIGITS));
-            let line = HLine::new(name, limit / si).color(colour).width(1.5).allow_hover(false);
-            plot.hline(line.style(LineStyle::dashed_dense()));
+/// Limits in view as dashed lines.
+fn draw_limits(plot: &mut PlotUi<'_>, graph: &Graph<'_>, high: f64, si: f64) {
+    for (name, limit, colour) in named_limits(graph.limits).into_iter().filter(|(_, limit, _)| *limit <= high) {
+        let line = HLine::new(name, limit / si).color(colour).width(1.5).allow_hover(false);
+        plot.hline(line.style(LineStyle::dashed_dense()));
+    }
+}
+
+/// Names each limit at the right end of its line, on a plate: above the line where there is room,
+/// and the lower one to the left of the other where both would lie over each other.
+fn name_limits(ui: &Ui, graph: &Graph<'_>, shown: &egui_plot::PlotTransform, high: f64, si: f64) {
+    let (frame, visuals) = (*shown.frame(), ui.visuals());
+    let painter = ui.painter().with_clip_rect(frame);
+    let font = TextStyle::Small.resolve(ui.style());
+    let mut before: Option<Rect> = None;
+    for (name, limit, _) in named_limits(graph.limits).into_iter().rev().filter(|(_, limit, _)| *limit <= high) {
+        let y = shown.position_from_point(&egui_plot::PlotPoint::new(0.0, limit / si)).y;
+        if !frame.y_range().contains(y) {
+            continue;
         }
+        let words = format!("{name} {}", graph.measure.text(limit));
+        let words = painter.layout_no_wrap(words, font.clone(), visuals.text_color());
+        let size = words.size() + vec2(4.0, 0.0);
+        let top = if y - size.y - 1.0 > frame.top() { y - size.y - 1.0 } else { y + 1.0 };
+        let mut place = Rect::from_min_size(egui::pos2(frame.right() - 2.0 - size.x, top), size);
+        if let Some(other) = before.filter(|other| other.intersects(place.expand(1.0))) {
+            place = place.translate(vec2(other.left() - 4.0 - place.right(), 0.0));
+        }
+        // What lies below shines through.
+        painter.rect_filled(place, 2.0, visuals.extreme_bg_color.gamma_multiply(0.6));
+        painter.galley(place.min + vec2(2.0, 0.0), words, visuals.text_color());
+        before = Some(place);
     }
 }
 

@@ -71,6 +71,9 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
         height,
         ribbon: ribbon(state, cable, measure),
         mark: state.live.recording.shown_s,
+        // A single instant is no line.
+        hint: (state.live.history.samples.len() < 2 && state.analysis.references.iter().all(|r| r.run.is_none()))
+            .then_some("Play draws this over time"),
         export: view.export == Some(title),
     };
     let mut touched = show(ui, &graph, &lines(state, scene, measure, seen, Some(columns)));

@@ -180,11 +180,11 @@ impl ColourScale {
     }
 }
 
-/// Colours of the lines, distinct to colour-blind eyes (after M. Okabe and K. Ito, “Color Universal
-/// Design”, 2008).
+/// Colours of the lines: apart in hue and in turn darker and lighter, for colour-blind eyes. None
+/// is near the colour of what is selected or of what warns.
 pub const LINES: [Color32; 4] = [
-    Color32::from_rgb(0, 114, 178),
-    Color32::from_rgb(0, 158, 115),
-    Color32::from_rgb(170, 110, 190),
-    Color32::from_rgb(150, 120, 60),
+    Color32::from_rgb(0, 124, 118),
+    Color32::from_rgb(214, 100, 170),
+    Color32::from_rgb(125, 95, 190),
+    Color32::from_rgb(132, 142, 40),
 ];

@@ -43,8 +43,10 @@ pub struct Palette {
     pub reaction: Color32,
     /// Supports.
     pub support: Color32,
-    /// Picked and hovered things.
+    /// Picked and hovered things, and nothing else.
     pub accent: Color32,
+    /// What warns, and nothing else.
+    pub warn: Color32,
     /// The light of an answer whose laws were all asked and hold: told from red by its brightness
     /// too.
     pub sound: Color32,
@@ -64,17 +66,18 @@ const DARK: Palette = Palette {
     solid: Color32::from_rgb(47, 50, 55),
     hatch: Color32::from_rgb(70, 74, 80),
     surface: Color32::from_rgb(150, 155, 163),
-    robot: Color32::from_rgb(122, 96, 34),
+    robot: Color32::from_rgb(92, 100, 112),
     casing: Color32::from_rgb(205, 212, 220),
     risk: Color32::from_rgb(255, 77, 77),
-    normal: Color32::from_rgb(96, 174, 255),
-    friction: Color32::from_rgb(255, 159, 64),
-    load: Color32::from_rgb(226, 132, 255),
+    normal: Color32::from_rgb(255, 130, 200),
+    friction: Color32::from_rgb(184, 160, 255),
+    load: Color32::from_rgb(196, 214, 90),
     reaction: Color32::from_rgb(92, 219, 194),
     support: Color32::from_rgb(240, 243, 247),
     accent: Color32::from_rgb(79, 163, 255),
+    warn: Color32::from_rgb(255, 159, 64),
     sound: Color32::from_rgb(64, 170, 110),
-    bars: [Color32::from_rgb(38, 92, 138), Color32::from_rgb(130, 82, 0), Color32::from_rgb(160, 40, 40)],
+    bars: [Color32::from_rgb(52, 92, 78), Color32::from_rgb(130, 82, 0), Color32::from_rgb(160, 40, 40)],
 };
 
 const LIGHT: Palette = Palette {
@@ -89,17 +92,18 @@ const LIGHT: Palette = Palette {
     solid: Color32::from_rgb(226, 224, 219),
     hatch: Color32::from_rgb(190, 187, 180),
     surface: Color32::from_rgb(92, 88, 80),
-    robot: Color32::from_rgb(244, 205, 110),
+    robot: Color32::from_rgb(186, 194, 204),
     casing: Color32::from_rgb(52, 58, 66),
     risk: Color32::from_rgb(206, 20, 32),
-    normal: Color32::from_rgb(20, 103, 196),
-    friction: Color32::from_rgb(168, 76, 0),
-    load: Color32::from_rgb(142, 36, 170),
+    normal: Color32::from_rgb(178, 20, 120),
+    friction: Color32::from_rgb(104, 64, 190),
+    load: Color32::from_rgb(94, 104, 0),
     reaction: Color32::from_rgb(0, 124, 104),
     support: Color32::from_rgb(28, 33, 40),
     accent: Color32::from_rgb(0, 100, 208),
-    sound: Color32::from_rgb(24, 128, 72),
-    bars: [Color32::from_rgb(140, 190, 230), Color32::from_rgb(226, 160, 60), Color32::from_rgb(238, 120, 112)],
+    warn: Color32::from_rgb(168, 76, 0),
+    sound: Color32::from_rgb(18, 114, 62),
+    bars: [Color32::from_rgb(160, 205, 180), Color32::from_rgb(226, 160, 60), Color32::from_rgb(238, 120, 112)],
 };
 
 /// The colours of the theme in use.
@@ -140,8 +144,8 @@ fn visuals(visuals: &mut Visuals, palette: &Palette) {
     visuals.faint_bg_color = if dark { Color32::from_rgb(34, 38, 44) } else { Color32::from_rgb(236, 238, 241) };
     visuals.selection.bg_fill = palette.accent.gamma_multiply(0.45);
     visuals.selection.stroke = Stroke::new(1.0, palette.text);
-    visuals.hyperlink_color = palette.accent;
-    visuals.warn_fg_color = palette.friction;
+    visuals.hyperlink_color = palette.sound;
+    visuals.warn_fg_color = palette.warn;
     visuals.error_fg_color = palette.risk;
     visuals.weak_text_color = Some(palette.weak_text);
     let radius = CornerRadius::same(4);

@@ -37,5 +37,5 @@ pub use crate::state::freshness::Freshness;
 pub use crate::state::live::{NoAnswer, Playback, Snapshot};
 pub use crate::state::selection::{Grab, Item};
 pub use crate::state::solver::WorkerStatus;
-pub use crate::state::ui::{GraphRequest, OpenPanels};
+pub use crate::state::ui::{GraphRequest, OpenPanels, ToolSection};
 pub use crate::state::view::Layers;

@@ -33,6 +33,23 @@ pub enum GraphRequest {
     Follow,
 }
 
+/// A part of the panel on the right that answers a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToolSection {
+    /// What takes a tension apart at the marked place.
+    MarkedPlace,
+    /// The figures of the answer.
+    Readouts,
+    /// The places that an end or the robot reaches.
+    SafeReach,
+    /// Pinned results.
+    Compare,
+    /// Less and more friction.
+    FrictionRange,
+    /// The form of the solver, with error over cost.
+    Solver,
+}
+
 /// The window around the scene.
 #[derive(Debug, Default)]
 pub struct Ui {
@@ -40,6 +57,8 @@ pub struct Ui {
     pub panels: OpenPanels,
     /// The colours are explained beside the canvas, not on it.
     pub legend_beside: bool,
+    /// Results have a panel of their own on the right.
+    pub results_beside: bool,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
     /// The action that goes on once the scene is saved.
@@ -60,6 +79,8 @@ pub struct Ui {
     pub graph_to_export: Option<&'static str>,
     /// The last request made of the graphs elsewhere than above them, and the count of all.
     pub graph_request: (u64, Option<GraphRequest>),
+    /// The section that was asked for last elsewhere than in it, and the count of all requests.
+    pub section_request: (u64, Option<ToolSection>),
     /// The user agreed to close the window without saving.
     pub closing: bool,
 }

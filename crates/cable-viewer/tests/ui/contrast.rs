@@ -133,3 +133,59 @@ fn text_and_graphics_stand_off_what_is_behind_them_in_both_themes() {
     println!("{count} pairs");
     assert!(failed.is_empty(), "{} of {count}:\n{}", failed.len(), failed.join("\n"));
 }
+
+/// Hue in degrees; None of a grey, in which nobody sees one.
+fn hue(c: Color32) -> Option<f64> {
+    let [r, g, b] = [c.r(), c.g(), c.b()].map(f64::from);
+    let (most, least) = (r.max(g).max(b), r.min(g).min(b));
+    let range = most - least;
+    if range < 0.2 * most {
+        return None;
+    }
+    let turn = if most == r {
+        (g - b) / range
+    } else if most == g {
+        2.0 + (b - r) / range
+    } else {
+        4.0 + (r - g) / range
+    };
+    Some((60.0 * turn).rem_euclid(360.0))
+}
+
+/// Blue was what is selected, a contact that holds, the first line of a graph and a calm bar;
+/// orange was a warning and a contact that slides.
+#[test]
+fn nothing_has_the_colours_of_what_is_selected_and_of_what_warns() {
+    let ctx = egui::Context::default();
+    theme::install(&ctx);
+    for shown in [Theme::Dark, Theme::Light] {
+        let visuals = &ctx.style_of(shown).visuals;
+        let p = theme::palette(visuals);
+        assert_eq!((visuals.warn_fg_color, visuals.hyperlink_color), (p.warn, p.sound));
+        let others = [
+            ("normal", p.normal),
+            ("friction", p.friction),
+            ("load", p.load),
+            ("reaction", p.reaction),
+            ("robot", p.robot),
+            ("solid", p.solid),
+            ("surface", p.surface),
+            ("sound", p.sound),
+            ("risk", p.risk),
+            ("calm bar", p.bars[0]),
+            ("playhead", plot::TIME_MARK),
+            ("line 1", LINES[0]),
+            ("line 2", LINES[1]),
+            ("line 3", LINES[2]),
+            ("line 4", LINES[3]),
+        ];
+        for (own, meaning) in [(p.accent, "selected"), (p.warn, "warns")] {
+            let own = hue(own).unwrap();
+            for (what, other) in others.iter().filter_map(|(what, colour)| Some((what, hue(*colour)?))) {
+                let apart = (own - other).rem_euclid(360.0);
+                let apart = apart.min(360.0 - apart);
+                assert!(apart > 24.0, "{shown:?}: {what} is {apart:.0}° from what {meaning}");
+            }
+        }
+    }
+}

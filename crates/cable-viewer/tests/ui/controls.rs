@@ -67,7 +67,7 @@ fn no_control_is_lost() {
 /// Buttons that the palette has no use for: menus, of which it has the entries, those of single
 /// rows of a table, and figures that lead to where they are.
 fn is_left_out(name: &str) -> bool {
-    let menus = ["File", "Edit", "View", "Scenes", "Learn", "Colours", "Open recent"];
+    let menus = ["File", "Edit", "View", "Tools", "Scenes", "Learn", "Colours", "Open recent"];
     let rows = ["Remove corner ", "Add a corner after corner ", "Add a time after ", "Remove time "];
     let figure = name.starts_with("Max ") || name.ends_with(" warnings") || name.starts_with("Command palette");
     menus.contains(&name) || rows.iter().any(|begins| name.starts_with(begins)) || figure
@@ -99,7 +99,7 @@ fn the_palette_knows_every_button_by_the_words_on_it() {
         catalog::floor_drag(),
     ] {
         let mut harness = with_each_thing_picked(scene, &mut ask);
-        for menu in ["File", "Edit", "View", "Scenes", "Learn"] {
+        for menu in ["File", "Edit", "View", "Tools", "Scenes", "Learn"] {
             harness.get_by_role_and_label(Role::Button, menu).click();
             harness.run_steps(3);
             ask(&harness);

@@ -1,6 +1,8 @@
 //! One playhead: the timeline, the graphs over time, the graph along the cable and the canvas show
 //! the same instant.
 
+use cable_core::scene::catalog;
+use cable_core::solution::WarningKind;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
 use cable_viewer::plot;
@@ -9,7 +11,7 @@ use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, drag, open_span};
+use crate::{apply, drag, open, open_span};
 
 fn shown_s(harness: &Harness<'_, ViewerApp>) -> Option<f64> {
     harness.state().state.live.recording.shown_s
@@ -122,5 +124,48 @@ fn the_timeline_tells_the_time_of_the_frame_that_is_shown() {
         apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(knob_s))));
         let shown_s = harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s;
         harness.get_by_label_contains(&format!("{shown_s:.2} of "));
+    }
+}
+
+/// A jerk between two frames was warned of with more than the graph had at either.
+#[test]
+fn no_warning_names_a_tension_that_the_graph_does_not_show() {
+    let mut scene = catalog::rubble_drop();
+    // The drop is violent enough to be warned of.
+    (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (200.0, 1e5);
+    let mut harness = open(scene);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    let mut warned = 0;
+    for _ in 0..90 {
+        harness.step();
+        let live = &harness.state().state.live;
+        let most_n = live.history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
+        let answer = live.snapshot.solution.clone().unwrap();
+        let kinds = [WarningKind::ServiceTension, WarningKind::MayBreak, WarningKind::BreakingTension];
+        for warning in answer.warnings.iter().filter(|w| kinds.contains(&w.kind)) {
+            assert!(most_n >= warning.value, "{} s: {most_n} N, warned of {} N", answer.time_s, warning.value);
+            warned += 1;
+        }
+    }
+    assert!(warned > 0, "nothing is warned of");
+}
+
+/// The legend above a graph had named limits, each in the other's way and one of them cut.
+#[test]
+fn limits_are_named_at_their_lines_and_hide_each_other_nowhere() {
+    for [service, breaking] in [[80.0, 93.5], [92.0, 93.5], [60.0, 160.0]] {
+        let mut scene = catalog::hanging_span();
+        (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (service, breaking);
+        let harness = open(scene);
+        let graph = harness.get_by_role_and_label(egui::accesskit::Role::Figure, "Along the cable").rect();
+        let mut found = Vec::new();
+        harness.output().shapes.iter().for_each(|s| crate::warnings::galleys(&s.shape, &mut found));
+        let names = found.iter().filter(|(text, ..)| text.starts_with("Service ") || text.starts_with("Breaking "));
+        let inside: Vec<egui::Rect> = names.map(|(_, r, _)| *r).filter(|r| graph.contains_rect(*r)).collect();
+        let over_each_other = |k: usize| inside[..k].iter().any(|r| r.intersects(inside[k]));
+        assert!((1..inside.len()).all(|k| !over_each_other(k)), "{service}, {breaking}: {inside:?}");
+        // A limit that is twice as far as the tension is out of view.
+        let in_view = [service, breaking].iter().filter(|limit| 92.0 > 0.5 * *limit).count();
+        assert_eq!(inside.len(), in_view, "{service}, {breaking}: {found:?}");
     }
 }

@@ -4,13 +4,21 @@
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
-use cable_viewer::state::Layers;
+use cable_viewer::render::colour::{CableQuantity, ColourScale};
+use cable_viewer::state::{Layers, OpenPanels};
 use egui::{Key, Rect, Shape, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use crate::warnings::galleys;
 use crate::{apply, open};
+
+/// Everything that is written, and where.
+fn texts(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Rect)> {
+    let mut all = Vec::new();
+    harness.output().shapes.iter().for_each(|s| galleys(&s.shape, &mut all));
+    all.into_iter().map(|(text, r, _)| (text, r)).collect()
+}
 
 fn canvas_texts(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Rect)> {
     let canvas = harness.get_by_label("Canvas").rect();
@@ -26,15 +34,15 @@ fn a_cable_drawn_thicker_than_it_is_is_said_to_be() {
         let mut harness = open(catalog::tank());
         harness.set_size(Vec2::from(size));
         harness.run_steps(4);
-        let note = |h: &Harness<'_, ViewerApp>| canvas_texts(h).into_iter().find(|(t, _)| t.starts_with("cable drawn"));
+        let note = |h: &Harness<'_, ViewerApp>| texts(h).into_iter().find(|(t, _)| t.contains("drawn "));
         let state = &harness.state().state;
         let points = state.document.scene.cables[0].diameter_m * state.view.camera.points_per_m;
         let (text, place) = note(&harness).expect("it is said");
-        let told: f64 = text.trim_start_matches("cable drawn ").split('×').next().unwrap().parse().unwrap();
+        let told: f64 = text.trim_start_matches("drawn ").split('×').next().unwrap().parse().unwrap();
         assert!((told / (4.5 / points) - 1.0).abs() < 0.06, "{text}: {points} points");
-        assert!(text.ends_with("× as thick"));
+        assert!(text.starts_with("drawn ") && text.contains('×'), "{text}");
         // It lies over nothing else that is written.
-        let others = canvas_texts(&harness).into_iter().filter(|(t, _)| *t != text);
+        let others = texts(&harness).into_iter().filter(|(t, _)| *t != text);
         let over: Vec<_> = others.filter(|(_, r)| r.intersects(place)).collect();
         assert!(over.is_empty(), "{over:?}");
         // Without a grid too; near enough it is as thick as it is.
@@ -44,6 +52,57 @@ fn a_cable_drawn_thicker_than_it_is_is_said_to_be() {
         let about_m = harness.state().state.view.camera.centre_m;
         apply(&mut harness, Command::View(ViewCommand::Zoom { about_m, factor: 20.0 }));
         assert!(note(&harness).is_none());
+        // Without a panel that has the legend it stands on the canvas.
+        apply(&mut harness, Command::View(ViewCommand::Fit));
+        let folded = OpenPanels { edit: false, results: false, graphs: false };
+        apply(&mut harness, Command::View(ViewCommand::ShowPanels(folded)));
+        assert!(canvas_texts(&harness).iter().any(|(t, _)| t.starts_with("cable drawn ")));
+    }
+}
+
+/// What stands in the strip above the results lies over nothing else in it.
+#[test]
+fn the_words_of_the_legend_keep_apart_for_every_quantity() {
+    let mut harness = open(catalog::tank());
+    for quantity in CableQuantity::ALL {
+        apply(&mut harness, Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() })));
+        let strip = harness.get_by_label("Colours of the cable").rect();
+        let words: Vec<_> = texts(&harness).into_iter().filter(|(_, r)| strip.contains(r.center())).collect();
+        assert!(words.iter().any(|(t, _)| t.contains('×')), "{words:?}");
+        for (k, (text, place)) in words.iter().enumerate() {
+            let over = words[..k].iter().find(|(_, r)| r.intersects(*place));
+            assert!(over.is_none(), "{text} lies over {over:?}");
+        }
+    }
+}
+
+/// The bar at the top of a small window had its last entries below the greatest tension.
+#[test]
+fn the_bar_at_the_top_of_small_windows_has_no_words_over_words() {
+    for size in [[640.0, 400.0], [760.0, 500.0], [800.0, 600.0], [1024.0, 640.0]] {
+        let mut harness = open(catalog::robot_drive());
+        harness.set_size(Vec2::from(size));
+        harness.run_steps(6);
+        let bar: Vec<_> = texts(&harness).into_iter().filter(|(t, r)| r.center().y < 24.0 && !t.is_empty()).collect();
+        for (k, (text, place)) in bar.iter().enumerate() {
+            let over = bar[..k].iter().find(|(_, r)| r.shrink(0.5).intersects(*place));
+            assert!(over.is_none(), "{size:?}: {text} lies over {over:?}");
+        }
+        assert!(bar.iter().any(|(t, _)| t.starts_with("Max ")), "{size:?}: {bar:?}");
+    }
+}
+
+/// At 800×600 both legends lay over the robot and its cable: they stand in the panel there.
+#[test]
+fn legends_of_small_windows_lie_over_no_handle() {
+    for size in [[800.0, 600.0], [640.0, 480.0]] {
+        let mut harness = open(catalog::robot_drive());
+        harness.set_size(Vec2::from(size));
+        harness.run_steps(6);
+        let on_canvas = canvas_texts(&harness);
+        let legend: Vec<_> = on_canvas.iter().filter(|(t, _)| t.starts_with("Tension (") || t == "holds").collect();
+        assert!(legend.is_empty(), "{size:?}: {legend:?}");
+        assert!(texts(&harness).iter().any(|(t, _)| t.starts_with("Tension (")), "{size:?}");
     }
 }
 

@@ -36,6 +36,7 @@ mod speed;
 mod steps;
 mod stories;
 mod timing;
+mod tools;
 mod torn;
 mod truth;
 mod units;

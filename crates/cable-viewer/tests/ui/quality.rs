@@ -80,3 +80,54 @@ fn t08_the_motion_of_any_point_is_shown_live() {
     harness.get_by_label("Show greatest displacement").click();
     harness.run_steps(2);
 }
+
+/// They were marked in the form of the solver only, which is shown once it is selected.
+#[test]
+fn what_makes_figures_doubtful_is_in_the_list_of_warnings() {
+    let listed = |harness: &Harness<'_, ViewerApp>, title: &str| {
+        let mut texts = Vec::new();
+        harness.output().shapes.iter().for_each(|s| crate::warnings::galleys(&s.shape, &mut texts));
+        texts.iter().any(|(text, ..)| text.starts_with(title))
+    };
+    let mut harness = open_span();
+    for title in ["Residual above tolerance", "Ill-conditioned equations", "Kinetic energy grows"] {
+        assert!(!listed(&harness, title), "{title} of a sound answer");
+    }
+    // Too stiff for the accuracy asked for.
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
+    cable.axial_stiffness_n *= 1e4;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let settings = Settings { tolerance: 1e-6, ..harness.state().state.solver.settings };
+    apply(&mut harness, Command::SetSettings(settings));
+    harness.run_steps(3);
+    assert!(listed(&harness, "Ill-conditioned equations"));
+    harness.get_by_label_contains("Ill-conditioned equations: ").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().state.selection.selected, Some(cable_viewer::state::Item::Solver));
+    // An answer with a force left, as of a solve that was ended early.
+    let mut harness = open_span();
+    let mut answer = (*harness.state().state.live.snapshot.solution.clone().unwrap()).clone();
+    answer.cost.residual_n = 0.1 * answer.max_tension().tension_n;
+    harness.state_mut().state.live.snapshot.solution = Some(std::sync::Arc::new(answer));
+    harness.step();
+    assert!(listed(&harness, "Residual above tolerance"));
+    // A motion that doubles its energy every second.
+    let mut harness = open_span();
+    let first = harness.state().state.live.history.samples.back().unwrap().clone();
+    for k in 1..=360 {
+        let time_s = f64::from(k) / 60.0;
+        let sample =
+            cable_viewer::record::sample::Sample { time_s, energy_j: [time_s.exp2(), 0.0, 0.0, 0.0], ..first.clone() };
+        harness.state_mut().state.live.history.push(sample);
+    }
+    harness.step();
+    assert!(listed(&harness, "Kinetic energy grows"));
+    // A hand, a schedule or the robot may give it, and a cable that falls has it from its height.
+    let samples = harness.state().state.live.history.samples.clone();
+    for mut sample in samples {
+        sample.energy_j[1] = 100.0 - sample.energy_j[0];
+        harness.state_mut().state.live.history.push(sample);
+    }
+    harness.step();
+    assert!(!listed(&harness, "Kinetic energy grows"));
+}

@@ -417,6 +417,32 @@ fn resuming_keeps_the_forces_on_supports() {
     assert!(pull(&then) > 1.0 && pull(&now) == pull(&then), "{} {}", pull(&then), pull(&now));
 }
 
+/// Two files may have scenes of one name; pins of one had stayed in the other.
+#[test]
+fn pins_belong_to_the_file_that_they_were_made_in() {
+    let folder = std::env::temp_dir().join(format!("cable-viewer-pins-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let [first, second] = ["first.toml", "second.toml"].map(|name| folder.join(name));
+    for path in [&first, &second] {
+        cable_core::files::save_scene(path, &catalog::hanging_span()).unwrap();
+    }
+    let mut harness = open(catalog::hanging_span());
+    let pins = |h: &Harness<'_, ViewerApp>| state(h).analysis.references.len();
+    let mut after = |command: FileCommand| {
+        apply(&mut harness, Command::View(ViewCommand::AddReference));
+        assert!(pins(&harness) > 0);
+        apply(&mut harness, Command::File(command));
+        harness.run_steps(3);
+        pins(&harness)
+    };
+    assert_eq!(after(FileCommand::Open(first.clone())), 0, "a file is not the scene of the catalogue");
+    assert_eq!(after(FileCommand::Open(first)), 1, "the same file again");
+    assert_eq!(after(FileCommand::Open(second)), 0, "another file of the same name");
+    assert_eq!(after(FileCommand::New), 0);
+    assert_eq!(after(FileCommand::New), 0, "another new scene");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 /// D10.6: pinned results followed into other scenes.
 #[test]
 fn pins_belong_to_their_scene() {

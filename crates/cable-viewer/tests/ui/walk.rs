@@ -105,7 +105,7 @@ fn walk_a_span() {
         from: cable_core::analysis::tension_budget::StartEnd::Start,
     })));
     walk.look("a06-probe");
-    for (k, menu) in ["File", "Edit", "View", "Scenes", "Learn"].into_iter().enumerate() {
+    for (k, menu) in ["File", "Edit", "View", "Tools", "Scenes", "Learn"].into_iter().enumerate() {
         walk.click(menu);
         walk.look(&format!("a1{k}-menu-{}", menu.to_lowercase()));
         walk.harness.key_press(Key::Escape);

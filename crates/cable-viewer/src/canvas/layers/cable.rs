@@ -4,6 +4,7 @@
 use cable_core::solution::Node;
 use egui::{Align2, Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
+use crate::canvas::layers::surface_offset;
 use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
@@ -41,7 +42,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         let service = cable.service_tension_n;
         for nodes in answer.pieces() {
             let nodes = &distinct_nodes(view, nodes, service);
-            let line = Ribbon::new(view, nodes);
+            let line = Ribbon::new(surface_offset::places(view, nodes, answer, cable.diameter_m));
             if state.selection.contains(Item::Cable(k)) || picked(state.selection.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
             }
@@ -84,17 +85,19 @@ const NOTED_THICKENING: f32 = 1.05;
 
 /// Returns how many times as thick as it is a cable is drawn, where its true diameter could not be
 /// seen; the greatest of several.
-fn thickening(view: &CanvasView<'_>, state: &AppState) -> Option<f32> {
+pub(super) fn thickening(state: &AppState) -> Option<String> {
     state.live.snapshot.solution.as_ref()?;
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    let times = solved.cables.iter().map(|c| MIN_WIDTH / view.points(c.diameter_m));
-    times.filter(|t| t.is_finite() && *t > NOTED_THICKENING).reduce(f32::max)
+    let times = solved.cables.iter().map(|c| MIN_WIDTH / (c.diameter_m * state.view.camera.points_per_m) as f32);
+    let most = times.filter(|t| t.is_finite() && *t > NOTED_THICKENING).reduce(f32::max)?;
+    Some(format::significant(f64::from(most), 2))
 }
 
-/// Says it at the lower right corner, above the scale bar.
+/// Says it at the lower right corner, above the scale bar, where no legend stands beside the
+/// canvas.
 pub fn thickness_note(view: &mut CanvasView<'_>, state: &AppState) {
-    let Some(times) = thickening(view, state) else { return };
-    let text = format!("cable drawn {}× as thick", format::significant(f64::from(times), 2));
+    let Some(times) = thickening(state).filter(|_| !state.ui.legend_beside) else { return };
+    let text = format!("cable drawn {times}× as thick");
     let at = view.rect.right_bottom() - vec2(16.0, NOTE_HEIGHT);
     let place = view.text(at, Align2::RIGHT_BOTTOM, &text, 11.0, view.palette.weak_text);
     view.occupied.push(place.expand(2.0));
@@ -131,8 +134,7 @@ pub(super) struct Ribbon {
 }
 
 impl Ribbon {
-    pub fn new(view: &CanvasView<'_>, nodes: &[Node]) -> Self {
-        let points: Vec<Pos2> = nodes.iter().map(|n| view.at([n.x_m, n.y_m])).collect();
+    pub fn new(points: Vec<Pos2>) -> Self {
         let normal = |a: Pos2, b: Pos2| {
             let d = b - a;
             let l = d.length();

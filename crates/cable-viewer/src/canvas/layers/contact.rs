@@ -1,19 +1,19 @@
 //! A contact is drawn as a band along the cable, filled where it holds, hollow where it slides,
-//! with a tick at each slip front. Blue and orange are told apart by colour-blind eyes; filled and
-//! hollow by every eye.
+//! with a tick at each slip front. Filled and hollow are told apart by every eye.
 
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
 use egui::{Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
 use crate::canvas::layers::cable::{MIN_WIDTH, Ribbon, distinct_nodes};
+use crate::canvas::layers::surface_offset;
 use crate::canvas::view::CanvasView;
 use crate::render::theme::Palette;
 use crate::state::AppState;
 
 /// How much wider than the cable the band is, points.
-const BAND: f32 = 9.0;
+const BAND: f32 = 6.0;
 /// Width of its edge where it is hollow, points.
-const EDGE: f32 = 3.6;
+const EDGE: f32 = 2.8;
 /// Half the length of the tick at a slip front, points.
 const TICK: f32 = 11.0;
 
@@ -48,7 +48,8 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
             if nodes.len() < 2 {
                 continue;
             }
-            let line = Ribbon::new(view, &distinct_nodes(view, &nodes, f64::INFINITY));
+            let nodes = distinct_nodes(view, &nodes, f64::INFINITY);
+            let line = Ribbon::new(surface_offset::places(view, &nodes, answer, cable.diameter_m));
             let (colour, inside) = match part.state {
                 ContactState::Stick => (view.palette.normal, None),
                 ContactState::Slip => (view.palette.friction, Some(view.palette.background)),

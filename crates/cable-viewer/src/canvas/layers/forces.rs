@@ -3,7 +3,7 @@
 
 use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
-use egui::{Align2, Color32, Pos2, Stroke, Vec2, pos2, vec2};
+use egui::{Align2, Color32, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::canvas::view::CanvasView;
 use crate::geometry::arrows::{load_arrow, load_at};
@@ -69,7 +69,7 @@ fn contacts(view: &CanvasView<'_>, cable: &CableSolution, scale: &impl Fn(Point)
             continue;
         }
         drawn.push(at);
-        let normal = scale([c.normal[0] * c.normal_n, c.normal[1] * c.normal_n]);
+        let normal = within(view.rect, at, scale([c.normal[0] * c.normal_n, c.normal[1] * c.normal_n]));
         view.arrow(at, normal, Stroke::new(1.8, view.palette.normal));
         // Growing arc length is along the tangent nearest to the direction of the cable there.
         let tangent = tangent_at(cable, c.arc_length_m, c.normal);
@@ -79,6 +79,17 @@ fn contacts(view: &CanvasView<'_>, cable: &CableSolution, scale: &impl Fn(Point)
         let fill = if c.state == ContactState::Stick { view.palette.normal } else { view.palette.background };
         view.painter.circle(at, 3.0, fill, Stroke::new(1.5, view.palette.normal));
     }
+}
+
+/// An arrow that ends on the canvas: one beyond its edge has no head.
+fn within(canvas: Rect, tail: Pos2, along: Vec2) -> Vec2 {
+    if !canvas.contains(tail) {
+        return along;
+    }
+    let share = |room: f32, way: f32| if way > room { room / way } else { 1.0 };
+    let x = share(if along.x > 0.0 { canvas.right() - tail.x } else { tail.x - canvas.left() }, along.x.abs());
+    let y = share(if along.y > 0.0 { canvas.bottom() - tail.y } else { tail.y - canvas.top() }, along.y.abs());
+    along * x.min(y)
 }
 
 fn strongest_first(contacts: &[ContactReport]) -> Vec<&ContactReport> {
@@ -175,4 +186,20 @@ fn wind(view: &CanvasView<'_>, per_metre: Point) {
     let unit = Unit::N_PER_M.display();
     let text = format!("Wind {} {}", labels::digits(size / unit.si), unit.symbol);
     view.text(pos2(centre.x, centre.y + 28.0), Align2::CENTER_TOP, &text, 11.0, view.palette.text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The arrow of the greatest contact left the canvas at the top, without a head.
+    #[test]
+    fn an_arrow_ends_on_the_canvas_and_keeps_its_direction() {
+        let canvas = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
+        let tail = pos2(50.0, 30.0);
+        assert_eq!(within(canvas, tail, vec2(10.0, -64.0)), vec2(10.0, -64.0) * (30.0 / 64.0));
+        assert_eq!(within(canvas, tail, vec2(10.0, -20.0)), vec2(10.0, -20.0));
+        assert_eq!(within(canvas, tail, vec2(-80.0, 0.0)), vec2(-50.0, 0.0));
+        assert_eq!(within(canvas, pos2(-5.0, 0.0), vec2(80.0, 0.0)), vec2(80.0, 0.0));
+    }
 }

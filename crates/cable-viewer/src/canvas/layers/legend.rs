@@ -2,7 +2,7 @@
 
 use egui::{Align2, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
-use crate::canvas::layers::contact;
+use crate::canvas::layers::{cable, contact};
 use crate::canvas::view::CanvasView;
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::render::theme;
@@ -76,12 +76,12 @@ pub fn beside(ui: &mut Ui, state: &AppState) {
     let painter = ui.painter();
     let font = FontId::proportional(11.0);
     let title = format!("{} ({unit})", quantity.name());
-    painter.text(rect.left_top(), Align2::LEFT_TOP, title, font.clone(), ink);
+    let title = painter.text(rect.left_top(), Align2::LEFT_TOP, title, font.clone(), ink);
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let service = solved.cables.first().filter(|_| current && quantity == CableQuantity::Tension);
     let stretches = solution.cables.iter().flat_map(|c| &c.contacts);
+    let mut x = rect.right();
     if current && state.view.layers.contacts && stretches.into_iter().any(|c| c.ends_m > c.begins_m) {
-        let mut x = rect.right();
         for (holds, text) in [(false, "slides"), (true, "holds")] {
             let small = FontId::proportional(10.0);
             let words = painter.text(pos2(x, rect.top() + 1.0), Align2::RIGHT_TOP, text, small, palette.text);
@@ -89,6 +89,17 @@ pub fn beside(ui: &mut Ui, state: &AppState) {
             contact::sample(painter, palette, sample, holds);
             x = sample.left() - 6.0;
         }
+    }
+    if let Some(times) = cable::thickening(state) {
+        let room = x - title.right() - 10.0;
+        let small = FontId::proportional(10.0);
+        let words = [format!("drawn {times}× as thick"), format!("drawn {times}×"), format!("{times}×")];
+        let words = words.map(|w| painter.layout_no_wrap(w, small.clone(), palette.weak_text));
+        let shown = words.into_iter().find(|w| w.size().x <= room);
+        if let Some(words) = shown {
+            painter.galley(title.right_top() + vec2(5.0, 1.0), words, palette.weak_text);
+        }
+        response.on_hover_text(format!("The cable is drawn {times} times as thick as it is, so that it can be seen"));
     }
     let bar = Rect::from_min_size(rect.min + vec2(0.0, 15.0), vec2(rect.width(), 9.0));
     let mut mesh = Mesh::default();

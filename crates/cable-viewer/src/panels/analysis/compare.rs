@@ -13,6 +13,7 @@ use crate::panels::words;
 use crate::record::measure::Measure;
 use crate::record::run::Peak;
 use crate::render::colour::{CableQuantity, LINES};
+use crate::render::theme;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
 use crate::units::sentence::sentence;
@@ -77,7 +78,6 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 ui.end_row();
             }
             for (k, held) in state.analysis.references.iter().enumerate() {
-                let colour = LINES[k % LINES.len()];
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
                     let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
@@ -85,7 +85,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     if away.on_hover_text("Unpins this result").clicked() {
                         commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
                     }
-                    ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
+                    number(ui, k).on_hover_text(&held.name);
                 });
                 row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), compared);
                 ui.end_row();
@@ -101,6 +101,15 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The number of a pin, underlined in the colour of its lines: that is too dark for text in one
+/// theme.
+fn number(ui: &mut Ui, k: usize) -> egui::Response {
+    let shown = ui.strong(format!("{}", k + 1));
+    let (x, y) = (shown.rect.x_range(), shown.rect.bottom() - 1.0);
+    ui.painter().hline(x, y, egui::Stroke::new(2.5, LINES[k % LINES.len()]));
+    shown
+}
+
 /// A row of a grid, dimmed while its figures are not of the scene as it is.
 fn dimmed_row_if_old(ui: &mut Ui, state: &AppState, cells: impl FnOnce(&mut Ui)) {
     let before = ui.opacity();
@@ -114,7 +123,12 @@ fn dimmed_row_if_old(ui: &mut Ui, state: &AppState, cells: impl FnOnce(&mut Ui))
 /// Asks every model at once, and tells why some have no answer.
 fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Progress::Running(share, _) = state.analysis.models {
-        let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
+        let bar = ui.add(
+            ProgressBar::new(share as f32)
+                .show_percentage()
+                .desired_height(16.0)
+                .fill(theme::palette(ui.visuals()).bars[0]),
+        );
         field::name(&bar, "Progress of the comparison");
         if ui.button("Cancel comparison").on_hover_text("Stops it; nothing is pinned").clicked() {
             commands.push(Command::View(ViewCommand::CompareModels(false)));
@@ -176,12 +190,14 @@ fn runs(ui: &mut Ui, state: &AppState) {
             let held = state.analysis.references.iter().enumerate();
             let held = held.filter_map(|(k, h)| {
                 let run = h.run.as_deref()?;
-                Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+                Some((String::new(), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
             });
             for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
-                let text = RichText::new(name).strong();
                 let cells = |ui: &mut Ui| {
-                    ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+                    match k {
+                        Some(k) => number(ui, k),
+                        None => ui.strong(&name),
+                    };
                     ui.label(format::duration(last - first));
                     for peak in peaks {
                         let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
@@ -238,7 +254,13 @@ fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
 fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.add(egui::Label::new(RichText::new(text).size(FIGURES)).extend());
+        // Units are weaker than figures: four of them in a row were read as one string.
+        let (figure, unit) = text.split_at(text.find([' ', '\u{a0}']).unwrap_or(text.len()));
+        let mut words = egui::text::LayoutJob::default();
+        for (part, colour) in [(figure, ui.visuals().strong_text_color()), (unit, ui.visuals().weak_text_color())] {
+            words.append(part, 0.0, egui::TextFormat::simple(egui::FontId::proportional(FIGURES), colour));
+        }
+        ui.add(egui::Label::new(words).extend());
         if let (Some(value), Some(present)) = (value, present)
             && present != 0.0
             && value.is_finite()

@@ -6,6 +6,7 @@ use egui::{Grid, ProgressBar, Ui};
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::friction_range;
+use crate::render::theme;
 use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
@@ -56,7 +57,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.weak("Begins once time stands still");
         }
         Progress::Running(share, _) => {
-            let bar = ui.add(ProgressBar::new(*share as f32).show_percentage().desired_height(16.0));
+            let bar = ui.add(
+                ProgressBar::new(*share as f32)
+                    .show_percentage()
+                    .desired_height(16.0)
+                    .fill(theme::palette(ui.visuals()).bars[0]),
+            );
             field::name(&bar, "Progress of the friction range");
         }
         Progress::Failed(why) => field::fault(ui, &format!("No range: {why}")),

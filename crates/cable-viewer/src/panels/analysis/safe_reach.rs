@@ -9,6 +9,7 @@ use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::safe_reach::{self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions};
+use crate::render::theme;
 use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
@@ -37,7 +38,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.add_enabled_ui(running.is_none(), |ui| choices(ui, state, moved, commands));
     if let Some(share) = running {
-        let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
+        let bar = ui.add(
+            ProgressBar::new(share as f32)
+                .show_percentage()
+                .desired_height(16.0)
+                .fill(theme::palette(ui.visuals()).bars[0]),
+        );
         field::name(&bar, "Progress of the safe reach");
         // A place may take a minute without a word: the time left goes on being counted meanwhile.
         ui.ctx().request_repaint_after(COUNTING_REPAINT);
@@ -215,7 +221,7 @@ fn of_area(area: &Area, limit: Limit, tension_n: f64) -> String {
     let force = format::force(tension_n);
     match area.below(tension_n) {
         Some((_, [low, high])) => format!(
-            "Below {name} tension ({force}) between x = {} and {}, y = {} and {}",
+            "Below {name} tension ({force}) in the area drawn: x from {} to {}, y from {} to {}",
             to(low[0]),
             to(high[0]),
             to(low[1]),

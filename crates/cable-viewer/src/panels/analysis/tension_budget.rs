@@ -9,6 +9,7 @@ use egui::{Align, Color32, Label, Layout, Rect, Role, Sense, Stroke, Ui, WidgetI
 
 use crate::command::{Command, ViewCommand};
 use crate::panels::readouts::dimmed_if_old;
+use crate::render::colour::LINES;
 use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
@@ -21,12 +22,12 @@ const BAR_ROW_HEIGHT: f32 = 15.0;
 const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 
 const END: Color32 = Color32::from_rgb(136, 136, 136);
-const WEIGHT: Color32 = Color32::from_rgb(0, 114, 178);
-const WIND: Color32 = Color32::from_rgb(86, 180, 233);
+const WEIGHT: Color32 = LINES[1];
+const WIND: Color32 = Color32::from_rgb(110, 190, 190);
 /// Neighbouring contacts differ.
-const CONTACTS: [Color32; 2] = [Color32::from_rgb(213, 94, 0), Color32::from_rgb(230, 159, 0)];
+const CONTACTS: [Color32; 2] = [LINES[2], Color32::from_rgb(170, 145, 220)];
 const SUPPORT: Color32 = Color32::from_rgb(0, 158, 115);
-const LOAD: Color32 = Color32::from_rgb(204, 121, 167);
+const LOAD: Color32 = LINES[3];
 const REST: Color32 = Color32::from_rgb(190, 190, 190);
 
 /// Draws it.

@@ -10,8 +10,9 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, P
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::work_precision::{Entry, Outcome};
-use crate::plot::SERVICE;
+use crate::plot::TIME_MARK;
 use crate::render::colour;
+use crate::render::theme;
 use crate::state::AppState;
 use crate::units::sentence::sentence;
 use crate::units::{format, labels};
@@ -31,7 +32,12 @@ const MIN_DIFFERENCE: f64 = 1e-10;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let progress = &state.analysis.work_precision;
     if let Progress::Running(share, _) = progress {
-        let bar = ui.add(ProgressBar::new(*share as f32).show_percentage().desired_height(16.0));
+        let bar = ui.add(
+            ProgressBar::new(*share as f32)
+                .show_percentage()
+                .desired_height(16.0)
+                .fill(theme::palette(ui.visuals()).bars[0]),
+        );
         field::name(&bar, "Progress of the chart");
         if ui.button("Cancel chart").on_hover_text("Stops it after the model that is being asked").clicked() {
             commands.push(Command::View(ViewCommand::ChartWorkPrecision(false)));
@@ -118,7 +124,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
         .y_axis_formatter(|mark, _| power(mark.value));
     let shown = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([left - 0.4, low - 0.8], [right + 0.4, high + 0.8]));
-        let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(SERVICE).width(1.5);
+        let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(TIME_MARK).width(1.5);
         plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
         for (model, shape) in Model::SOLVERS.into_iter().zip(SHAPES) {
             let of_model = found.entries.iter().filter(|e| e.setting.model == model);

@@ -1,15 +1,14 @@
-//! Peaks of the kinetic energy in two spans of time, one after the other, show whether it grows.
+//! Peaks of the kinetic energy in spans of time, one after the other, show whether it grows.
 
 use crate::record::history::History;
 use crate::record::sample::Sample;
 
 /// Time over which the kinetic energy is compared with that of as long before, s. Shorter: every
 /// swing is a growth; longer: a run that diverges has ended.
-const GROWTH_SPAN_S: f64 = 1.0;
-/// The greatest kinetic energy of the last span and of that before, J; None where less was
-/// recorded.
+pub const GROWTH_SPAN_S: f64 = 1.0;
+/// The greatest kinetic energy of the last N spans, oldest first, J; None where less was recorded.
 #[must_use]
-pub fn kinetic_peaks_j(history: &History) -> Option<[f64; 2]> {
+pub fn kinetic_peaks_j<const N: usize>(history: &History) -> Option<[f64; N]> {
     let now_s = history.samples.back()?.time_s;
     let first_s = history.samples.front()?.time_s;
     let peak = |from_s: f64| {
@@ -17,8 +16,8 @@ pub fn kinetic_peaks_j(history: &History) -> Option<[f64; 2]> {
         let inside = |s: &&&Sample| s.time_s > from_s && s.time_s <= from_s + GROWTH_SPAN_S;
         seen.iter().filter(inside).map(|s| s.energy_j[0]).fold(0.0, f64::max)
     };
-    let before_s = now_s - 2.0 * GROWTH_SPAN_S;
-    (before_s >= first_s).then(|| [peak(before_s), peak(now_s - GROWTH_SPAN_S)])
+    let begins_s = |k: usize| now_s - (N - k) as f64 * GROWTH_SPAN_S;
+    (begins_s(0) >= first_s).then(|| std::array::from_fn(|k| peak(begins_s(k))))
 }
 
 #[cfg(test)]
@@ -39,6 +38,9 @@ mod tests {
         assert!(last > 2.0 * before);
         let [before, last] = kinetic_peaks_j(&history(|t| (-t).exp())).unwrap();
         assert!(last < before);
-        assert_eq!(kinetic_peaks_j(&History::default()), None);
+        assert_eq!(kinetic_peaks_j::<2>(&History::default()), None);
+        let four = kinetic_peaks_j::<4>(&history(|t| t.exp())).unwrap();
+        assert!(four.windows(2).all(|w| w[1] > 2.0 * w[0]));
+        assert_eq!(kinetic_peaks_j::<5>(&history(|t| t.exp())), None);
     }
 }

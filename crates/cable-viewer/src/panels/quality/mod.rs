@@ -13,15 +13,54 @@ use egui::Ui;
 
 use crate::command::Command;
 use crate::panels::quality::condition_number::estimated;
-use crate::panels::quality::kinetic_peaks::kinetic_peaks_j;
+use crate::panels::quality::kinetic_peaks::{GROWTH_SPAN_S, kinetic_peaks_j};
 use crate::panels::readouts;
-use crate::record::history::History;
+use crate::record::sample::Sample;
 use crate::state::AppState;
 use crate::units::format;
 use crate::widgets::readout;
 
 /// A peak of the kinetic energy above that of the span before by less is said to be steady.
 const MIN_GROWTH_RATIO: f64 = 1.1;
+/// Spans in a row over which the kinetic energy has to grow before it is warned of, and one. Fewer:
+/// a swing that begins is; more: a motion that diverges has ended.
+const GROWTH_SPANS: usize = 5;
+/// Energy gained in all of less than this share of what the motion gained came from height or
+/// stretch.
+const MIN_GAINED_SHARE: f64 = 0.5;
+/// A kinetic energy below this share of the energy of stretch is that of a cable at rest.
+const MIN_KINETIC_SHARE: f64 = 1e-3;
+
+/// A reason not to rely on the figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The thing that is wrong.
+    pub title: &'static str,
+    /// Its figure.
+    pub figure: String,
+    /// The reason in a sentence.
+    pub why: &'static str,
+}
+
+/// All that there is to say against an answer, as the form of the solver marks it.
+#[must_use]
+pub fn problems(state: &AppState, answer: &Solution) -> Vec<Problem> {
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let tolerance = state.solver.settings.tolerance;
+    let (share, unbalanced) = unbalanced(tolerance, answer);
+    let (condition, ill) = worst_condition(tolerance, scene, answer).map_or((0.0, None), |(c, ill)| (c, ill));
+    let energy = format::energy(answer.energy.kinetic_j);
+    let found = [
+        (
+            "Residual above tolerance",
+            format!("{} > {}", format::percent(share), format::percent(tolerance)),
+            unbalanced,
+        ),
+        ("Ill-conditioned equations", format!("{condition:.0e}"), ill),
+        ("Kinetic energy grows", energy, grows_for_long(state, answer)),
+    ];
+    found.into_iter().filter_map(|(title, figure, why)| Some(Problem { title, figure, why: why? })).collect()
+}
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<Command>) {
@@ -30,14 +69,19 @@ pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<C
         residual(ui, state.solver.settings.tolerance, answer);
         displacement(ui, answer, commands);
         conditioning(ui, state.solver.settings.tolerance, scene, answer);
-        kinetic_energy(ui, &state.live.history, answer);
+        kinetic_energy(ui, state, answer);
     });
 }
 
-fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
+/// The share of the greatest tension that is left unbalanced, and what is wrong with it.
+fn unbalanced(tolerance: f64, answer: &Solution) -> (f64, Option<&'static str>) {
     let greatest_n = answer.max_tension().tension_n;
     let share = if greatest_n > 0.0 { answer.cost.residual_n / greatest_n } else { 0.0 };
-    let wrong = (share > tolerance).then_some("It is above the tolerance asked for: the tensions are not settled");
+    (share, (share > tolerance).then_some("It is above the tolerance asked for: the tensions are not settled"))
+}
+
+fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
+    let (share, wrong) = unbalanced(tolerance, answer);
     let value = format!("{} ({})", format::force(answer.cost.residual_n), format::percent(share));
     let help = "Largest force left unbalanced at a node, and its share of the greatest tension: the smaller, the closer to equilibrium";
     readout::assessed_row(ui, "Residual", &value, help, wrong);
@@ -59,27 +103,66 @@ fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
     }
 }
 
+/// The greatest condition number of all cables as estimated, and what is wrong with it; None
+/// without a mesh or a tension.
+fn worst_condition(tolerance: f64, scene: &Scene, answer: &Solution) -> Option<(f64, Option<&'static str>)> {
+    let all = scene.cables.iter().zip(&answer.cables).filter_map(|(cable, solved)| estimated(cable, solved));
+    let worst = all.reduce(f64::max).filter(|_| answer.model.capabilities().mesh)?;
+    let wrong = (worst * f64::EPSILON > tolerance)
+        .then_some("Rounding alone may spoil the tolerance asked for: use fewer segments, or a softer cable");
+    Some((worst, wrong))
+}
+
 fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     let name = "Condition estimate";
     if !answer.model.capabilities().mesh {
         return readout::row(ui, name, "no mesh", "A model without a mesh solves no large system of equations", |_| {});
     }
-    let all = scene.cables.iter().zip(&answer.cables).filter_map(|(cable, solved)| estimated(cable, solved));
-    let Some(worst) = all.reduce(f64::max) else {
+    let Some((worst, wrong)) = worst_condition(tolerance, scene, answer) else {
         return readout::row(ui, name, "not known", "No cable is under tension", |_| {});
     };
-    let wrong = (worst * f64::EPSILON > tolerance)
-        .then_some("Rounding alone may spoil the tolerance asked for: use fewer segments, or a softer cable");
     let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
                 contact: of 16 digits its logarithm are lost to rounding";
     readout::assessed_row(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
 }
 
-fn kinetic_energy(ui: &mut Ui, history: &History, answer: &Solution) {
+fn kinetic_energy(ui: &mut Ui, state: &AppState, answer: &Solution) {
     let help = "Energy of motion now, and whether its greatest in the last second is above that of the second before. \
-                What supports, loads and the robot do explains a growth; energy that nothing gave is warned of";
+                What supports, loads and the robot do explains a growth; where nothing does, it is warned of once it lasts";
     let now = format::energy(answer.energy.kinetic_j);
-    let grows = kinetic_peaks_j(history).filter(|[before, last]| *last > MIN_GROWTH_RATIO * before && *last > 0.0);
-    let value = grows.map_or_else(|| now.clone(), |_| format!("{now}, growing"));
-    readout::assessed_row(ui, "Kinetic energy", &value, help, grows.map(|_| "It grows"));
+    let growing = kinetic_peaks_j(&state.live.history).is_some_and(|peaks: [f64; 2]| grows(&peaks));
+    let value = if growing { format!("{now}, growing") } else { now };
+    readout::assessed_row(ui, "Kinetic energy", &value, help, grows_for_long(state, answer));
+}
+
+fn grows(peaks_j: &[f64]) -> bool {
+    peaks_j.windows(2).all(|w| matches!(w, [before, last] if *last > MIN_GROWTH_RATIO * before && *last > 0.0))
+}
+
+/// Returns what is wrong with a motion that gains energy second by second while nothing gives any.
+fn grows_for_long(state: &AppState, answer: &Solution) -> Option<&'static str> {
+    let history = &state.live.history;
+    let peaks = kinetic_peaks_j::<GROWTH_SPANS>(history)?;
+    let [before, .., last] = peaks;
+    let moves = last > MIN_KINETIC_SHARE * answer.energy.stretch_j.abs();
+    // What falls turns height into motion.
+    let total_j = |s: &Sample| s.energy_j.iter().sum::<f64>();
+    let from_s = answer.time_s.max(history.samples.back()?.time_s) - GROWTH_SPANS as f64 * GROWTH_SPAN_S;
+    let gained_j = total_j(history.samples.back()?) - total_j(history.view([from_s, from_s], None).first()?);
+    let given = is_driven(state, answer) || gained_j < MIN_GAINED_SHARE * (last - before);
+    (moves && !given && grows(&peaks))
+        .then_some("It grows from second to second and nothing in the scene gives it: the motion is not to be believed")
+}
+
+/// Returns whether a hand, a schedule, the robot or a load may do work.
+fn is_driven(state: &AppState, answer: &Solution) -> bool {
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let supports = scene.cables.iter().flat_map(|c| &c.supports);
+    let robot = answer.robot.is_some_and(|r| r.speed_m_per_s != 0.0);
+    let wind = scene.environment.wind_n_per_m != [0.0; 2];
+    state.selection.grab.is_some()
+        || robot
+        || wind
+        || !scene.loads.is_empty()
+        || supports.into_iter().any(|s| s.motion.is_some())
 }

@@ -92,7 +92,7 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         let first = summary(scene, cable, solved, time_s);
         let ends: Vec<String> = first.ends.iter().map(|e| format::force(e.tension_n)).collect();
-        let sag = first.sag.map_or_else(|| "–".to_owned(), |s| format::length(s.sag_m));
+        let sag = first.sag.map_or_else(|| "–".to_owned(), |s| sag_text(s.sag_m, first.length_m));
         let text = RichText::new(format!("Ends {} · sag {sag}", ends.join(", "))).small();
         ui.add(Label::new(text).truncate()).on_hover_text("Tension at the start and at the end, and the greatest sag");
     });
@@ -185,6 +185,11 @@ fn node(at: CablePlace) -> Node {
     Node { arc_length_m: at.arc_length_m, x_m: at.x_m, y_m: at.y_m, ..Node::default() }
 }
 
+/// A sag, m, of a cable of a length, m: rounding is none.
+fn sag_text(sag_m: f64, length_m: f64) -> String {
+    format::length(if sag_m.abs() < ROUNDING_FRACTION * length_m { 0.0 } else { sag_m })
+}
+
 /// Force and angle at both ends.
 fn ends(ui: &mut Ui, first: &CableSummary) {
     for (name, end) in ["Start", "End"].into_iter().zip(&first.ends) {
@@ -215,11 +220,15 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
         View::Plan => "Greatest distance from the straight line between neighbouring supports",
     };
     match first.sag {
-        Some(sag) => figure(ui, "Sag", format::length(sag.sag_m), help, Some((&node(sag.at), &mut *commands))),
+        Some(sag) => {
+            figure(ui, "Sag", sag_text(sag.sag_m, first.length_m), help, Some((&node(sag.at), &mut *commands)))
+        }
         None => figure(ui, "Sag", "–".to_owned(), "No two neighbouring supports stand apart", None),
     }
     for (name, at) in [("Lowest", first.lowest), ("Highest", first.highest)] {
-        figure(ui, name, format::length(at.y_m), "Height of that point", Some((&node(at), &mut *commands)));
+        // In one unit: 308.9 mm stood above 9.200 m.
+        let height = unit::Unit::COORDINATE.text(at.y_m);
+        figure(ui, name, height, "Height of that point", Some((&node(at), &mut *commands)));
     }
     let longer = first.stretched_length_m - first.length_m;
     let text = format!(
@@ -281,7 +290,7 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
             "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
             unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
         );
-        figure(ui, "  as stiff as it is", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
+        figure(ui, "  with its stiffness", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
     }
     if let Some(free) = solved.free_bend.filter(|b| judged.is_some() && b.radius_m < limit) {
         let help = "Sharpest bend where nothing leads it: it kinks there";
@@ -321,9 +330,9 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
             "Greatest tension of any inner step since the start, and from what to what it may be, as two coarser runs beside this one differ from it"
         }
     };
-    figure(ui, "Greatest so far", most, help, None);
+    figure(ui, "Max tension so far", most, help, None);
     if let Some(TensionRanges { greatest_n: [from, to], .. }) = run.ranges {
-        figure(ui, "  may be", format!("{} to {}", format::force(from), format::force(to)), help, None);
+        figure(ui, "  range", format!("{} to {}", format::force(from), format::force(to)), help, None);
     }
 }
 
