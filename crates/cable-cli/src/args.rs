@@ -55,7 +55,7 @@ pub struct Common {
     pub mobilised: Option<FrictionMobilised>,
     /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what
     /// their preset is likely to have), or where-it-matters (that, of cables which at rest without
-    /// it are bent too tightly, curl up or cross themselves)
+    /// it are bent too tightly, curl up, lie in folds or cross themselves)
     #[arg(long, default_value = "as-written", value_parser = bending)]
     pub bending: Bending,
     /// Leave out what the likely bending stiffness of a preset would change of the rest where it
