@@ -53,6 +53,15 @@ pub struct Common {
     /// towards-start or towards-end [default: what the scene says]
     #[arg(long, value_parser = mobilised)]
     pub mobilised: Option<FrictionMobilised>,
+    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what
+    /// their preset is likely to have), or where-it-matters (that, of cables which at rest without
+    /// it are bent too tightly, curl up, lie in folds or cross themselves)
+    #[arg(long, default_value = "as-written", value_parser = bending)]
+    pub bending: Bending,
+    /// Leave out what the likely bending stiffness of a preset would change of the rest where it
+    /// was neglected, which takes a second answer
+    #[arg(long)]
+    pub no_bending: bool,
     /// Print JSON objects (one a line) instead of text
     #[arg(long)]
     pub json: bool,
@@ -66,19 +75,10 @@ pub struct SolveArguments {
     /// friction remembered
     #[arg(long)]
     pub stiffness: bool,
-    /// Leave out what the likely bending stiffness of a preset would change where it was neglected,
-    /// which takes a second answer
-    #[arg(long)]
-    pub no_bending: bool,
     /// Also answer by every model, on 25 to 400 elements where it has any, and say by how much each
     /// differs and how long it took
     #[arg(long)]
     pub compare: bool,
-    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what
-    /// their preset is likely to have), or where-it-matters (that, of cables which without it are
-    /// bent too tightly, curl up or cross themselves)
-    #[arg(long, default_value = "as-written", value_parser = bending)]
-    pub bending: Bending,
 }
 
 #[derive(Debug, Args)]

@@ -13,8 +13,10 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
-use cable_core::solution::{InertiaEffect, Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
-use cable_core::summary::summaries;
+use cable_core::solution::{
+    InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
+};
+use cable_core::summary::{neglected_bending, scene_with_bending, summaries};
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
@@ -25,6 +27,7 @@ use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::{Printer, Progress};
 use crate::signals::Signals;
+use crate::summary::neglected_at_first_rest;
 use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
@@ -67,6 +70,10 @@ impl SharedRunFolder {
 struct Outputs {
     arguments: RunArguments,
     scene: Scene,
+    /// The use that was made of likely bending stiffness.
+    bending: Option<LikelyBending>,
+    /// Lines on what neglected bending stiffness would change of the first rest.
+    neglected: Vec<String>,
     folder: SharedRunFolder,
     print_lock: Arc<Mutex<()>>,
     printer: Printer,
@@ -139,9 +146,18 @@ impl Outputs {
         for (cable, since) in solution.cables.iter_mut().zip(self.peaks_since_output.drain(..)) {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
-        let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
-        let figures =
+        solution.reason = self.with_bending(solution.reason);
+        let json = self.arguments.common.json;
+        let cables = if json { summaries(&self.scene, &solution) } else { Vec::new() };
+        let mut figures =
             Figures { cables, run_peaks: self.run_peaks.clone(), inertia: self.inertia, ..Figures::default() };
+        if self.last.is_none() && !self.arguments.common.no_bending {
+            figures.bending = neglected_bending(&self.scene, &solution, settings(&self.arguments.common));
+            if !json {
+                figures.cables = summaries(&self.scene, &solution);
+                self.neglected = neglected_at_first_rest(&figures);
+            }
+        }
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| {
@@ -149,7 +165,7 @@ impl Outputs {
             folder.add_wall_time(wall_time_s);
             Ok(())
         })?;
-        if self.arguments.common.json {
+        if json {
             let _whole_line = self.print_lock.lock().unwrap_or_else(PoisonError::into_inner);
             self.printer.json(&printable)?;
             self.printer.flush()?;
@@ -157,6 +173,14 @@ impl Outputs {
         self.progress.at(solution.time_s, self.arguments.duration_s, solution.max_tension().tension_n);
         self.last = Some(solution);
         Ok(())
+    }
+
+    /// The reason for a model, with the use that was made of likely bending stiffness.
+    fn with_bending(&self, reason: ModelReason) -> ModelReason {
+        match &self.bending {
+            Some(bending) => reason.with_bending(bending.clone()),
+            None => reason,
+        }
     }
 
     /// Notes what is known of the run so far.
@@ -241,10 +265,13 @@ pub fn run(a: RunArguments) -> CommandResult {
         )));
     }
     let choice = a.node_choice().map_err(Failure::Argument)?;
-    let scene = scene_with_arguments(&a.common)?;
+    let written = scene_with_arguments(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };
+    let at_rest = Settings { histories: false, ..settings };
+    let (scene, bending) = scene_with_bending(&written, a.common.model, at_rest, a.common.bending)
+        .map_err(|e| Failure::from_core(&a.common.scene, e))?;
     let simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
         .map_err(|e| Failure::from_core(&a.common.scene, e))?;
     // From here on a signal ends the run in order.
@@ -266,6 +293,8 @@ pub fn run(a: RunArguments) -> CommandResult {
     let outputs = Outputs {
         arguments: a,
         scene,
+        bending,
+        neglected: Vec::new(),
         folder: shared.clone(),
         print_lock: print_lock.clone(),
         printer: Printer::new(),
@@ -337,6 +366,9 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
         printer.line(table(&last, &figures).trim_end())?;
         for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
             printer.line(&line)?;
+        }
+        for line in &outputs.neglected {
+            printer.line(line)?;
         }
         for line in outputs.warning_log.lines() {
             printer.line(&line)?;
@@ -412,8 +444,9 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
 
 fn end_with_error(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
     let reached_s = simulation.time_s();
+    let reason = outputs.with_bending(simulation.reason().clone());
     if outputs.arguments.common.json {
-        let answer = NoAnswer::new(simulation.model(), Some(simulation.reason()), Some(reached_s), &error);
+        let answer = NoAnswer::new(simulation.model(), Some(&reason), Some(reached_s), &error);
         if let Err(e) = outputs.printer.json(&answer).and_then(|()| outputs.printer.flush()) {
             return e;
         }

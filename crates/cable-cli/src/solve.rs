@@ -21,7 +21,7 @@ pub fn solve(arguments: &SolveArguments) -> CommandResult {
     let mut out = Printer::new();
     let began = Instant::now();
     let waiting = WaitingNotice::begin();
-    let solved = settle_with_bending(&scene, a.model, settings(a), arguments.bending);
+    let solved = settle_with_bending(&scene, a.model, settings(a), a.bending);
     drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {
@@ -29,7 +29,7 @@ pub fn solve(arguments: &SolveArguments) -> CommandResult {
             let stiffness = arguments.stiffness.then(|| end_stiffness(&scene, a.model, settings(a))).transpose();
             let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
             let neglected = || neglected_bending(&scene, &solution, settings(a));
-            let bending = if arguments.no_bending { Vec::new() } else { neglected() };
+            let bending = if a.no_bending { Vec::new() } else { neglected() };
             let compared = if arguments.compare { compared(&scene, &solution, a) } else { Vec::new() };
             let cables = summaries(&scene, &solution);
             let figures = Figures { cables, stiffness, bending, compared, ..Figures::default() };

@@ -116,6 +116,17 @@ fn percent(ratio: f64) -> String {
     format!("{:.4} %", 100.0 * ratio)
 }
 
+/// A line for each cable on the changes that the neglected bending stiffness would make to the
+/// first rest of a run, whose figures are given.
+pub fn neglected_at_first_rest(figures: &Figures) -> Vec<String> {
+    let of = |b: &NeglectedBending| {
+        let rest = figures.cables.iter().find(|s| s.cable == b.cable)?;
+        let changes = neglected(b, rest.greatest_tension.tension_n);
+        Some(format!("\nBending neglected of `{}`: at the first rest {changes}", b.cable))
+    };
+    figures.bending.iter().filter_map(of).collect()
+}
+
 /// The text on the changes that the neglected bending stiffness would make; `most` is the greatest
 /// tension without it, N.
 fn neglected(b: &NeglectedBending, most: f64) -> String {

@@ -396,6 +396,78 @@ fn solve_tells_what_is_read_first() {
     assert_eq!(cable(&["solve", file.to_str().unwrap(), "--bending", "some"]).status.code(), Some(2));
 }
 
+/// Asked for, a run goes on with the bending stiffness that is likely of the presets, of all cables
+/// or of those whose rest without it is not one of a cable, and says so in its text, its JSON and
+/// the scene of its folder.
+#[test]
+fn run_takes_the_likely_bending_stiffness_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |scene: &cable_core::Scene, more: &[&str]| {
+        let file = folder.path().join("scene.toml");
+        std::fs::write(&file, scene.to_toml()).unwrap();
+        let out = folder.path().join("out");
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "0.02s", "--no-errors"];
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        arguments.extend(more);
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{more:?}: {}", text(&o.stderr));
+        let written = std::fs::read_to_string(out.join("scene.toml")).unwrap();
+        let written = cable_core::Scene::from_toml(&written).unwrap().cables[0].bending_stiffness_n_m2;
+        (text(&o.stdout), written)
+    };
+    let taken = "likely of its preset was taken: `cable` with 1.4 N·m²";
+    let span = catalog::hanging_span();
+    for (bending, stiffness) in [("as-written", 0.0), ("likely", 1.4), ("where-it-matters", 0.0)] {
+        let (told, written) = run(&span, &["--bending", bending]);
+        assert_eq!(written, stiffness, "{bending}");
+        assert_eq!(told.contains(taken), stiffness > 0.0, "{bending}: {told}");
+    }
+    // A pile of a flexible cable is folded to kinks.
+    let pile = catalog::all().into_iter().find(|(name, _)| *name == "pile").unwrap().1;
+    let (told, written) = run(&pile, &["--bending", "where-it-matters", "--json"]);
+    assert_eq!(written, 1.4);
+    let first: Value = serde_json::from_str(told.lines().next().unwrap()).unwrap();
+    let reason = first["reason"].as_str().unwrap();
+    assert!(reason.contains("without bending stiffness it is bent too tightly") && reason.contains(taken), "{reason}");
+    // It is the rest that `solve` finds with it.
+    let file = folder.path().join("scene.toml");
+    let solved = text(&cable(&["solve", file.to_str().unwrap(), "--bending", "where-it-matters", "--json"]).stdout);
+    let solved: Value = serde_json::from_str(&solved).unwrap();
+    let [run, rest] = [&first, &solved].map(|v| v["max_tension_n"].as_f64().unwrap());
+    assert!((run / rest - 1.0).abs() < 1e-2, "{run} N for {rest} N");
+}
+
+/// What a run neglects of bending is said once, of its first rest.
+#[test]
+fn run_says_once_what_its_first_rest_neglects_of_bending() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = span(folder.path());
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "0.02s", "--no-errors"];
+        arguments.extend(["--out", out.to_str().unwrap()]);
+        arguments.extend(more);
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{more:?}: {}", text(&o.stderr));
+        text(&o.stdout)
+    };
+    let told = run(&[]);
+    let of_rest = "first rest with 1.4 (0.1 to 20) N·m², likely of its preset, the greatest tension is 93.02";
+    assert_eq!(told.matches("Bending neglected").count(), 1, "{told}");
+    assert!(told.contains(of_rest), "{told}");
+    let lines = run(&["--json"]);
+    let lines: Vec<Value> = lines.lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+    assert!(lines.len() > 1);
+    for (k, line) in lines.iter().enumerate() {
+        let neglected = &line["summary"][0]["neglected_bending"];
+        assert_eq!(neglected["bending_stiffness_n_m2"].as_f64(), (k == 0).then_some(1.4), "line {k}");
+    }
+    // Unless nobody wants to wait for it, or nothing was left out.
+    for more in [["--no-bending"].as_slice(), &["--bending", "likely"]] {
+        assert!(!run(more).contains("Bending neglected"), "{more:?}");
+    }
+}
+
 /// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in
 /// its events.
 #[test]

@@ -10,8 +10,9 @@ mod fold_scenes;
 use std::time::Instant;
 
 use cable_core::scene::{Obstacle, Scene, Shape, Support, View, catalog};
-use cable_core::solution::Solution;
-use cable_core::{Model, Simulation};
+use cable_core::solution::{Solution, WarningCause};
+use cable_core::summary::{Bending, settle_with_bending};
+use cable_core::{Model, Settings, Simulation};
 
 use fold_scenes::{FAMILIES, GRAVITY, RADIUS, height, scene};
 
@@ -379,6 +380,29 @@ fn loose_cable_in_a_slippery_tank_is_drawn_by_its_slopes() {
         let (here, far) = (rest([0.0, 0.0]), rest([1000.0, -300.0]));
         assert!(here.iter().zip(&far).all(|(a, b)| (a - b).abs() < 1e-6 * here[1].abs()), "{here:?} {far:?}");
     }
+}
+
+/// Folds have no width: any bending stiffness opens them, so that the likely one counts there.
+#[test]
+fn bending_matters_where_cable_lies_in_folds() {
+    let mut s = catalog::hanging_span();
+    s.loads.clear();
+    s.cables[0].length_m = 9.0;
+    s.cables[0].supports = vec![Support::fixed("a", [0.0, 0.1]), Support::fixed("b", [5.0, 0.1])];
+    let shape = Shape::Terrain { points_m: vec![[-10.0, 0.0], [20.0, 0.0]] };
+    s.obstacles = vec![Obstacle { name: "floor".into(), shape, friction: Some(0.5) }];
+    let asked = |bending| settle_with_bending(&s, Model::Auto, Settings::default(), bending).unwrap();
+    let (_, flexible) = asked(Bending::AsWritten);
+    let causes: Vec<_> = flexible.warnings.iter().map(|w| &w.cause).collect();
+    assert!(causes.iter().any(|c| matches!(c, WarningCause::Folds { .. })), "{causes:?}");
+    let (scene, stiff) = asked(Bending::WhereItMatters);
+    assert_eq!(scene.cables[0].bending_stiffness_n_m2, 1.4, "{}", stiff.reason);
+    assert!(stiff.reason.to_string().contains("lies in folds"), "{}", stiff.reason);
+    assert!(stiff.max_tension().tension_n > 2.0 * flexible.max_tension().tension_n);
+    // A long part with little tension is slack, too, and no fold: that is as it may be.
+    let drag = catalog::floor_drag();
+    let (scene, _) = settle_with_bending(&drag, Model::Auto, Settings::default(), Bending::WhereItMatters).unwrap();
+    assert_eq!(scene.cables[0].bending_stiffness_n_m2, 0.0);
 }
 
 #[test]

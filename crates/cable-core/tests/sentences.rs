@@ -128,6 +128,7 @@ fn warnings() -> Vec<Warning> {
         (Cause::BarContacts, [0.02, 1e-3]),
         (Cause::CoarseForces { elements: 40 }, [0.02, 1e-3]),
         (Cause::CoarseTension { elements: 40 }, [0.02, 1e-3]),
+        (Cause::RobotOutOfBalance { left_n: 1200.0 }, [0.02, 5e-3]),
     ];
     causes.into_iter().map(|(cause, values)| Warning::new(cause, "main", 3.2, values).at([1.0, -2.0])).collect()
 }

@@ -341,7 +341,17 @@ impl Vehicle {
     /// Unbalanced impulse over time (N) that counts as none beside forces of the cable.
     #[must_use]
     pub fn tolerance(&self, pulls: Pulls) -> f64 {
-        BALANCE_TOLERANCE * (self.weight + pulls.hitch.norm() + pulls.outline.norm())
+        BALANCE_TOLERANCE * self.forces(pulls)
+    }
+
+    /// An unbalanced force (N) in parts of the forces on it, and the part that counts as none.
+    pub(crate) fn imbalance(&self, left_n: f64, pulls: Pulls) -> [f64; 2] {
+        [left_n / self.forces(pulls), BALANCE_TOLERANCE]
+    }
+
+    /// Its weight and the forces of the cable, N.
+    fn forces(&self, pulls: Pulls) -> f64 {
+        self.weight + pulls.hitch.norm() + pulls.outline.norm()
     }
 
     /// Mass, kg.

@@ -11,7 +11,9 @@
 //! The step is that of the cable where that is shorter: then both see each other at every instant
 //! that either of them knows.
 
-use super::speed_search::{SpeedSearch, Trial};
+use std::mem::discriminant;
+
+use super::speed_search::{NextTrial, SpeedSearch, Trial};
 use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
@@ -20,7 +22,7 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
 use crate::robot::{self, Drive, Going, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
-use crate::solution::Cost;
+use crate::solution::{Cost, Warning, WarningCause};
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
@@ -37,8 +39,9 @@ struct CoupledStep<'a> {
 
 /// Outcome of a trial.
 enum TrialOutcome {
-    /// The robot at the end of the step.
-    Ends(Box<Vehicle>),
+    /// The robot at the end of the step, and the force by which it is out of balance with its
+    /// cables, N, where trials ran out.
+    Ends(Box<Vehicle>, Option<f64>),
     /// The speed to try next, m/s.
     Again(f64),
     /// It cannot go on, and why.
@@ -67,7 +70,7 @@ impl Simulation {
             };
             warnings.append(&mut self.warnings);
         }
-        warnings.dedup_by(|a, b| (a.kind, &a.cable) == (b.kind, &b.cable));
+        warnings.dedup_by(|a, b| discriminant(&a.cause) == discriminant(&b.cause) && a.cable == b.cable);
         (self.cost, self.warnings) = (cost, warnings);
         Ok(())
     }
@@ -85,9 +88,10 @@ impl Simulation {
             let tried = self.try_speed(step, &start, drive, speed, &mut search);
             iterations += self.cost.iterations;
             match tried {
-                TrialOutcome::Ends(vehicle) => {
+                TrialOutcome::Ends(vehicle, left_n) => {
                     self.vehicle = Some(*vehicle);
                     self.hold_vehicle();
+                    self.warn_out_of_balance(left_n, step.hitches);
                     return Ok(iterations);
                 }
                 TrialOutcome::Again(next) => {
@@ -127,19 +131,38 @@ impl Simulation {
         let balance = start.balance(drive, pulls);
         let excess_speed = balance.speed - speed;
         // A break is no force that a speed could be found for.
-        let even =
-            (excess_speed * start.mass() / step.step_s).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
-        if !even
-            && !(self.left_m() > 0.0)
-            && let Some(next) = search.next(Trial { speed, excess_speed })
-        {
-            return TrialOutcome::Again(next);
+        let excess_n = (excess_speed * start.mass() / step.step_s).abs();
+        let even = excess_n <= start.tolerance(pulls) || self.breaks() > breaks;
+        let mut left_n = None;
+        if !even && !(self.left_m() > 0.0) {
+            match search.next(Trial { speed, excess_speed }) {
+                NextTrial::Speed(next) => return TrialOutcome::Again(next),
+                NextTrial::Jump => {}
+                NextTrial::RanOut => left_n = Some(excess_n),
+            }
         }
         let mut vehicle = start.clone();
         // Where forces jump the robot has the speed at which they do.
         let ends = if even { balance.speed } else { speed };
         vehicle.arrive(drive, to, speed, balance, ends, pulls);
-        TrialOutcome::Ends(Box::new(vehicle))
+        TrialOutcome::Ends(Box::new(vehicle), left_n)
+    }
+
+    /// Warns of a step whose trials ran out, with this force left between robot and cables, N.
+    fn warn_out_of_balance(&mut self, left_n: Option<f64>, hitches: &[(usize, usize)]) {
+        let (Some(left_n), Some(vehicle)) = (left_n, &self.vehicle) else { return };
+        let [value, limit] = vehicle.imbalance(left_n, self.pulls(hitches));
+        let Some(problem) = hitches.first().and_then(|(k, _)| self.cables.get(*k)).map(BreakableCable::problem) else {
+            return;
+        };
+        let at = vehicle.hitch();
+        let warning = Warning::new(
+            WarningCause::RobotOutOfBalance { left_n },
+            &problem.cable.name,
+            problem.length,
+            [value, limit],
+        );
+        self.warnings.push(warning.at([at.x, at.y]));
     }
 
     /// Returns how many times the cables have broken.

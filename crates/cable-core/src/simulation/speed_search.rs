@@ -13,7 +13,7 @@
 //! reaches anyway needs one trial, a cable that pulls evenly harder one or two.
 
 /// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
-/// early; more: that takes longer.
+/// early, out of balance, which is warned of; more: that takes longer.
 const MAX_TRIALS: usize = 12;
 
 /// Speeds that come out too slow and too fast are the same when they are this near to each other,
@@ -27,6 +27,17 @@ pub(super) struct Trial {
     pub speed: f64,
     /// Excess of the speed that comes out, m/s.
     pub excess_speed: f64,
+}
+
+/// The outcome of looking for the next speed to try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum NextTrial {
+    /// This one, m/s.
+    Speed(f64),
+    /// Forces jump at the speed of the last trial: none lies between.
+    Jump,
+    /// No trial is left.
+    RanOut,
 }
 
 /// Knowledge of the speed that is sought.
@@ -44,9 +55,10 @@ impl SpeedSearch {
         Self { left: MAX_TRIALS, last: None, low: None, high: None }
     }
 
-    /// The next speed to try after a trial, m/s; None where nothing is left between, or no trial.
-    pub fn next(&mut self, now: Trial) -> Option<f64> {
-        self.left = self.left.checked_sub(1)?;
+    /// Looks for the next speed to try after a trial.
+    pub fn next(&mut self, now: Trial) -> NextTrial {
+        let Some(left) = self.left.checked_sub(1) else { return NextTrial::RanOut };
+        self.left = left;
         let before = self.last.replace(now);
         match now.excess_speed > 0.0 {
             true => self.low = Some(now.speed),
@@ -55,11 +67,11 @@ impl SpeedSearch {
         if let (Some(low), Some(high)) = (self.low, self.high)
             && high - low < SPEED_TOLERANCE
         {
-            return None;
+            return NextTrial::Jump;
         }
         let slope = before.map_or(-1.0, |b| (now.excess_speed - b.excess_speed) / (now.speed - b.speed));
         let wanted = now.speed - now.excess_speed / if slope < -1.0 { slope } else { -1.0 };
-        Some(match (self.low, self.high) {
+        NextTrial::Speed(match (self.low, self.high) {
             (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
             // A force that would throw it back stops it first.
             (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,

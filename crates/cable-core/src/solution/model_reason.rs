@@ -51,6 +51,14 @@ pub enum ModelReason {
     },
 }
 
+impl ModelReason {
+    /// The same reason for a scene in which use was made of likely bending stiffness.
+    #[must_use]
+    pub fn with_bending(self, bending: LikelyBending) -> Self {
+        Self::Bending { reason: Box::new(self), bending }
+    }
+}
+
 /// The use made of the bending stiffness that is likely of the presets of flexible cables.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LikelyBending {

@@ -32,7 +32,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::ForceBalance;
-pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
+pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, scene_with_bending, settle_with_bending};
 pub use places::{CablePlace, Sag, TensionAt, TouchKind, Touchdown};
 pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
 pub use shape::{sag, stretched_length_m};

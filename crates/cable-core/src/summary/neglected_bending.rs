@@ -5,11 +5,11 @@
 //! stiffness is likely, the same scene is answered with it, and what the figures differ by is the
 //! error of having left it out.
 //!
-//! Who asks for it gets the answer with the likely stiffness instead ([`settle_with_bending`]), for
-//! all such cables or for those of which the answer without it is not one of a cable: bent tighter
-//! than it stands, curled up, or across itself. It is not the rule: of 33 scenes (the catalogue and
-//! `repro`) whose cable has such a preset, four have no sound answer with it, and the tank takes
-//! 1.5 s instead of 0.1 s.
+//! Who asks for it gets the answer with the likely stiffness instead ([`settle_with_bending`]), or
+//! the scene to run ([`scene_with_bending`]), for all such cables or for those of which the answer
+//! without it is not one of a cable: bent tighter than it stands, curled up, in folds, or across
+//! itself. It is not the rule: of 34 scenes (the catalogue and `repro`) whose cable has such a
+//! preset, four have no sound answer with it, and heaps take seconds.
 
 use serde::Serialize;
 
@@ -20,7 +20,7 @@ use crate::scene::Scene;
 use crate::scene::preset::cable_preset;
 use crate::simulation::Simulation;
 use crate::solution::error_estimates::greatest_tension;
-use crate::solution::{ErrorEstimates, LikelyBending, ModelReason, Solution, TakenStiffness, WarningKind};
+use crate::solution::{ErrorEstimates, LikelyBending, Solution, TakenStiffness, Warning, WarningCause, WarningKind};
 
 /// Effects that an answer at rest without bending stiffness left out, for one cable.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -88,8 +88,8 @@ pub enum Bending {
     AsWritten,
     /// The bending stiffness that their presets are likely to have.
     Likely,
-    /// That, of cables which without it are bent tighter than they stand, curl up, or cross
-    /// themselves.
+    /// That, of cables which without it are bent tighter than they stand, curl up, lie in folds, or
+    /// cross themselves.
     WhereItMatters,
 }
 
@@ -108,9 +108,65 @@ fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, V
     (!taken.is_empty()).then_some((stiff, taken))
 }
 
-/// Returns whether a flexible line is not where a cable could be.
-fn matters(kind: WarningKind) -> bool {
-    matches!(kind, WarningKind::BendRadius | WarningKind::Kink | WarningKind::Curl | WarningKind::Loop)
+/// Returns whether a flexible line is not where a cable could be: folds have no width.
+fn matters(warning: &Warning) -> bool {
+    let kinds = [WarningKind::BendRadius, WarningKind::Kink, WarningKind::Curl, WarningKind::Loop];
+    kinds.contains(&warning.kind) || matches!(warning.cause, WarningCause::Folds { .. })
+}
+
+/// A scene whose cables have the bending stiffness that was asked for.
+struct Chosen {
+    scene: Scene,
+    /// The use that was made of likely stiffness, where there is any.
+    bending: Option<LikelyBending>,
+    /// The answer of the scene at rest, where that was needed to choose it.
+    answer: Option<Solution>,
+}
+
+fn settle(scene: &Scene, model: Model, settings: Settings) -> Result<Solution, Error> {
+    Ok(Simulation::with_settings(scene.clone(), model, settings)?.settle()?)
+}
+
+fn choose(scene: &Scene, model: Model, settings: Settings, bending: Bending) -> Result<Chosen, Error> {
+    let as_written = |answer| Chosen { scene: scene.clone(), bending: None, answer };
+    match bending {
+        Bending::AsWritten => Ok(as_written(None)),
+        Bending::Likely => Ok(match with_likely(scene, |_| true) {
+            Some((scene, taken)) => Chosen { scene, bending: Some(LikelyBending::Taken(taken)), answer: None },
+            None => as_written(None),
+        }),
+        Bending::WhereItMatters => {
+            let flexible = settle(scene, model, settings)?;
+            let tight = |name: &str| flexible.warnings.iter().any(|w| matters(w) && w.cable == name);
+            let Some((stiff, taken)) = with_likely(scene, tight) else { return Ok(as_written(Some(flexible))) };
+            match settle(&stiff, model, settings) {
+                Ok(answer) => {
+                    let bending = Some(LikelyBending::TakenWhereItMatters(taken));
+                    Ok(Chosen { scene: stiff, bending, answer: Some(answer) })
+                }
+                Err(Error::Solve(error)) => {
+                    let bending = Some(LikelyBending::NoAnswer(Box::new(error)));
+                    Ok(Chosen { bending, ..as_written(Some(flexible)) })
+                }
+                Err(other) => Err(other),
+            }
+        }
+    }
+}
+
+/// Returns the scene with the bending stiffness that is asked for, and the use that was made of
+/// likely stiffness. Where it matters is seen from where everything rests, without and with it.
+///
+/// # Errors
+/// As [`Simulation::with_settings`] and [`Simulation::settle`], where it is settled.
+pub fn scene_with_bending(
+    scene: &Scene,
+    model: Model,
+    settings: Settings,
+    bending: Bending,
+) -> Result<(Scene, Option<LikelyBending>), Error> {
+    let Chosen { scene, bending, .. } = choose(scene, model, settings, bending)?;
+    Ok((scene, bending))
 }
 
 /// Returns where everything rests, with the bending stiffness that is asked for: the scene that was
@@ -125,26 +181,10 @@ pub fn settle_with_bending(
     settings: Settings,
     bending: Bending,
 ) -> Result<(Scene, Solution), Error> {
-    let settle = |scene: &Scene| -> Result<Solution, Error> {
-        Ok(Simulation::with_settings(scene.clone(), model, settings)?.settle()?)
-    };
-    let told = |answer: Solution, bending: LikelyBending| {
-        let reason = ModelReason::Bending { reason: Box::new(answer.reason), bending };
-        Solution { reason, ..answer }
-    };
-    if bending == Bending::Likely
-        && let Some((stiff, taken)) = with_likely(scene, |_| true)
-    {
-        return settle(&stiff).map(|answer| (stiff, told(answer, LikelyBending::Taken(taken))));
+    let Chosen { scene, bending, answer } = choose(scene, model, settings, bending)?;
+    let mut answer = answer.map_or_else(|| settle(&scene, model, settings), Ok)?;
+    if let Some(bending) = bending {
+        answer.reason = answer.reason.with_bending(bending);
     }
-    let flexible = settle(scene)?;
-    let tight = |name: &str| flexible.warnings.iter().any(|w| matters(w.kind) && w.cable == name);
-    match with_likely(scene, tight).filter(|_| bending == Bending::WhereItMatters) {
-        None => Ok((scene.clone(), flexible)),
-        Some((stiff, taken)) => match settle(&stiff) {
-            Ok(answer) => Ok((stiff, told(answer, LikelyBending::TakenWhereItMatters(taken)))),
-            Err(Error::Solve(error)) => Ok((scene.clone(), told(flexible, LikelyBending::NoAnswer(Box::new(error))))),
-            Err(other) => Err(other),
-        },
-    }
+    Ok((scene, answer))
 }

@@ -49,7 +49,10 @@ impl Sentence for LikelyBending {
         match self {
             Self::Taken(cables) => taken(cables),
             Self::TakenWhereItMatters(cables) => {
-                format!("without bending stiffness it is bent too tightly or crosses itself, so {}", taken(cables))
+                format!(
+                    "without bending stiffness it is bent too tightly, lies in folds or crosses itself, so {}",
+                    taken(cables)
+                )
             }
             Self::NoAnswer(error) => format!(
                 "with the bending stiffness that is likely of its preset there is no answer: {}",

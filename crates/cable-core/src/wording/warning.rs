@@ -222,6 +222,10 @@ impl Sentence for Warning {
             Cause::CoarseTension { elements } => format!(
                 "{elements} elements give the largest tension to about {value:.1e}; {limit:.1e} was asked for: use more segments"
             ),
+            Cause::RobotOutOfBalance { left_n } => format!(
+                "The robot and `{cable}` are {} out of balance in this step, {value:.1e} of the forces on the robot; {limit:.1e} was asked for, but no speed was found at which they agree: drive more slowly, or keep the cable from being squeezed",
+                f.force(*left_n, 1)
+            ),
             Cause::Recorded { message, .. } => message.clone(),
         }
     }

@@ -2,7 +2,7 @@
 //! fix where one change is one.
 
 use cable_core::scene::SupportKind;
-use cable_core::solution::{Warning, WarningKind};
+use cable_core::solution::{Warning, WarningCause, WarningKind};
 use cable_core::{Settings, Solution};
 use egui::text::{LayoutJob, TextFormat};
 use egui::{Align, Atom, Button, Color32, Layout, RichText, ScrollArea, TextStyle, Ui, vec2};
@@ -320,6 +320,8 @@ fn can_be_laid_anew(state: &AppState, cable: Option<usize>) -> bool {
 /// One change that takes the warning's cause away, where there is one.
 fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<usize>) -> Option<Fix> {
     match warning.kind {
+        // A finer mesh does not bring robot and cable together.
+        WarningKind::Accuracy if matches!(warning.cause, WarningCause::RobotOutOfBalance { .. }) => None,
         WarningKind::Accuracy => {
             let nodes = answer.cables.iter().map(|c| c.nodes.len()).max()?;
             let segments = 2 * nodes.saturating_sub(1).max(1);

@@ -216,6 +216,12 @@ pub enum WarningCause {
         /// Number of elements.
         elements: usize,
     },
+    /// No speed was found at which robot and cable agree; value and limit are in parts of the
+    /// forces on the robot.
+    RobotOutOfBalance {
+        /// The force that is left between them, N.
+        left_n: f64,
+    },
     /// A warning of which only the sentence was kept.
     Recorded {
         /// The kind.
@@ -298,7 +304,8 @@ impl WarningCause {
             | Self::CoarseBend { .. }
             | Self::BarContacts
             | Self::CoarseForces { .. }
-            | Self::CoarseTension { .. } => WarningKind::Accuracy,
+            | Self::CoarseTension { .. }
+            | Self::RobotOutOfBalance { .. } => WarningKind::Accuracy,
             Self::Recorded { kind, .. } => *kind,
         }
     }
