@@ -126,7 +126,8 @@ pub struct Workspace {
     pub(in crate::model::fem) rounding: Rounding,
     /// Targets of held nodes, or the points where they had to stop, m.
     pub(in crate::model::fem) goal: Vec<Vec2>,
-    own_pairs: Vec<SelfPair>,
+    /// The contacts of the cable with itself of the last assembly.
+    pub(in crate::model::fem) own_pairs: Vec<SelfPair>,
     pub(in crate::model::fem) order: SortedNodes,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(in crate::model::fem) coupling: Coupling,

@@ -1,5 +1,6 @@
 //! The memory in which a step is solved is kept from step to step, and holds nothing of the state.
 
+use crate::math::Vec2;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
 use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
@@ -25,6 +26,9 @@ pub(in crate::model::fem) struct SolverMemory {
     pub(in crate::model::fem) free: MixedFreeSolver,
     /// Room for the part of each branch of the loss that a step leaves.
     pub(in crate::model::fem) decay: Vec<f64>,
+    /// Room for the ways of the nodes in a step, and for the forces on supports at its start.
+    pub(in crate::model::fem) ways: Vec<Vec2>,
+    pub(in crate::model::fem) reaction: Vec<Vec2>,
     /// The work that the search for an equilibrium, or an advance, may still do.
     pub(in crate::model::fem) work_left: WorkBudget,
     /// The work that an advance may do.

@@ -56,6 +56,8 @@ impl Dynamics {
                 unknowns: Unknowns::default(),
                 memory: WorkspaceMemory(None),
                 free: MixedFreeSolver::default(),
+                ways: Vec::new(),
+                reaction: Vec::new(),
                 decay: Vec::new(),
                 work_left: WorkBudget::Unlimited,
                 work_of_advance: WorkBudget::Unlimited,
