@@ -13,7 +13,7 @@ use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
-use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
+use cable_core::solution::{EnergyAccount, Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
@@ -123,6 +123,25 @@ impl RunTotals {
         }
         lines
     }
+}
+
+/// Part of the energy exchanged below which a work is left out.
+const LEAST_WORK_FRACTION: f64 = 1e-6;
+
+/// The energy account of a run.
+fn energy_lines(account: &EnergyAccount) -> Vec<String> {
+    let least = LEAST_WORK_FRACTION * account.exchanged_j;
+    let named = |(kind, work): (&str, f64)| (work.abs() > least).then(|| format!("{kind} {work:.6} J"));
+    let works: Vec<String> = EnergyAccount::KINDS.into_iter().zip(account.works_j()).filter_map(named).collect();
+    if works.is_empty() {
+        return Vec::new();
+    }
+    let (exchanged, gained) = (account.exchanged_j, account.gained.total_j());
+    vec![
+        format!("Energy exchanged            {exchanged:.6} J; gained {gained:.6} J by work of"),
+        format!("                            {}", works.join(", ")),
+        format!("Not accounted for           {:.1e} of that", account.unaccounted_j().abs() / exchanged),
+    ]
 }
 
 impl Outputs {
@@ -324,6 +343,9 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
         let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
         printer.line(table(&last, &figures).trim_end())?;
         for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
+            printer.line(&line)?;
+        }
+        for line in last.energy_account().iter().flat_map(energy_lines) {
             printer.line(&line)?;
         }
         for line in outputs.warning_log.lines() {

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Energy;
+use crate::math::larger;
 
 /// Balance of a cable's energy since it began to move: what it has gained, and the work of each
 /// kind of force on it, each from its own force and displacement in every inner step. What was
@@ -43,12 +44,34 @@ pub struct EnergyAccount {
 }
 
 impl EnergyAccount {
+    /// The kinds of work in the order of [`Self::works_j`].
+    pub const KINDS: [&'static str; 8] =
+        ["supports", "loads", "outlines", "friction", "material", "impacts", "edits", "numerical"];
+
     /// The works in the order of the fields, J.
     #[must_use]
     pub fn works_j(&self) -> [f64; 8] {
         let Self { supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j, .. } =
             *self;
         [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j]
+    }
+
+    /// The account of two cables.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        Self {
+            over_s: larger(self.over_s, other.over_s),
+            gained: [self.gained, other.gained].into_iter().sum(),
+            supports_j: self.supports_j + other.supports_j,
+            loads_j: self.loads_j + other.loads_j,
+            outlines_j: self.outlines_j + other.outlines_j,
+            friction_j: self.friction_j + other.friction_j,
+            material_j: self.material_j + other.material_j,
+            impacts_j: self.impacts_j + other.impacts_j,
+            edits_j: self.edits_j + other.edits_j,
+            numerical_j: self.numerical_j + other.numerical_j,
+            exchanged_j: self.exchanged_j + other.exchanged_j,
+        }
     }
 
     /// What no work accounts for of the gains, J: 0 but for what inner steps leave unbalanced.

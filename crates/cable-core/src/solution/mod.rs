@@ -550,4 +550,10 @@ impl Solution {
         let all = self.cables.iter().map(|c| c.peaks_at(self.time_s));
         all.reduce(TensionPeaks::with).unwrap_or_default()
     }
+
+    /// The energy accounts of all cables that have one together.
+    #[must_use]
+    pub fn energy_account(&self) -> Option<EnergyAccount> {
+        self.cables.iter().filter_map(|c| c.energy_account).reduce(|a, b| a.with(&b))
+    }
 }

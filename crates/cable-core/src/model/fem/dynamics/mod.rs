@@ -283,8 +283,8 @@ impl Dynamics {
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.cable.motion.note_step(h, smooth);
         self.time_control.step_size.observe(&self.cable, h);
-        plastic_impact::land_on_obstacles(&mut self.cable, h, a);
-        plastic_impact::land_on_itself(&mut self.cable, h, a);
+        plastic_impact::land_on_obstacles(&mut self.cable, h, a, &self.solver.ways);
+        plastic_impact::land_on_itself(&mut self.cable, h, a, &self.solver.ways);
         if !self.cable.meshing.was_contact_free {
             self.cable.motion.energies.land(kinetic_energy(&self.cable));
         }

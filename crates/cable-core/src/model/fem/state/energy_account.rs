@@ -64,6 +64,15 @@ impl Energies {
         self.stored = stored;
     }
 
+    /// The impulses of contacts that were over with the step did so much more work than the forces
+    /// that were counted: the integrator gave the cable that much less.
+    pub(in crate::model::fem) fn correct(&mut self, more: &Works) {
+        self.works.impacts += more.impacts;
+        self.works.friction += more.friction;
+        self.works.outlines += more.outlines;
+        self.works.numerical -= more.impacts + more.friction + more.outlines;
+    }
+
     /// Plastic impacts left the cable with this kinetic energy, J.
     pub(in crate::model::fem) fn land(&mut self, kinetic_j: f64) {
         self.works.impacts += kinetic_j - self.stored.kinetic_j;
