@@ -243,8 +243,8 @@ impl Dynamics {
     ) -> Result<Converged, Failure> {
         let before = stored_energy(&self.cable);
         self.cable.motion.energies.begin_step(self.cable.motion.time, before);
-        self.solver.ways.clone_from(&self.cable.motion.positions);
-        self.solver.reaction.clone_from(&self.cable.answers.reaction);
+        let motion = &self.cable.motion;
+        self.solver.ways.begin(&motion.positions, &motion.velocities, &self.cable.answers.reaction);
         let weights = self.begin_step(h, dragged);
         let a = weights.rate;
         let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
@@ -267,7 +267,7 @@ impl Dynamics {
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
         let slid = MovingMass::of(&self.cable).sliding_momentum();
-        self.solver.ways.iter_mut().zip(&unknowns.positions).for_each(|(way, x)| *way = x - *way);
+        self.solver.ways.end(&unknowns.positions);
         let work = work_in_step(&self.cable, &unknowns, &self.solver);
         loss_memory::relax(&mut self.cable, h, &unknowns.positions);
         self.cable.commit_contacts(&unknowns);

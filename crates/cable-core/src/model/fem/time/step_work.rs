@@ -61,10 +61,10 @@ struct BalancedStep<'a> {
 /// The work of a step that is balanced at unknowns; `solver` has the ways of the nodes (m) and the
 /// forces on supports at its start (N).
 pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknowns, solver: &SolverMemory) -> StepWork {
-    let step = BalancedStep { cable, unknowns, ways: &solver.ways };
+    let step = BalancedStep { cable, unknowns, ways: &solver.ways.ways };
     let mut works = Works::default();
     let conservative = step.gravity() + step.bars(&mut works) + step.bends(&mut works);
-    step.supports(&mut works, &solver.reaction);
+    step.supports(&mut works, &solver.ways.reaction);
     step.loads(&mut works);
     step.sliding(&mut works);
     if !cable.meshing.was_contact_free {
