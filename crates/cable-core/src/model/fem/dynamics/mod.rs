@@ -19,7 +19,7 @@ use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
-use crate::model::fem::state::stored_energy::{kinetic_energy, stored_energy};
+use crate::model::fem::state::stored_energy::{kinetic_energy, stored_energy, stored_with_stretch};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::hands::HandDrive;
@@ -241,8 +241,10 @@ impl Dynamics {
         h: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
-        let before = stored_energy(&self.cable);
-        self.cable.motion.energies.begin_step(self.cable.motion.time, before);
+        let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
+        let mut energies = self.cable.motion.energies;
+        let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
+        self.cable.motion.energies = energies;
         let motion = &self.cable.motion;
         self.solver.ways.begin(&motion.positions, &motion.velocities, &self.cable.answers.reaction);
         let weights = self.begin_step(h, dragged);
@@ -276,7 +278,9 @@ impl Dynamics {
         account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
-        let after = stored_energy(&self.cable);
+        let after = work
+            .stretch_j()
+            .map_or_else(|| stored_energy(&self.cable), |stretch_j| stored_with_stretch(&self.cable, stretch_j));
         self.cable.motion.energies.add(&work.between(before, after), after);
         results::gauge_tension(&mut self.cable);
         let cable = &self.cable;

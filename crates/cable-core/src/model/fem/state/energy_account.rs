@@ -36,13 +36,21 @@ impl Default for Energies {
 }
 
 impl Energies {
-    /// A step from the time `now` (s) begins with this energy: what of it is new came with a change
-    /// of the mesh or of the state.
-    pub(in crate::model::fem) fn begin_step(&mut self, now: f64, stored: Energy) {
+    /// A step from the time `now` (s) begins; returns the energy that the cable has. Where it may
+    /// have `changed` since the last step, that came with a change of the mesh or of the state.
+    pub(in crate::model::fem) fn begin_step(
+        &mut self,
+        now: f64,
+        changed: bool,
+        stored: impl FnOnce() -> Energy,
+    ) -> Energy {
         if self.from.is_nan() {
+            let stored = stored();
             *self = Self { from: now, began: stored, stored, ..Self::default() };
+        } else if changed {
+            self.edit(stored());
         }
-        self.edit(stored);
+        self.stored
     }
 
     /// A change of the mesh left the cable with this energy.

@@ -10,31 +10,41 @@ use crate::solution::Energy;
 
 /// All of it.
 pub(in crate::model::fem) fn stored_energy(cable: &CableState) -> Energy {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let length = |e: usize| mesh.path(e, x).length;
+    let stretch_j =
+        (0..mesh.rest_length.len()).map(|e| bar_energy::stretch_energy(mesh, [length(e), mesh.rest_length[e]])).sum();
+    stored_with_stretch(cable, stretch_j)
+}
+
+/// The same where the energy of stretch is known, J.
+pub(in crate::model::fem) fn stored_with_stretch(cable: &CableState, stretch_j: f64) -> Energy {
+    let bending_j = if cable.mesh.is_flexible() { 0.0 } else { bends_energy(&cable.mesh, &cable.motion.positions) };
+    Energy { kinetic_j: kinetic_energy(cable), gravity_j: gravity_energy(cable), stretch_j, bending_j }
+}
+
+/// That of height, J.
+fn gravity_energy(cable: &CableState) -> f64 {
     let (problem, mesh, x) = (&cable.problem, &cable.mesh, &cable.motion.positions);
-    let (mut moment, mut stretch_j) = (Vec2::zeros(), 0.0);
+    let mut moment = Vec2::zeros();
     for e in 0..mesh.rest_length.len() {
         let material = mesh.arc_length[e + 1] - mesh.arc_length[e];
         let slides = mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some();
-        let (length, center) = if slides {
-            let path = mesh.path(e, x);
-            (path.length, Weight::of(mesh, e, &path, problem.weight).center)
-        } else {
-            ((x[e + 1] - x[e]).norm(), (x[e] + x[e + 1]) * 0.5)
+        moment += match slides {
+            true => Weight::of(mesh, e, &mesh.path(e, x), problem.weight).center * material,
+            false => (x[e] + x[e + 1]) * (0.5 * material),
         };
-        moment += center * material;
-        stretch_j += bar_energy::stretch_energy(mesh, [length, mesh.rest_length[e]]);
     }
     for (more, x) in mesh.spread.more.iter().zip(x) {
         moment += x * *more;
     }
-    let mut gravity_j = -problem.weight.dot(&moment);
+    let mut energy = -problem.weight.dot(&moment);
     for (s, node) in problem.supports.iter().zip(&cable.meshing.support_node) {
         if let Some(x) = node.and_then(|k| x.get(k)).filter(|_| s.mass > 0.0) {
-            gravity_j -= problem.gravity().dot(x) * s.mass;
+            energy -= problem.gravity().dot(x) * s.mass;
         }
     }
-    let bending_j = if mesh.is_flexible() { 0.0 } else { bends_energy(mesh, x) };
-    Energy { kinetic_j: kinetic_energy(cable), gravity_j, stretch_j, bending_j }
+    energy
 }
 
 /// That of motion, J.

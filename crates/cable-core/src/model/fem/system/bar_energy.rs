@@ -95,15 +95,10 @@ impl BarEnergy {
     }
 }
 
-/// Slopes of the energy of bar `e` by the length P of its way and by its unstretched length L at
-/// `[P, L]` (m), N: those of stretching, and those of its loss.
+/// Slopes of the energy of a bar with a sliding node by the length P of its way and by its
+/// unstretched length L at `[P, L]` (m), N: those of stretching, and those of its loss.
 #[must_use]
 pub fn slopes(mesh: &Mesh, input: &StepInput, e: usize, at @ [p, l]: [f64; 2]) -> [[f64; 2]; 2] {
-    if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
-        let taut = !(p < l);
-        let (loss, _) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
-        return [[stiffness(mesh, taut) * (p / l - 1.0), 0.0], [loss, 0.0]];
-    }
     let whole = BarEnergy::of(mesh, input, e, at).slope;
     let elastic = BarEnergy::spring(stiffness(mesh, !(p < l)), 1.0, at).slope;
     [elastic, [whole[0] - elastic[0], whole[1] - elastic[1]]]

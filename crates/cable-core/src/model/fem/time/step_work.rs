@@ -31,15 +31,24 @@ use crate::solution::Energy;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct StepWork {
     works: Works,
-    /// I − C, J.
+    /// I − C, J, without the work of the weight where nothing slides.
     balanced: f64,
+    /// The energy of stretch at the end where nothing slides, J.
+    stretch_j: Option<f64>,
 }
 
 impl StepWork {
+    /// The energy of stretch at the end of the step, where that is known, J.
+    pub(in crate::model::fem) fn stretch_j(&self) -> Option<f64> {
+        self.stretch_j
+    }
+
     /// The works of a step from one energy to another.
     pub(in crate::model::fem) fn between(self, before: Energy, after: Energy) -> Works {
-        let numerical = self.works.numerical + after.total_j() - before.total_j() - self.balanced;
-        Works { numerical, ..self.works }
+        // Where nothing slides height is linear in the unknowns.
+        let linear = if self.stretch_j.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
+        let gained = after.total_j() - before.total_j() - linear;
+        Works { numerical: self.works.numerical + gained - self.balanced, ..self.works }
     }
 }
 
@@ -63,14 +72,22 @@ struct BalancedStep<'a> {
 pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknowns, solver: &SolverMemory) -> StepWork {
     let step = BalancedStep { cable, unknowns, ways: &solver.ways.ways };
     let mut works = Works::default();
-    let conservative = step.gravity() + step.bars(&mut works) + step.bends(&mut works);
     step.supports(&mut works, &solver.ways.reaction);
     step.loads(&mut works);
-    step.sliding(&mut works);
     if !cable.meshing.was_contact_free {
         step.contacts(&mut works, solver);
     }
-    StepWork { works, balanced: step.inertia() - conservative }
+    let mut conservative = step.bends(&mut works);
+    let mut stretch_j = None;
+    if cable.meshing.never_slides {
+        let [work, stored] = step.plain_bars(&mut works);
+        conservative += work;
+        stretch_j = Some(stored);
+    } else {
+        step.sliding(&mut works);
+        conservative += step.gravity() + step.bars(&mut works);
+    }
+    StepWork { works, balanced: step.inertia() - conservative, stretch_j }
 }
 
 impl BalancedStep<'_> {
@@ -177,25 +194,48 @@ impl BalancedStep<'_> {
         }
     }
 
+    /// A bar without sliding nodes and the force (N) of its branches at the start: what its material
+    /// loses; returns the work of stretch at the end of the step and what it stores then, J.
+    #[inline]
+    fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
+        let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
+        let (d, way, l) = (x[e + 1] - x[e], self.ways[e + 1] - self.ways[e], mesh.rest_length[e]);
+        let p = d.norm();
+        let taut = !(p < l);
+        let pull = bar_energy::stiffness(mesh, taut) / l * (p - l);
+        let (loss, _) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
+        let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
+        if loss != 0.0 {
+            let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
+            let longer = p - (d - way).norm();
+            note(&mut works.material, &mut works.numerical, [-mean * longer, -loss * along]);
+        }
+        [-pull * along, 0.5 * pull * (p - l)]
+    }
+
+    /// The same of all bars of a mesh without sliding nodes.
+    fn plain_bars(&self, works: &mut Works) -> [f64; 2] {
+        let (branches, count) = loss_memory::forces(self.cable).unwrap_or((&[], 1));
+        let (mut branches, mut sum) = (branches.chunks_exact(count), [0.0; 2]);
+        for e in 0..self.mesh().rest_length.len() {
+            let was = branches.next().map_or(0.0, |forces| forces.iter().sum());
+            let [work, stored] = self.plain_bar(works, e, was);
+            sum = [sum[0] + work, sum[1] + stored];
+        }
+        sum
+    }
+
     /// What stretches bars and what their material loses; returns the work of stretch at the end of
     /// the step, J.
     fn bars(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let mut stretched = 0.0;
         for e in 0..mesh.rest_length.len() {
-            let way = self.ways[e + 1] - self.ways[e];
             if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
-                let d = x[e + 1] - x[e];
-                let p = d.norm();
-                let [[pull, _], [loss, _]] = bar_energy::slopes(mesh, input, e, [p, mesh.rest_length[e]]);
-                let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
-                stretched -= pull * along;
-                let was = if loss == 0.0 { 0.0 } else { loss_memory::force(self.cable, e) };
-                let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
-                let longer = p - (d - way).norm();
-                note(&mut works.material, &mut works.numerical, [-mean * longer, -loss * along]);
+                stretched += self.plain_bar(works, e, 0.0)[0];
                 continue;
             }
+            let way = self.ways[e + 1] - self.ways[e];
             let path = mesh.path(e, x);
             let l = bar_energy::rest_length(mesh, e, &self.unknowns.slides);
             let [elastic, loss] = bar_energy::slopes(mesh, input, e, [path.length, l]);
