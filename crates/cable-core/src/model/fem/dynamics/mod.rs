@@ -19,7 +19,7 @@ use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
-use crate::model::fem::state::stored_energy::{kinetic_energy, stored_energy, stored_with_stretch};
+use crate::model::fem::state::stored_energy::{kinetic_energy, kinetic_energy_of_step, stored_energy};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::hands::HandDrive;
@@ -33,7 +33,7 @@ use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
 use crate::model::smoothed_target::held_warning;
 use crate::model::{Inertia, StepReport};
-use crate::solution::{CableSolution, Cost, Warning, WarningCause};
+use crate::solution::{CableSolution, Cost, Energy, Warning, WarningCause};
 
 /// The request that the steps of an advance have in common.
 #[derive(Clone, Copy, Debug)]
@@ -278,9 +278,10 @@ impl Dynamics {
         account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
-        let after = work
-            .stretch_j()
-            .map_or_else(|| stored_energy(&self.cable), |stretch_j| stored_with_stretch(&self.cable, stretch_j));
+        let after = match work.stored() {
+            Some(rest) => Energy { kinetic_j: kinetic_energy_of_step(&self.cable, a), ..rest },
+            None => stored_energy(&self.cable),
+        };
         self.cable.motion.energies.add(&work.between(before, after), after);
         results::gauge_tension(&mut self.cable);
         let cable = &self.cable;

@@ -10,34 +10,32 @@ use crate::solution::Energy;
 
 /// All of it.
 pub(in crate::model::fem) fn stored_energy(cable: &CableState) -> Energy {
-    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
-    let length = |e: usize| mesh.path(e, x).length;
-    let stretch_j =
-        (0..mesh.rest_length.len()).map(|e| bar_energy::stretch_energy(mesh, [length(e), mesh.rest_length[e]])).sum();
-    stored_with_stretch(cable, stretch_j)
-}
-
-/// The same where the energy of stretch is known, J.
-pub(in crate::model::fem) fn stored_with_stretch(cable: &CableState, stretch_j: f64) -> Energy {
-    let bending_j = if cable.mesh.is_flexible() { 0.0 } else { bends_energy(&cable.mesh, &cable.motion.positions) };
-    Energy { kinetic_j: kinetic_energy(cable), gravity_j: gravity_energy(cable), stretch_j, bending_j }
-}
-
-/// That of height, J.
-fn gravity_energy(cable: &CableState) -> f64 {
     let (problem, mesh, x) = (&cable.problem, &cable.mesh, &cable.motion.positions);
-    let mut moment = Vec2::zeros();
+    let (mut moment, mut stretch_j) = (Vec2::zeros(), 0.0);
     for e in 0..mesh.rest_length.len() {
-        let material = mesh.arc_length[e + 1] - mesh.arc_length[e];
+        let path = mesh.path(e, x);
         let slides = mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some();
-        moment += match slides {
-            true => Weight::of(mesh, e, &mesh.path(e, x), problem.weight).center * material,
-            false => (x[e] + x[e + 1]) * (0.5 * material),
+        let center = match slides {
+            true => Weight::of(mesh, e, &path, problem.weight).center,
+            false => (x[e] + x[e + 1]) * 0.5,
         };
+        moment += center * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        stretch_j += bar_energy::stretch_energy(mesh, [path.length, mesh.rest_length[e]]);
     }
-    for (more, x) in mesh.spread.more.iter().zip(x) {
-        moment += x * *more;
-    }
+    let (kinetic_j, bending_j) = (kinetic_energy(cable), bending_energy(cable, x));
+    Energy { kinetic_j, gravity_j: gravity_energy(cable, moment, x), stretch_j, bending_j }
+}
+
+/// That of bending at positions `x` (m), J.
+pub(in crate::model::fem) fn bending_energy(cable: &CableState, x: &[Vec2]) -> f64 {
+    if cable.mesh.is_flexible() { 0.0 } else { bends_energy(&cable.mesh, x) }
+}
+
+/// That of height at positions `x` (m), where the bars have this sum of length times centre (m²),
+/// J.
+pub(in crate::model::fem) fn gravity_energy(cable: &CableState, bars: Vec2, x: &[Vec2]) -> f64 {
+    let problem = &cable.problem;
+    let moment = cable.mesh.spread.more.iter().zip(x).fold(bars, |sum, (more, x)| sum + x * *more);
     let mut energy = -problem.weight.dot(&moment);
     for (s, node) in problem.supports.iter().zip(&cable.meshing.support_node) {
         if let Some(x) = node.and_then(|k| x.get(k)).filter(|_| s.mass > 0.0) {
@@ -45,6 +43,23 @@ fn gravity_energy(cable: &CableState) -> f64 {
         }
     }
     energy
+}
+
+/// That of motion after a step whose rates were `rate` (1/s) times differences, by the inertia of
+/// the step on whose mesh nothing slides, J.
+pub(in crate::model::fem) fn kinetic_energy_of_step(cable: &CableState, rate: f64) -> f64 {
+    let (input, v) = (&cable.input, &cable.motion.velocities);
+    let mut sum: f64 = input.inertia.iter().zip(v).map(|(inertia, v)| inertia * v.norm_squared()).sum();
+    for ((coupling, _), pair) in input.coupling.iter().zip(v.windows(2)) {
+        if let [a, b] = pair {
+            sum -= coupling * (b - a).norm_squared();
+        }
+    }
+    // The springs of hands are a part of that inertia.
+    for &(k, stiffness, _) in &input.hands {
+        sum -= stiffness * v[k].norm_squared();
+    }
+    0.5 * sum / (rate * rate)
 }
 
 /// That of motion, J.

@@ -18,6 +18,7 @@ use crate::math::Vec2;
 use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::energy_account::Works;
+use crate::model::fem::state::stored_energy::{bending_energy, gravity_energy};
 use crate::model::fem::system::assembly::bends_slope;
 use crate::model::fem::system::bar_weight::{self, Weight};
 use crate::model::fem::system::contact::contact_pair::ContactPair;
@@ -33,20 +34,20 @@ pub(in crate::model::fem) struct StepWork {
     works: Works,
     /// I − C, J, without the work of the weight where nothing slides.
     balanced: f64,
-    /// The energy of stretch at the end where nothing slides, J.
-    stretch_j: Option<f64>,
+    /// The energy at the end where nothing slides, but for that of motion.
+    stored: Option<Energy>,
 }
 
 impl StepWork {
-    /// The energy of stretch at the end of the step, where that is known, J.
-    pub(in crate::model::fem) fn stretch_j(&self) -> Option<f64> {
-        self.stretch_j
+    /// The energy at the end of the step but for that of motion, where that is known.
+    pub(in crate::model::fem) fn stored(&self) -> Option<Energy> {
+        self.stored
     }
 
     /// The works of a step from one energy to another.
     pub(in crate::model::fem) fn between(self, before: Energy, after: Energy) -> Works {
         // Where nothing slides height is linear in the unknowns.
-        let linear = if self.stretch_j.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
+        let linear = if self.stored.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
         let gained = after.total_j() - before.total_j() - linear;
         Works { numerical: self.works.numerical + gained - self.balanced, ..self.works }
     }
@@ -77,17 +78,16 @@ pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknown
     if !cable.meshing.was_contact_free {
         step.contacts(&mut works, solver);
     }
-    let mut conservative = step.bends(&mut works);
-    let mut stretch_j = None;
+    let (mut balanced, mut stored) = (step.inertia() - step.bends(&mut works), None);
     if cable.meshing.never_slides {
-        let [work, stored] = step.plain_bars(&mut works);
-        conservative += work;
-        stretch_j = Some(stored);
+        let (work, energy) = step.plain_bars(&mut works);
+        balanced -= work;
+        stored = Some(energy);
     } else {
         step.sliding(&mut works);
-        conservative += step.gravity() + step.bars(&mut works);
+        balanced -= step.gravity() + step.bars(&mut works);
     }
-    StepWork { works, balanced: step.inertia() - conservative, stretch_j }
+    StepWork { works, balanced, stored }
 }
 
 impl BalancedStep<'_> {
@@ -107,8 +107,10 @@ impl BalancedStep<'_> {
                 (x[k] - input.predicted[k]).dot(&self.ways[k]) * inertia
             };
         }
-        for (e, (coupling, chord)) in input.coupling.iter().enumerate() {
-            sum -= (x[e + 1] - x[e] - chord).dot(&(self.ways[e + 1] - self.ways[e])) * coupling;
+        for ((coupling, chord), pairs) in input.coupling.iter().zip(x.windows(2).zip(self.ways.windows(2))) {
+            if let ([a, b], [from, to]) = pairs {
+                sum -= (b - a - chord).dot(&(to - from)) * coupling;
+            }
         }
         // The springs of hands are a part of that inertia.
         for &(k, stiffness, at) in &input.hands {
@@ -194,8 +196,9 @@ impl BalancedStep<'_> {
         }
     }
 
-    /// A bar without sliding nodes and the force (N) of its branches at the start: what its material
-    /// loses; returns the work of stretch at the end of the step and what it stores then, J.
+    /// A bar without sliding nodes and the force (N) of its branches at the start: what its
+    /// material loses; returns the work of stretch at the end of the step and what it stores then,
+    /// J.
     #[inline]
     fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
@@ -213,16 +216,21 @@ impl BalancedStep<'_> {
         [-pull * along, 0.5 * pull * (p - l)]
     }
 
-    /// The same of all bars of a mesh without sliding nodes.
-    fn plain_bars(&self, works: &mut Works) -> [f64; 2] {
+    /// The same of all bars of a mesh without sliding nodes; returns the work of stretch at the end
+    /// of the step (J) and the energy stored then, but for that of motion.
+    fn plain_bars(&self, works: &mut Works) -> (f64, Energy) {
         let (branches, count) = loss_memory::forces(self.cable).unwrap_or((&[], 1));
-        let (mut branches, mut sum) = (branches.chunks_exact(count), [0.0; 2]);
+        let (arc_length, x) = (&self.mesh().arc_length, &self.unknowns.positions);
+        let (mut branches, mut moment, mut sum) = (branches.chunks_exact(count), Vec2::zeros(), [0.0; 2]);
         for e in 0..self.mesh().rest_length.len() {
             let was = branches.next().map_or(0.0, |forces| forces.iter().sum());
-            let [work, stored] = self.plain_bar(works, e, was);
-            sum = [sum[0] + work, sum[1] + stored];
+            let [work, stretch_j] = self.plain_bar(works, e, was);
+            sum = [sum[0] + work, sum[1] + stretch_j];
+            moment += (x[e] + x[e + 1]) * (0.5 * (arc_length[e + 1] - arc_length[e]));
         }
-        sum
+        let gravity_j = gravity_energy(self.cable, moment, x);
+        let bending_j = bending_energy(self.cable, x);
+        (sum[0], Energy { kinetic_j: 0.0, gravity_j, stretch_j: sum[1], bending_j })
     }
 
     /// What stretches bars and what their material loses; returns the work of stretch at the end of
