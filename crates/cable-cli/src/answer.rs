@@ -2,8 +2,8 @@
 //! not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, NextCheaper, Node, Pressure,
-    Solution, SupportReaction, TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, ModelReason, NextCheaper, Node,
+    Pressure, Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -39,6 +39,9 @@ pub struct Answer<'a> {
     /// The greatest tensions of the run so far and their errors, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
+    /// The energy of each cable since it began to move, and the work of each kind of force.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub energy_account: Vec<OfCable<'a, EnergyAccount>>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// The place at which a cable is pressed hardest against what leads it; null where nothing
@@ -239,6 +242,11 @@ pub fn answer<'a>(
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
         peaks: s.cables.iter().filter_map(|c| c.peaks.map(|of| OfCable { cable: name(c), of })).collect(),
+        energy_account: s
+            .cables
+            .iter()
+            .filter_map(|c| Some(OfCable { cable: name(c), of: c.energy_account? }))
+            .collect(),
         run_peaks: s.cables.iter().zip(&figures.run_peaks).map(|(c, &of)| OfCable { cable: name(c), of }).collect(),
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),
         sidewall_pressure: pressures.reduce(|a, b| if b.of.pressure_n_per_m > a.of.pressure_n_per_m { b } else { a }),

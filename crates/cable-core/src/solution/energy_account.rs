@@ -56,6 +56,12 @@ impl EnergyAccount {
         [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j]
     }
 
+    /// True if all of it is a number.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.unaccounted_j().is_finite() && self.exchanged_j.is_finite()
+    }
+
     /// The account of two cables.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {

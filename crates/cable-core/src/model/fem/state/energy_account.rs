@@ -124,8 +124,9 @@ impl Energies {
         }
     }
 
-    /// Up to the time `now` (s), where it has begun.
+    /// Up to the time `now` (s), where it has begun and all of it is a number.
     pub(in crate::model::fem) fn report(&self, now: f64) -> Option<EnergyAccount> {
-        (now > self.from).then(|| EnergyAccount { over_s: now - self.from, ..self.account() })
+        let account = EnergyAccount { over_s: now - self.from, ..self.account() };
+        (account.over_s > 0.0 && account.is_finite()).then_some(account)
     }
 }
