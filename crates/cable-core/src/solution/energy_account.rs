@@ -80,7 +80,8 @@ impl EnergyAccount {
         }
     }
 
-    /// What no work accounts for of the gains, J: 0 but for what inner steps leave unbalanced.
+    /// The part of the gains that no work accounts for, J: 0 but for what inner steps leave
+    /// unbalanced.
     #[must_use]
     pub fn unaccounted_j(&self) -> f64 {
         self.gained.total_j() - self.works_j().iter().sum::<f64>()

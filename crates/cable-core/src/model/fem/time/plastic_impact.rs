@@ -13,9 +13,9 @@
 //! contacts would press by half too much in the next step; without the impulse of the other forces
 //! BDF2 would give two thirds of their next one only.
 //!
-//! What is over with its step has done the work of an impulse, that times the mean of the speeds at
-//! the start and at the end: force times way, as the energy account counts it first, is half as
-//! much again where BDF2 would have given a third of the impulse later.
+//! An impulse that is over with its step has done its work by the mean of the speeds at the start
+//! and at the end: force times way, as the energy account counts it first, is half as much again
+//! where BDF2 would have given a third of the impulse later.
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};

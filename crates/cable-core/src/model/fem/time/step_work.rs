@@ -46,7 +46,7 @@ impl StepWork {
 
     /// The works of a step from one energy to another.
     pub(in crate::model::fem) fn between(self, before: Energy, after: Energy) -> Works {
-        // Where nothing slides height is linear in the unknowns.
+        // Height is linear in the unknowns if nothing slides.
         let linear = if self.stored.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
         let gained = after.total_j() - before.total_j() - linear;
         Works { numerical: self.works.numerical + gained - self.balanced, ..self.works }
@@ -233,8 +233,7 @@ impl BalancedStep<'_> {
         (sum[0], Energy { kinetic_j: 0.0, gravity_j, stretch_j: sum[1], bending_j })
     }
 
-    /// What stretches bars and what their material loses; returns the work of stretch at the end of
-    /// the step, J.
+    /// Adds what the material of bars loses; returns the work of stretch at the end of the step, J.
     fn bars(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let mut stretched = 0.0;
