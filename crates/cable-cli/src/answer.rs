@@ -2,8 +2,8 @@
 //! not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, InertiaEffect, ModelReason, NextCheaper, Node,
-    Pressure, Solution, SupportReaction, TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, InertiaEffect, ModelReason,
+    NextCheaper, Node, Pressure, Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -43,6 +43,9 @@ pub struct Answer<'a> {
     /// How fast the run is so far, and whether masses matter in it; of one with inertia only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inertia: Option<InertiaEntry>,
+    /// The energy of each cable since it began to move, and the work of each kind of force.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub energy_account: Vec<OfCable<'a, EnergyAccount>>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
     /// The place at which a cable is pressed hardest against what leads it; null where nothing
@@ -269,6 +272,11 @@ pub fn answer<'a>(
         max_tension_n: top.tension_n,
         max_tension_arc_length_m: top.arc_length_m,
         peaks: s.cables.iter().filter_map(|c| c.peaks.map(|of| OfCable { cable: name(c), of })).collect(),
+        energy_account: s
+            .cables
+            .iter()
+            .filter_map(|c| Some(OfCable { cable: name(c), of: c.energy_account? }))
+            .collect(),
         run_peaks: s.cables.iter().zip(&figures.run_peaks).map(|(c, &of)| OfCable { cable: name(c), of }).collect(),
         inertia: figures.inertia.as_ref().map(InertiaEntry::of),
         tightest_bend: bends.reduce(|a, b| if b.of.radius_m < a.of.radius_m { b } else { a }),

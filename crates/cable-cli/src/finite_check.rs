@@ -28,6 +28,9 @@ pub(super) fn check_finite(s: &Solution) -> Result<(), String> {
         {
             return Err(format!("a peak of the tension of cable `{}`", c.name));
         }
+        if c.energy_account.is_some_and(|account| !account.is_finite()) {
+            return Err(format!("the energy account of cable `{}`", c.name));
+        }
         let bend = c.tightest_bend.unwrap_or_default();
         let pressure = c.sidewall_pressure.unwrap_or_default();
         let values = [bend.radius_m, bend.arc_length_m, bend.x_m, bend.y_m];

@@ -14,7 +14,7 @@ use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
 use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{
-    InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
+    EnergyAccount, InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
 };
 use cable_core::summary::{neglected_bending, scene_with_bending, summaries};
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
@@ -139,6 +139,25 @@ impl RunTotals {
         lines.extend(self.inertia.map(|effect| effect.to_string()));
         lines
     }
+}
+
+/// Part of the energy exchanged below which a work is left out.
+const LEAST_WORK_FRACTION: f64 = 1e-6;
+
+/// The energy account of a run.
+fn energy_lines(account: &EnergyAccount) -> Vec<String> {
+    let least = LEAST_WORK_FRACTION * account.exchanged_j;
+    let named = |(kind, work): (&str, f64)| (work.abs() > least).then(|| format!("{kind} {work:.6} J"));
+    let works: Vec<String> = EnergyAccount::KINDS.into_iter().zip(account.works_j()).filter_map(named).collect();
+    if works.is_empty() {
+        return Vec::new();
+    }
+    let (exchanged, gained) = (account.exchanged_j, account.gained.total_j());
+    vec![
+        format!("Energy exchanged            {exchanged:.6} J; gained {gained:.6} J by work of"),
+        format!("                            {}", works.join(", ")),
+        format!("Not accounted for           {:.1e} of that", account.unaccounted_j().abs() / exchanged),
+    ]
 }
 
 impl Outputs {
@@ -369,6 +388,9 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
         }
         for line in &outputs.neglected {
             printer.line(line)?;
+        }
+        for line in last.energy_account().iter().flat_map(energy_lines) {
+            printer.line(&line)?;
         }
         for line in outputs.warning_log.lines() {
             printer.line(&line)?;

@@ -506,3 +506,30 @@ fn run_tells_the_warnings_that_begin() {
     let (_, events) = run("asked", &["--stepping", "preview"]);
     assert!(events.iter().all(|e| e.kind.name() != "stabilised"), "{events:?}");
 }
+
+#[test]
+fn run_tells_where_the_energy_went() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut scene = catalog::hanging_span();
+    scene.cables[0].supports[1].release_s = Some(0.1);
+    let file = folder.path().join("span.toml");
+    std::fs::write(&file, scene.to_toml()).unwrap();
+    let run = |out: &str, more: &[&str]| {
+        let out = folder.path().join(out);
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "0.5s", "--every", "0.1s", "--model", "fem"];
+        arguments.extend(["--no-errors", "--out", out.to_str().unwrap()].iter().chain(more));
+        let o = cable(&arguments);
+        assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+        let history = std::fs::File::open(out.join("history.csv")).unwrap();
+        (text(&o.stdout), cable_core::record::read_history(history).unwrap())
+    };
+    let (said, history) = run("text", &[]);
+    assert!(said.contains("Energy exchanged") && said.contains("numerical -"), "{said}");
+    let last = |name: &str| *history.extras.iter().find(|e| e.name == name).unwrap().values.last().unwrap();
+    let open = last("unaccounted_energy_j").abs() / last("exchanged_energy_j");
+    assert!(last("exchanged_energy_j") > 1.0 && open < 1e-3, "{open}");
+    let (said, _) = run("json", &["--json"]);
+    let json: Value = serde_json::from_str(said.lines().last().unwrap()).unwrap();
+    let account = &json["energy_account"][0];
+    assert_eq!(account["numerical_j"].as_f64(), Some(last("numerical_work_j")), "{account}");
+}

@@ -4,7 +4,7 @@
 use super::BreakableCable;
 use super::piece::Piece;
 use crate::problem::SupportPoint;
-use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, EnergyAccount, MomentumAccount, SupportReaction};
 use crate::state::State;
 
 /// Part by which sums of times round.
@@ -26,6 +26,7 @@ impl BreakableCable {
             assumptions,
             peaks: self.peaks,
             momentum: self.account(),
+            energy_account: self.energy_account(),
             ..CableSolution::default()
         };
         for piece in &self.pieces {
@@ -59,6 +60,12 @@ impl BreakableCable {
         let over_s = self.time_s() - self.peaks_since_s;
         let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= TIME_TOLERANCE * over_s);
         let accounts: Option<Vec<MomentumAccount>> = self.pieces.iter().map(whole).collect();
+        accounts?.into_iter().reduce(|a, b| a.with(&b))
+    }
+
+    /// The energy account of all pieces since the cable last broke, where each has one.
+    fn energy_account(&self) -> Option<EnergyAccount> {
+        let accounts: Option<Vec<EnergyAccount>> = self.pieces.iter().map(|p| p.answer.energy_account).collect();
         accounts?.into_iter().reduce(|a, b| a.with(&b))
     }
 

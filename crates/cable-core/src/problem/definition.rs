@@ -195,6 +195,12 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
+    /// Acceleration of gravity, m/s²; 0 of a cable without mass.
+    #[must_use]
+    pub(crate) fn gravity(&self) -> Vec2 {
+        if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() }
+    }
+
     /// Returns whether friction takes part in where an answer of this cable rests, and the scene
     /// does not say how much of it.
     #[must_use]

@@ -10,6 +10,20 @@ pub(super) const HISTORY_COLUMNS: [&str; 3] = ["time_s", "max_tension_n", "max_t
 /// Columns of `history.csv` that are of no support.
 pub(super) const ENERGY_COLUMNS: [&str; 4] =
     ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
+/// Works since the cables began to move, in the order of the energy account, what was
+/// exchanged and what is not accounted for; 0 where there is no account.
+pub(super) const ACCOUNT_COLUMNS: [&str; 10] = [
+    "supports_work_j",
+    "loads_work_j",
+    "outlines_work_j",
+    "friction_work_j",
+    "material_work_j",
+    "impacts_work_j",
+    "edits_work_j",
+    "numerical_work_j",
+    "exchanged_energy_j",
+    "unaccounted_energy_j",
+];
 /// The greatest tension of any inner step since the row before, and the greatest mean over the
 /// breaking time; at rest and without inertia that of the instant.
 pub(super) const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
@@ -37,6 +51,16 @@ impl RobotColumns {
     }
 }
 
+/// Columns of `history.csv` after those of the supports, but for those of the robot.
+fn always_written() -> impl Iterator<Item = &'static str> {
+    ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).chain(ACCOUNT_COLUMNS)
+}
+
+/// The name of a column of `history.csv` that is of no support; None where there is none of it.
+pub(super) fn known_extra(name: &str) -> Option<&'static str> {
+    always_written().chain(ROBOT_COLUMNS).find(|known| *known == name)
+}
+
 /// Columns of `history.csv`, from the names of the cables, and of their supports.
 pub(super) fn history_columns<'a>(
     cables: impl Iterator<Item = (&'a str, impl Iterator<Item = &'a str>)>,
@@ -51,7 +75,7 @@ pub(super) fn history_columns<'a>(
             columns.push(format!("{name}.reaction_y_n"));
         }
     }
-    columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
+    columns.extend(always_written().map(String::from));
     columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
     columns
 }
@@ -62,6 +86,8 @@ pub(super) fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> 
     let robot = s.robot.map(|r| [r.x_m, r.y_m, r.pitch_deg, r.speed_m_per_s, r.thrust_n]);
     let peaks = s.peaks();
     let peaks = [peaks.greatest.tension_n, peaks.held.tension_n];
-    let always = ENERGY_COLUMNS.into_iter().zip(energies).chain(PEAK_COLUMNS.into_iter().zip(peaks));
+    let account = s.energy_account().unwrap_or_default();
+    let balance = account.works_j().into_iter().chain([account.exchanged_j, account.unaccounted_j()]);
+    let always = always_written().zip(energies.into_iter().chain(peaks).chain(balance));
     always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
 }

@@ -5,10 +5,7 @@ use std::io::Read;
 use serde::{Deserialize, Serialize};
 
 use super::choice::{NodeColumns, node_of};
-use super::columns::{
-    ENERGY_COLUMNS, EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, PEAK_COLUMNS,
-    ROBOT_COLUMNS,
-};
+use super::columns::{EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, known_extra};
 use super::csv_records::WholeRecords;
 use super::table_error::{ReadError, RowFault};
 use crate::solution::{WarningCause, WarningKind};
@@ -230,7 +227,7 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     let mut k = 3;
     while k < header.len() {
         let name = header.get(k).unwrap_or_default();
-        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).chain(ROBOT_COLUMNS).find(|c| *c == name) {
+        if let Some(known) = known_extra(name) {
             table.extras.push(Extra { name: known, values: Vec::new() });
             k += 1;
             continue;

@@ -4,7 +4,8 @@ use super::choice::node_values;
 use super::*;
 use crate::model::Model;
 use crate::solution::{
-    CableSolution, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning, WarningCause, WarningKind,
+    CableSolution, Cost, Energy, EnergyAccount, ModelReason, Node, Solution, SupportReaction, Warning, WarningCause,
+    WarningKind,
 };
 use proptest::prelude::*;
 
@@ -46,6 +47,7 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
             name: name.to_owned(),
             nodes: vec![node].into(),
             supports: vec![support],
+            energy_account: Some(EnergyAccount { supports_j: x_m, exchanged_j: y_m, ..Default::default() }),
             ..Default::default()
         }],
         warnings: vec![warning],
@@ -83,8 +85,14 @@ proptest! {
         prop_assert_eq!(history.time_s[0].to_bits(), time.to_bits());
         prop_assert_eq!(history.supports[0].reaction_x_n[0].to_bits(), values[1].to_bits());
         prop_assert_eq!(&history.supports[0].name, &name);
-        prop_assert_eq!(history.extras.len(), 6);
+        prop_assert_eq!(history.extras.len(), 16);
         prop_assert_eq!(history.extras[3].values[0].to_bits(), values[7].to_bits());
+        let account = [6, 14, 15].map(|k| (history.extras[k].name, history.extras[k].values[0].to_bits()));
+        let bits = f64::to_bits;
+        let unaccounted = s.energy_account().unwrap().unaccounted_j();
+        prop_assert_eq!(account[0], ("supports_work_j", bits(values[0])));
+        prop_assert_eq!(account[1], ("exchanged_energy_j", bits(values[1])));
+        prop_assert_eq!(account[2], ("unaccounted_energy_j", bits(unaccounted)));
         let events = read_events(e.as_slice()).unwrap();
         prop_assert_eq!(&events[0].cause, &s.warnings[0].cause);
         prop_assert_eq!(events[0].limit.to_bits(), values[2].to_bits());

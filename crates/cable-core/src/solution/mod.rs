@@ -3,6 +3,7 @@
 //! | room | data |
 //! |---|---|
 //! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
+//! | `energy_account.rs` | [`EnergyAccount`]: where a cable's energy came from and went to |
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
 //! | `shared_nodes.rs` | [`SharedNodes`]: the copies of an answer have them in common |
@@ -11,6 +12,7 @@
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
+mod energy_account;
 pub mod error_estimates;
 mod inertia_effect;
 mod model_reason;
@@ -25,6 +27,7 @@ use crate::math::{Vec2, larger};
 use crate::model_id::Model;
 use crate::verification::Verification;
 
+pub use self::energy_account::EnergyAccount;
 pub use self::error_estimates::ErrorEstimates;
 pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
@@ -123,6 +126,10 @@ pub struct CableSolution {
     /// inertia, and where the model keeps no account of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumAccount>,
+    /// Its energy since it began to move, and the work of each kind of force; None at rest, without
+    /// inertia, and where the model keeps no account of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy_account: Option<EnergyAccount>,
 }
 
 /// Balance of a cable's momentum in a step: what it had, and what each kind of force gave it, added
@@ -545,5 +552,11 @@ impl Solution {
     pub fn peaks(&self) -> TensionPeaks {
         let all = self.cables.iter().map(|c| c.peaks_at(self.time_s));
         all.reduce(TensionPeaks::with).unwrap_or_default()
+    }
+
+    /// The energy accounts of all cables that have one together.
+    #[must_use]
+    pub fn energy_account(&self) -> Option<EnergyAccount> {
+        self.cables.iter().filter_map(|c| c.energy_account).reduce(|a, b| a.with(&b))
     }
 }

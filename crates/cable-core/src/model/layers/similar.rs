@@ -93,6 +93,9 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
     if let Some(account) = &mut a.momentum {
         account.scale_times(t);
     }
+    if let Some(account) = &mut a.energy_account {
+        account.scale(t, l);
+    }
     if let Some(b) = &mut a.tightest_bend {
         put(&mut b.x_m, &mut b.y_m);
         b.radius_m *= l;

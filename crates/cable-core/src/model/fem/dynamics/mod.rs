@@ -13,11 +13,13 @@ use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_placement::prepare_way;
-use crate::model::fem::remesh::adapt::remesh;
+use crate::model::fem::remesh::adapt::{Remeshed, remesh};
 use crate::model::fem::results;
 use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
+use crate::model::fem::state::stored_energy::{kinetic_energy, kinetic_energy_of_step, stored_energy};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::hands::HandDrive;
@@ -25,12 +27,13 @@ use crate::model::fem::time::rollback::Rollback;
 use crate::model::fem::time::sliding_tensions::keep_balanced_tensions;
 use crate::model::fem::time::step_impulses::{account_for_step, forces_in_step};
 use crate::model::fem::time::step_inertia::set_inertia;
+use crate::model::fem::time::step_work::work_in_step;
 use crate::model::fem::time::time_control::TimeControl;
 use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
 use crate::model::smoothed_target::held_warning;
 use crate::model::{Inertia, StepReport};
-use crate::solution::{CableSolution, Cost, Warning, WarningCause};
+use crate::solution::{CableSolution, Cost, Energy, Warning, WarningCause};
 
 /// The request that the steps of an advance have in common.
 #[derive(Clone, Copy, Debug)]
@@ -101,7 +104,10 @@ impl Dynamics {
                 self.cable.motion.account = begun;
             }
             // Without inertia supports are where they are drawn to.
-            Inertia::QuasiStatic => self.cable.motion.hands.fill(None),
+            Inertia::QuasiStatic => {
+                self.cable.motion.hands.fill(None);
+                self.cable.motion.energies = Energies::default();
+            }
         }
         if inertia == Inertia::Dynamic && gauge.asks(self.cable.motion.time) {
             results::gauge_tension(&mut self.cable);
@@ -148,7 +154,10 @@ impl Dynamics {
             if self.time_control.sleep.falls_asleep(&self.cable) {
                 self.cable.motion.velocities.fill(Vec2::zeros());
                 self.cable.motion.slide_rates.fill(0.0);
+                let mut energies = self.cable.motion.energies;
+                energies.fall_asleep();
                 self.forget_history();
+                self.cable.motion.energies = energies;
             }
         } else {
             total = self.polish(total, dragged);
@@ -232,6 +241,12 @@ impl Dynamics {
         h: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
+        let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
+        let mut energies = self.cable.motion.energies;
+        let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
+        self.cable.motion.energies = energies;
+        let motion = &self.cable.motion;
+        self.solver.ways.begin(&motion.positions, &motion.velocities, &self.cable.answers.reaction);
         let weights = self.begin_step(h, dragged);
         let a = weights.rate;
         let (mut unknowns, exact) =
@@ -255,6 +270,8 @@ impl Dynamics {
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
         let slid = MovingMass::of(&self.cable).sliding_momentum();
+        self.solver.ways.end(&unknowns.positions);
+        let work = work_in_step(&self.cable, &unknowns, &self.solver);
         loss_memory::relax(&mut self.cable, h, &unknowns.positions);
         self.cable.commit_contacts(&unknowns);
         self.move_to(&unknowns, weights);
@@ -262,19 +279,32 @@ impl Dynamics {
         account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
+        let after = match work.stored() {
+            Some(rest) => Energy { kinetic_j: kinetic_energy_of_step(&self.cable, a), ..rest },
+            None => stored_energy(&self.cable),
+        };
+        self.cable.motion.energies.add(&work.between(before, after), after);
         results::gauge_tension(&mut self.cable);
         let cable = &self.cable;
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.cable.motion.note_step(h, smooth);
         self.time_control.step_size.observe(&self.cable, h);
-        plastic_impact::land_on_obstacles(&mut self.cable, h, a);
-        plastic_impact::land_on_itself(&mut self.cable, h, a);
+        plastic_impact::land_on_obstacles(&mut self.cable, h, a, &self.solver.ways);
+        plastic_impact::land_on_itself(&mut self.cable, h, a, &self.solver.ways);
+        if !self.cable.meshing.was_contact_free {
+            self.cable.motion.energies.land(kinetic_energy(&self.cable));
+        }
+        self.cable.motion.energies.end_step();
         let momentum = MovingMass::of(&self.cable).momentum();
         self.cable.motion.account.close(self.cable.motion.time, momentum);
         self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {
             self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
-            remesh(&mut self.cable, Inertia::Dynamic);
+            let changed = remesh(&mut self.cable, Inertia::Dynamic);
+            if changed != Remeshed::default() {
+                self.cable.motion.energies.edit(stored_energy(&self.cable));
+                self.cable.motion.energies.end_step();
+            }
             self.cable.answers.keeps = false;
             self.cable.answers.stepped = self.cable.answers.kept.take();
             if let Some(node) = IntersectionCheck::of(&self.cable).crossing() {

@@ -45,6 +45,7 @@ fn solution_now(d: &CableState) -> CableSolution {
             inertia: d.motion.inertia_counts(),
         },
         momentum: d.motion.account.report(d.motion.inertia_counts()),
+        energy_account: d.motion.energies.report(d.motion.time),
         ..CableSolution::default()
     }
 }

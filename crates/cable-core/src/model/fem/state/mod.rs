@@ -11,9 +11,12 @@
 //! | `stick_slip.rs` | friction assumed at each sliding node against Coulomb's law at the solution |
 //! | `fold_imperfection.rs` | tiny offset of a collinear fold, a bifurcation point, so that it opens |
 //! | `moving_mass.rs` | momentum of the cable and of material at sliding nodes, across mesh changes |
+//! | `stored_energy.rs` | kinetic energy, and that of height, stretch and bending |
+//! | `energy_account.rs` | work of each kind of force, summed since the cable began to move |
 //! | `momentum_account.rs` | impulses by kind of force, summed over the caller's step |
 
 pub(in crate::model::fem) mod cable_state;
+pub(in crate::model::fem) mod energy_account;
 pub(in crate::model::fem) mod fold_imperfection;
 pub(in crate::model::fem) mod meshing;
 pub(in crate::model::fem) mod momentum_account;
@@ -22,4 +25,5 @@ pub(in crate::model::fem) mod moving_mass;
 pub(in crate::model::fem) mod outline_path;
 pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod stick_slip;
+pub(in crate::model::fem) mod stored_energy;
 pub(in crate::model::fem) mod support_stop;

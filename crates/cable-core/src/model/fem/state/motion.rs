@@ -2,6 +2,7 @@
 //! that the time integrator looks back to.
 
 use crate::math::{RigidPose, Vec2};
+use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::momentum_account::Account;
 use crate::model::hand::Hand;
 use crate::model::smoothed_target::SmoothedTarget;
@@ -48,6 +49,8 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) placement: Option<RigidPose>,
     /// The account of momentum since the caller's step began.
     pub(in crate::model::fem) account: Account,
+    /// The account of energy since the cable began to move.
+    pub(in crate::model::fem) energies: Energies,
 }
 
 impl NodalMotion {
@@ -82,7 +85,7 @@ impl NodalMotion {
         self.hands.clone_from(hands);
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         (self.time, self.placement) = (other.time, other.placement);
-        self.account = other.account;
+        (self.account, self.energies) = (other.account, other.energies);
     }
 
     /// Forgets the steps before the present instant; the arc length of each node is `arc_length`
@@ -95,7 +98,7 @@ impl NodalMotion {
         self.previous_arc_length.extend_from_slice(arc_length);
         self.step_before = 0.0;
         self.branch_forces.clear();
-        self.account = Account::unknown();
+        (self.account, self.energies) = (Account::unknown(), Energies::default());
     }
 
     /// True if masses accelerate: it moves, or came here in a step with inertia.

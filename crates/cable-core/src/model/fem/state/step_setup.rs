@@ -65,7 +65,7 @@ fn set_forces(cable: &mut CableState, to: f64) {
 /// where its hand is, or after it.
 fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dragged: Option<Vec2>) {
     let (problem, mesh, input) = (&cable.problem, &mut cable.mesh, &mut cable.input);
-    let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+    let gravity = problem.gravity();
     let (Some(s), Some(Some(node))) = (problem.supports.get(support), cable.meshing.support_node.get(support)) else {
         return;
     };

@@ -17,6 +17,64 @@ fn bends(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
 }
 
+/// A bend of a mesh and the nodes that make it.
+enum Bend {
+    /// Out of a clamp.
+    Clamped(ClampBend, [usize; 2]),
+    /// Between two bars.
+    Free(BendingEnergy, [usize; 3]),
+}
+
+/// Passes each bend of a mesh to `visit`, of this stiffness (N m²), measured from those at `from`
+/// (m), if there is such.
+#[inline]
+fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: impl FnMut(Bend)) {
+    let rest = &mesh.rest_length;
+    let mut clamps = mesh.clamps.iter().peekable();
+    for node in 0..mesh.nodes() {
+        if let Some(clamp) = clamps.next_if(|c| c.node == node) {
+            let first = node.saturating_sub(1);
+            for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
+                let direction = clamp.direction;
+                let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
+                visit(Bend::Clamped(ClampBend { stiffness, length: 0.5 * rest, direction, from }, [e, e + 1]));
+            }
+        } else if node > 0 && node < rest.len() && bends(mesh, node) {
+            let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
+            let bend = BendingEnergy { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
+            visit(Bend::Free(bend, [node - 1, node, node + 1]));
+        }
+    }
+}
+
+/// Energy of the bends of a mesh at `x` (m), J.
+pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
+    let mut value = 0.0;
+    visit_bends(mesh, mesh.bending_stiffness, None, |bend| {
+        value += match bend {
+            Bend::Clamped(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
+            Bend::Free(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
+        };
+    });
+    value
+}
+
+/// Slope of the energy of bends (see [`System::add_bends`]) at `x` (m) times the ways of the nodes
+/// (m), J.
+pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, x: &[Vec2], ways: &[Vec2]) -> f64 {
+    fn along<const N: usize>(bend: &impl Energy<N>, nodes: [usize; N], x: &[Vec2], ways: &[Vec2]) -> f64 {
+        bend.gradient(&nodes.map(|n| x[n])).iter().zip(nodes).map(|(g, n)| g.dot(&ways[n])).sum()
+    }
+    let mut slope = 0.0;
+    visit_bends(mesh, stiffness, from, |bend| {
+        slope += match bend {
+            Bend::Clamped(bend, nodes) => along(&bend, nodes, x, ways),
+            Bend::Free(bend, nodes) => along(&bend, nodes, x, ways),
+        };
+    });
+    slope
+}
+
 /// Value, gradient and Hessian of all energies of a mesh.
 #[derive(Clone, Debug)]
 pub struct System {
@@ -117,24 +175,13 @@ impl System {
         x: &[Vec2],
         curvature: Curvature,
     ) -> f64 {
-        let rest = &mesh.rest_length;
         let mut value = 0.0;
-        let mut clamps = mesh.clamps.iter().peekable();
-        for node in 0..mesh.nodes() {
-            if let Some(clamp) = clamps.next_if(|c| c.node == node) {
-                let first = node.saturating_sub(1);
-                for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
-                    let direction = clamp.direction;
-                    let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
-                    let bend = ClampBend { stiffness, length: 0.5 * rest, direction, from };
-                    value += self.add_energy(&bend, [e, e + 1], x, curvature);
-                }
-            } else if node > 0 && node < rest.len() && bends(mesh, node) {
-                let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
-                let bend = BendingEnergy { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
-                value += self.add_energy(&bend, [node - 1, node, node + 1], x, curvature);
-            }
-        }
+        visit_bends(mesh, stiffness, from, |bend| {
+            value += match bend {
+                Bend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
+                Bend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
+            };
+        });
         value
     }
 

@@ -95,6 +95,21 @@ impl BarEnergy {
     }
 }
 
+/// Slopes of the energy of a bar with a sliding node by the length P of its way and by its
+/// unstretched length L at `[P, L]` (m), N: those of stretching, and those of its loss.
+#[must_use]
+pub fn slopes(mesh: &Mesh, input: &StepInput, e: usize, at @ [p, l]: [f64; 2]) -> [[f64; 2]; 2] {
+    let whole = BarEnergy::of(mesh, input, e, at).slope;
+    let elastic = BarEnergy::spring(stiffness(mesh, !(p < l)), 1.0, at).slope;
+    [elastic, [whole[0] - elastic[0], whole[1] - elastic[1]]]
+}
+
+/// Energy of stretching of a bar at `[P, L]` (m), J.
+#[must_use]
+pub fn stretch_energy(mesh: &Mesh, [p, l]: [f64; 2]) -> f64 {
+    0.5 * stiffness(mesh, !(p < l)) / l * (p - l) * (p - l)
+}
+
 /// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), as the slope
 /// of its energy by the slide of that node sees it (without the factor of its energy), N: Θ, the
 /// loss, and the weight that comes over with the material.

@@ -52,13 +52,16 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
     cable.motion.branch_forces = memory;
 }
 
+/// The forces of the branches of each bar, one bar after the other, and how many branches a bar
+/// has, N; None where there are none.
+pub(in crate::model::fem) fn forces(cable: &CableState) -> Option<(&[f64], usize)> {
+    let (forces, count) = (cable.motion.branch_forces.as_slice(), cable.loss.branches.len());
+    (has_branches(cable) && forces.len() == count * cable.mesh.rest_length.len()).then_some((forces, count))
+}
+
 /// The force of the branches of bar `e`, N.
 pub(in crate::model::fem) fn force(cable: &CableState, e: usize) -> f64 {
-    let count = cable.loss.branches.len();
-    if !has_branches(cable) || cable.motion.branch_forces.len() != count * cable.mesh.rest_length.len() {
-        return 0.0;
-    }
-    cable.motion.branch_forces[e * count..][..count].iter().sum()
+    forces(cable).map_or(0.0, |(forces, count)| forces[e * count..][..count].iter().sum())
 }
 
 /// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose

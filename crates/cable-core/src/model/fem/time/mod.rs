@@ -13,6 +13,7 @@
 //! | `plastic_impact.rs` | inelastic contacts: normal speed of an impact removed after the step |
 //! | `loss_memory.rs` | state of the relaxation branches of material loss, from step to step |
 //! | `step_impulses.rs` | impulse of each kind of force in a step, for the momentum account |
+//! | `step_work.rs` | work of each kind of force in a step, for the energy account |
 //! | `rollback.rs` | checkpoint of the state, restored where a step fails |
 //! | `sleeping.rs` | a cable at rest is frozen until its loads or supports change |
 
@@ -27,4 +28,5 @@ pub(in crate::model::fem) mod step_impulses;
 pub(in crate::model::fem) mod step_inertia;
 pub(in crate::model::fem) mod step_size;
 pub(in crate::model::fem) mod step_solver;
+pub(in crate::model::fem) mod step_work;
 pub(in crate::model::fem) mod time_control;

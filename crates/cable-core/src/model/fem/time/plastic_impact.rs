@@ -12,21 +12,50 @@
 //! history a third of an impact would come after it and throw the cable back; with none of it
 //! contacts would press by half too much in the next step; without the impulse of the other forces
 //! BDF2 would give two thirds of their next one only.
+//!
+//! An impulse that is over with its step has done its work by the mean of the speeds at the start
+//! and at the end: force times way, as the energy account counts it first, is half as much again
+//! where BDF2 would have given a third of the impulse later.
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
+use crate::model::fem::newton::solver_memory::NodalWays;
 use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::energy_account::Works;
+
+/// The impulses of contacts of a step whose forces acted for 1/`a` (s) that are over with it.
+struct EndedImpulses<'a> {
+    ways: &'a NodalWays,
+    a: f64,
+    /// Their work beyond force times way.
+    more: Works,
+}
+
+impl EndedImpulses<'_> {
+    /// Counts an impulse (N s) on node `k`, which has a velocity now (m/s), of a contact with a
+    /// normal; what touches it has another velocity, and its way in the step (m).
+    fn add(&mut self, k: usize, impulse: Vec2, velocity: Vec2, normal: Vec2, [carried, carried_way]: [Vec2; 2]) {
+        let (Some(way), Some(before)) = (self.ways.ways.get(k), self.ways.velocities.get(k)) else { return };
+        let relative = (velocity + before) * 0.5 - carried - (way - carried_way) * self.a;
+        let pressed = impulse.dot(&normal) * relative.dot(&normal);
+        self.more.impacts += pressed;
+        self.more.friction += impulse.dot(&relative) - pressed;
+        self.more.outlines += impulse.dot(&(carried - carried_way * self.a));
+    }
+}
 
 /// Makes the contacts with obstacles plastic after a step of `h` (s) whose forces acted for 1/`a`
-/// (s).
-pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a: f64) {
+/// (s) and whose nodes went `ways`.
+pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a: f64, ways: &NodalWays) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+    let mut ended = EndedImpulses { ways, a, more: Works::default() };
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
     for (touch, load) in cable.contacts.loaded_contacts() {
         let n = touch.pair.gap.normal;
         let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
-        let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)) / h);
+        let way_of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)));
+        let of_it = way_of_it / h;
         let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
         let shares = touch.shares();
         let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
@@ -49,6 +78,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
         for j in 0..2 {
             if free[j] > 0.0 {
                 let k = nodes[j];
+                ended.add(k, over * free[j], m.velocities[k], n, [of_it, way_of_it]);
                 m.velocities[k] -= n * (taken * give[j]);
                 m.previous_velocities[k] += (over - n * taken) * give[j];
                 m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
@@ -58,11 +88,13 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
         }
     }
     cable.motion.account.land(given, forgotten);
+    cable.motion.energies.correct(&ended.more);
 }
 
 /// Makes the contacts of the cable with itself plastic; its momentum is kept.
-pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f64) {
+pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f64, ways: &NodalWays) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+    let mut ended = EndedImpulses { ways, a, more: Works::default() };
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
     for rub in &cable.contacts.self_contacts.friction_contacts {
@@ -81,6 +113,7 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
         let acted = n * made - rub.pair.tangent() * (rubbing / a);
         let over = acted - lasting_impulse(acted - change / sum, n, cable.contacts.self_contacts.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
+            ended.add(k, over * part, m.velocities[k], n, [Vec2::zeros(); 2]);
             m.velocities[k] -= n * (taken * part * give(k));
             m.previous_velocities[k] += (over - n * taken) * (part * give(k));
             m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
@@ -90,6 +123,7 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
     }
     // Both are zero unless a support holds a side of the contact.
     cable.motion.account.land(given, forgotten);
+    cable.motion.energies.correct(&ended.more);
 }
 
 /// The speed along its normal (m/s) that a plastic contact takes: all of one towards it, and of one

@@ -65,7 +65,7 @@ pub(in crate::model::fem) fn account_for_step(
 /// weight of what does not less what carries that. `touches` are the contacts of the solver.
 pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unknowns, touches: &[ContactPair]) -> Kinds {
     let (problem, mesh, input, x) = (&cable.problem, &cable.mesh, &cable.input, &unknowns.positions);
-    let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+    let gravity = problem.gravity();
     let mut sum = [Vec2::zeros(); 4];
     sum[WEIGHT] = problem.weight * problem.length;
     sum[LOADS] = (input.loads.body - problem.weight) * problem.length;

@@ -1,6 +1,7 @@
 //! A step that is set up is solved: by the solver of free cables where the cable can touch nothing,
 //! else by that of contact, until friction and normal forces agree.
 
+use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::solver_memory::SolverMemory;
@@ -13,6 +14,11 @@ impl SolverMemory {
     /// The contacts of the last step that was solved with contact.
     pub(in crate::model::fem) fn contacts(&self) -> &[ContactPair] {
         self.memory.0.as_ref().map_or(&[], |memory| &memory.touches)
+    }
+
+    /// Those of the cable with itself.
+    pub(in crate::model::fem) fn own_contacts(&self) -> &[SelfPair] {
+        self.memory.0.as_ref().map_or(&[], |memory| &memory.self_contact.pairs)
     }
 
     /// The present unknowns moved on at its velocities for `h` (s), where nothing can be in the

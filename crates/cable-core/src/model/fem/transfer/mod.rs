@@ -20,7 +20,7 @@ use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
-use crate::model::fem::newton::solver_memory::{SolverMemory, WorkspaceMemory};
+use crate::model::fem::newton::solver_memory::{NodalWays, SolverMemory, WorkspaceMemory};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_placement::put_outline;
 use crate::model::fem::settings::Tuning;
@@ -56,6 +56,7 @@ impl Dynamics {
                 unknowns: Unknowns::default(),
                 memory: WorkspaceMemory(None),
                 free: MixedFreeSolver::default(),
+                ways: NodalWays::default(),
                 decay: Vec::new(),
                 work_left: WorkBudget::Unlimited,
                 work_of_advance: WorkBudget::Unlimited,

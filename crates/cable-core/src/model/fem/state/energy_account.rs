@@ -1,0 +1,132 @@
+//! The energy account sums up the work of each kind of force on a cable since it began to move.
+
+use crate::solution::{Energy, EnergyAccount};
+
+/// Work of each kind of force on the cable, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::model::fem) struct Works {
+    pub(in crate::model::fem) supports: f64,
+    pub(in crate::model::fem) loads: f64,
+    pub(in crate::model::fem) outlines: f64,
+    pub(in crate::model::fem) friction: f64,
+    pub(in crate::model::fem) material: f64,
+    pub(in crate::model::fem) impacts: f64,
+    pub(in crate::model::fem) edits: f64,
+    pub(in crate::model::fem) numerical: f64,
+}
+
+/// The account of energy since the cable began to move.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct Energies {
+    /// The time at which it began, s; not a number: it has not.
+    from: f64,
+    /// The energy with which it began.
+    began: Energy,
+    /// The energy of the cable as the account knows it.
+    pub(in crate::model::fem) stored: Energy,
+    works: Works,
+    exchanged: f64,
+}
+
+impl Default for Energies {
+    fn default() -> Self {
+        let (none, works) = (Energy::default(), Works::default());
+        Self { from: f64::NAN, began: none, stored: none, works, exchanged: 0.0 }
+    }
+}
+
+impl Energies {
+    /// A step from the time `now` (s) begins; returns the energy that the cable has. Where it may
+    /// have `changed` since the last step, that came with a change of the mesh or of the state.
+    pub(in crate::model::fem) fn begin_step(
+        &mut self,
+        now: f64,
+        changed: bool,
+        stored: impl FnOnce() -> Energy,
+    ) -> Energy {
+        if self.from.is_nan() {
+            let stored = stored();
+            *self = Self { from: now, began: stored, stored, ..Self::default() };
+        } else if changed {
+            self.edit(stored());
+        }
+        self.stored
+    }
+
+    /// A change of the mesh left the cable with this energy.
+    pub(in crate::model::fem) fn edit(&mut self, stored: Energy) {
+        self.works.edits += stored.total_j() - self.stored.total_j();
+        self.stored = stored;
+    }
+
+    /// Forces did so much work in a step that left the cable with this energy.
+    pub(in crate::model::fem) fn add(&mut self, works: &Works, stored: Energy) {
+        let mine = &mut self.works;
+        mine.supports += works.supports;
+        mine.loads += works.loads;
+        mine.outlines += works.outlines;
+        mine.friction += works.friction;
+        mine.material += works.material;
+        mine.impacts += works.impacts;
+        mine.numerical += works.numerical;
+        self.stored = stored;
+    }
+
+    /// The impulses of contacts that were over with the step did so much more work than the forces
+    /// that were counted: the integrator gave the cable that much less.
+    pub(in crate::model::fem) fn correct(&mut self, more: &Works) {
+        self.works.impacts += more.impacts;
+        self.works.friction += more.friction;
+        self.works.outlines += more.outlines;
+        self.works.numerical -= more.impacts + more.friction + more.outlines;
+    }
+
+    /// Plastic impacts left the cable with this kinetic energy, J.
+    pub(in crate::model::fem) fn land(&mut self, kinetic_j: f64) {
+        self.works.impacts += kinetic_j - self.stored.kinetic_j;
+        self.stored.kinetic_j = kinetic_j;
+    }
+
+    /// A cable that falls asleep stands still.
+    pub(in crate::model::fem) fn fall_asleep(&mut self) {
+        self.works.numerical -= self.stored.kinetic_j;
+        self.stored.kinetic_j = 0.0;
+    }
+
+    /// A step is over.
+    pub(in crate::model::fem) fn end_step(&mut self) {
+        let account = self.account();
+        let Energy { kinetic_j, gravity_j, stretch_j, bending_j } = account.gained;
+        let all = [kinetic_j, gravity_j, stretch_j, bending_j].into_iter().chain(account.works_j());
+        let half_sum = 0.5 * all.map(f64::abs).sum::<f64>();
+        self.exchanged = if half_sum > self.exchanged { half_sum } else { self.exchanged };
+    }
+
+    fn account(&self) -> EnergyAccount {
+        let Works { supports, loads, outlines, friction, material, impacts, edits, numerical } = self.works;
+        EnergyAccount {
+            over_s: 0.0,
+            gained: Energy {
+                kinetic_j: self.stored.kinetic_j - self.began.kinetic_j,
+                gravity_j: self.stored.gravity_j - self.began.gravity_j,
+                stretch_j: self.stored.stretch_j - self.began.stretch_j,
+                bending_j: self.stored.bending_j - self.began.bending_j,
+            },
+            supports_j: supports,
+            loads_j: loads,
+            outlines_j: outlines,
+            friction_j: friction,
+            material_j: material,
+            impacts_j: impacts,
+            edits_j: edits,
+            numerical_j: numerical,
+            exchanged_j: self.exchanged,
+        }
+    }
+
+    /// Up to the time `now` (s), where it has begun and all of it is a number.
+    pub(in crate::model::fem) fn report(&self, now: f64) -> Option<EnergyAccount> {
+        let account = EnergyAccount { over_s: now - self.from, ..self.account() };
+        (account.over_s > 0.0 && account.is_finite()).then_some(account)
+    }
+}

@@ -1,0 +1,340 @@
+//! The work of a step is that of each kind of force, from its own force and displacement.
+//!
+//! A step balances forces at its end, M a (v₁ − v̂) = Σ F₁ (see `bdf2`). Times the ways Δx of the
+//! nodes, and what slides through sliding nodes, that is
+//! ```text
+//! I − C = Σ F₁·Δx,     I = M a (v₁ − v̂)·Δx,     C = −∂U/∂x(x₁)·Δx
+//! ```
+//! with U the energy of height, stretch and bending, and the sum over all other forces. The work of
+//! a force that changes within the step is its mean force times the way. So with K the kinetic
+//! energy the integrator gives the cable
+//! ```text
+//! numerical = ΔK + ΔU − (I − C) + Σ (F₁·Δx − work)
+//! ```
+//! which knows nothing of the balance: it is closed where gains and works agree.
+
+use crate::contact::friction;
+use crate::math::Vec2;
+use crate::model::fem::newton::solver_memory::SolverMemory;
+use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::energy_account::Works;
+use crate::model::fem::state::stored_energy::{bending_energy, gravity_energy};
+use crate::model::fem::system::assembly::bends_slope;
+use crate::model::fem::system::bar_weight::{self, Weight};
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::step_input::Unknowns;
+use crate::model::fem::system::{bar_energy, mesh::Mesh};
+use crate::model::fem::time::loss_memory;
+use crate::scene::SupportKind;
+use crate::solution::Energy;
+
+/// The work of a step that is balanced and not yet made.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct StepWork {
+    works: Works,
+    /// I − C, J, without the work of the weight where nothing slides.
+    balanced: f64,
+    /// The energy at the end where nothing slides, but for that of motion.
+    stored: Option<Energy>,
+}
+
+impl StepWork {
+    /// The energy at the end of the step but for that of motion, where that is known.
+    pub(in crate::model::fem) fn stored(&self) -> Option<Energy> {
+        self.stored
+    }
+
+    /// The works of a step from one energy to another.
+    pub(in crate::model::fem) fn between(self, before: Energy, after: Energy) -> Works {
+        // Height is linear in the unknowns if nothing slides.
+        let linear = if self.stored.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
+        let gained = after.total_j() - before.total_j() - linear;
+        Works { numerical: self.works.numerical + gained - self.balanced, ..self.works }
+    }
+}
+
+/// Adds a work to its kind by the mean force in the step, and what that by the force at its end is
+/// more to the numerical one, J.
+fn note(kind: &mut f64, numerical: &mut f64, [mean, end]: [f64; 2]) {
+    *kind += mean;
+    *numerical += end - mean;
+}
+
+/// A step that is balanced, with the ways of its nodes.
+struct BalancedStep<'a> {
+    cable: &'a CableState,
+    unknowns: &'a Unknowns,
+    /// m.
+    ways: &'a [Vec2],
+}
+
+/// The work of a step that is balanced at unknowns; `solver` has the ways of the nodes (m) and the
+/// forces on supports at its start (N).
+pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknowns, solver: &SolverMemory) -> StepWork {
+    let step = BalancedStep { cable, unknowns, ways: &solver.ways.ways };
+    let mut works = Works::default();
+    step.supports(&mut works, &solver.ways.reaction);
+    step.loads(&mut works);
+    if !cable.meshing.was_contact_free {
+        step.contacts(&mut works, solver);
+    }
+    let (mut balanced, mut stored) = (step.inertia() - step.bends(&mut works), None);
+    if cable.meshing.never_slides {
+        let (work, energy) = step.plain_bars(&mut works);
+        balanced -= work;
+        stored = Some(energy);
+    } else {
+        step.sliding(&mut works);
+        balanced -= step.gravity() + step.bars(&mut works);
+    }
+    StepWork { works, balanced, stored }
+}
+
+impl BalancedStep<'_> {
+    fn mesh(&self) -> &Mesh {
+        &self.cable.mesh
+    }
+
+    /// Work of the inertia forces, J.
+    fn inertia(&self) -> f64 {
+        let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
+        let mut sum = 0.0;
+        for (k, inertia) in input.inertial.stiffness.iter().enumerate() {
+            sum += if mesh.sliding[k].is_some() {
+                let slide = self.unknowns.slides[k];
+                inertia * (slide - input.inertial.predicted_slide[k]) * slide
+            } else {
+                (x[k] - input.inertial.predicted[k]).dot(&self.ways[k]) * inertia
+            };
+        }
+        for ((coupling, chord), pairs) in input.inertial.coupling.iter().zip(x.windows(2).zip(self.ways.windows(2))) {
+            if let ([a, b], [from, to]) = pairs {
+                sum -= (b - a - chord).dot(&(to - from)) * coupling;
+            }
+        }
+        // The springs of hands are a part of that inertia.
+        for &(k, stiffness, at) in &input.inertial.hands {
+            sum -= (x[k] - at).dot(&self.ways[k]) * stiffness;
+        }
+        sum
+    }
+
+    /// Work of a force on each metre of cable (N/m), J.
+    fn distributed(&self, body: Vec2) -> f64 {
+        let (mesh, x, slides) = (self.mesh(), &self.unknowns.positions, &self.unknowns.slides);
+        let mut moved = Vec2::zeros();
+        let mut sum = 0.0;
+        for e in 0..mesh.rest_length.len() {
+            let material = mesh.arc_length[e + 1] - mesh.arc_length[e];
+            let sliding = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
+            if sliding == [false; 2] {
+                moved += (self.ways[e] + self.ways[e + 1]) * (0.5 * material);
+                continue;
+            }
+            let on = bar_weight::on_ends(mesh, e, x, Some(slides), body);
+            sum += on[0].dot(&self.ways[e]) + on[1].dot(&self.ways[e + 1]);
+            let center = Weight::of(mesh, e, &mesh.path(e, x), body).center;
+            for (j, sign) in [-1.0, 1.0].into_iter().enumerate().filter(|(j, _)| sliding[*j]) {
+                sum += sign * body.dot(&(center - x[e + j])) * slides[e + j];
+            }
+        }
+        for (more, way) in mesh.spread.more.iter().zip(self.ways) {
+            moved += way * *more;
+        }
+        sum + body.dot(&moved)
+    }
+
+    /// Work of the weight at the end of the step, J.
+    fn gravity(&self) -> f64 {
+        let problem = &self.cable.problem;
+        let mut sum = self.distributed(problem.weight);
+        for (s, node) in problem.supports.iter().zip(&self.cable.meshing.support_node) {
+            if let Some(way) = node.and_then(|k| self.ways.get(k)) {
+                sum += problem.gravity().dot(way) * s.mass;
+            }
+        }
+        sum
+    }
+
+    /// Wind, current and loads.
+    fn loads(&self, works: &mut Works) {
+        let (problem, input) = (&self.cable.problem, &self.cable.input);
+        let [from, to] = [self.cable.motion.time, input.loads.time_s];
+        let mut both = [[from, to], [to, to]].map(|[from, to]| {
+            let wind = (problem.wind.at(from) + problem.wind.at(to)) * 0.5;
+            if wind == Vec2::zeros() { 0.0 } else { self.distributed(wind) }
+        });
+        let mut point = |way: Vec2, force: &dyn Fn(f64) -> Vec2| {
+            both[0] += (force(from) + force(to)).dot(&way) * 0.5;
+            both[1] += force(to).dot(&way);
+        };
+        for (k, force) in &self.cable.meshing.loads {
+            point(self.ways[*k], &|t| force.at(t));
+        }
+        for (s, node) in problem.supports.iter().zip(&self.cable.meshing.support_node) {
+            if let Some(k) = node.filter(|_| s.kind == SupportKind::Load) {
+                point(self.ways[k], &|t| s.force.at(t));
+            }
+        }
+        note(&mut works.loads, &mut works.numerical, both);
+    }
+
+    /// Supports and hands, whose forces on the cable were the opposite of `before` at the start, N.
+    fn supports(&self, works: &mut Works, before: &[Vec2]) {
+        let (mesh, x, cable) = (self.mesh(), &self.unknowns.positions, self.cable);
+        let mut support = |k: usize, force: Vec2| {
+            let known = cable.motion.step_before > 0.0;
+            let was = before.get(k).filter(|_| known).map_or(force, |f| -*f);
+            let both = [(force + was) * 0.5, force].map(|f| f.dot(&self.ways[k]));
+            note(&mut works.supports, &mut works.numerical, both);
+        };
+        for k in (0..mesh.nodes()).filter(|&k| mesh.held[k]) {
+            support(k, -cable.answers.reaction[k]);
+        }
+        for &(k, stiffness, at) in &cable.input.inertial.hands {
+            support(k, (at - x[k]) * stiffness);
+        }
+    }
+
+    /// A bar without sliding nodes and the force (N) of its branches at the start: what its
+    /// material loses; returns the work of stretch at the end of the step and what it stores then,
+    /// J.
+    #[inline]
+    fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
+        let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
+        let (d, way, l) = (x[e + 1] - x[e], self.ways[e + 1] - self.ways[e], mesh.rest_length[e]);
+        let p = d.norm();
+        let taut = !(p < l);
+        let pull = bar_energy::stiffness(mesh, taut) / l * (p - l);
+        let (loss, _) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
+        let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
+        if loss != 0.0 {
+            let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
+            let longer = p - (d - way).norm();
+            note(&mut works.material, &mut works.numerical, [-mean * longer, -loss * along]);
+        }
+        [-pull * along, 0.5 * pull * (p - l)]
+    }
+
+    /// The same of all bars of a mesh without sliding nodes; returns the work of stretch at the end
+    /// of the step (J) and the energy stored then, but for that of motion.
+    fn plain_bars(&self, works: &mut Works) -> (f64, Energy) {
+        let (branches, count) = loss_memory::forces(self.cable).unwrap_or((&[], 1));
+        let (arc_length, x) = (&self.mesh().arc_length, &self.unknowns.positions);
+        let (mut branches, mut moment, mut sum) = (branches.chunks_exact(count), Vec2::zeros(), [0.0; 2]);
+        for e in 0..self.mesh().rest_length.len() {
+            let was = branches.next().map_or(0.0, |forces| forces.iter().sum());
+            let [work, stretch_j] = self.plain_bar(works, e, was);
+            sum = [sum[0] + work, sum[1] + stretch_j];
+            moment += (x[e] + x[e + 1]) * (0.5 * (arc_length[e + 1] - arc_length[e]));
+        }
+        let gravity_j = gravity_energy(self.cable, moment, x);
+        let bending_j = bending_energy(self.cable, x);
+        (sum[0], Energy { kinetic_j: 0.0, gravity_j, stretch_j: sum[1], bending_j })
+    }
+
+    /// Adds what the material of bars loses; returns the work of stretch at the end of the step, J.
+    fn bars(&self, works: &mut Works) -> f64 {
+        let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
+        let mut stretched = 0.0;
+        for e in 0..mesh.rest_length.len() {
+            if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
+                stretched += self.plain_bar(works, e, 0.0)[0];
+                continue;
+            }
+            let way = self.ways[e + 1] - self.ways[e];
+            let path = mesh.path(e, x);
+            let l = bar_energy::rest_length(mesh, e, &self.unknowns.slides);
+            let [elastic, loss] = bar_energy::slopes(mesh, input, e, [path.length, l]);
+            let (along, more) = (path.direction.dot(&way), l - mesh.rest_length[e]);
+            stretched -= elastic[0] * along + elastic[1] * more;
+            works.material -= loss[0] * along + loss[1] * more;
+            // A wheel that moves draws at both bars.
+            for (j, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(j, _)| mesh.sliding[e + j].is_some()) {
+                let pull = path.direction * (sign * (elastic[0] + loss[0]));
+                let on = bar_weight::on_ends(mesh, e, x, Some(&self.unknowns.slides), input.loads.body)[j];
+                works.supports -= (pull + on).dot(&self.ways[e + j]);
+            }
+        }
+        stretched
+    }
+
+    /// Loss of bending; returns the work of bending at the end of the step, J.
+    fn bends(&self, works: &mut Works) -> f64 {
+        let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
+        if mesh.is_flexible() {
+            return 0.0;
+        }
+        if input.losses.bending > 0.0 {
+            works.material -= bends_slope(mesh, input.losses.bending, Some(&input.supports.start), x, self.ways);
+        }
+        -bends_slope(mesh, mesh.bending_stiffness, None, x, self.ways)
+    }
+
+    /// Friction at sliding nodes.
+    fn sliding(&self, works: &mut Works) {
+        let (mesh, input, x, slides) =
+            (self.mesh(), &self.cable.input, &self.unknowns.positions, &self.unknowns.slides);
+        for (k, node) in mesh.sliding.iter().enumerate() {
+            let Some(node) = node.filter(|_| slides[k] != 0.0) else { continue };
+            let leaves = bar_energy::pull_at_slide(mesh, input, k, 0, x, slides);
+            works.friction -= (node.factor - 1.0) * leaves * slides[k];
+            if let Some(limit) = input.loads.floor_limit.get(k) {
+                let slid = self.cable.contacts.floor_slip[k].x + slides[k];
+                let (_, slope, _) = friction::at(slid, limit * node.floor_factor, self.cable.contacts.slip);
+                works.friction -= slope * slides[k];
+            }
+        }
+    }
+
+    /// Way of the material that a touch presses on, m, weighted by what bears it, and that weight.
+    fn way_at(&self, touch: &ContactPair) -> (Vec2, f64) {
+        let moves = |k: usize| self.mesh().sliding[k].is_none();
+        let [a, b] = touch.shares();
+        let mut way = if moves(touch.node) { self.ways[touch.node] * a } else { Vec2::zeros() };
+        if b != 0.0 && moves(touch.node + 1) {
+            way += self.ways[touch.node + 1] * b;
+        }
+        (way, touch.material_share(moves))
+    }
+
+    /// Normal forces and friction of obstacles, of the floor and of the cable on itself.
+    fn contacts(&self, works: &mut Works, solver: &SolverMemory) {
+        let (cable, x, contacts) = (self.cable, &self.unknowns.positions, &self.cable.contacts);
+        let carried = |touch: &ContactPair, share: f64| {
+            let motion = contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+            motion.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(x)) * share)
+        };
+        for touch in solver.contacts() {
+            let force = touch.pair.gap.normal * touch.load(&contacts.barrier);
+            let (way, share) = self.way_at(touch);
+            let with = carried(touch, share);
+            works.outlines += force.dot(&with);
+            works.impacts += force.dot(&(way - with));
+        }
+        for rub in &contacts.friction_contacts {
+            let force = contacts.friction_force(rub, x);
+            let (way, share) = self.way_at(&rub.touch);
+            let with = carried(&rub.touch, share);
+            works.outlines += force.dot(&with);
+            works.friction += force.dot(&(way - with));
+        }
+        for (k, &limit) in cable.input.loads.floor_limit.iter().enumerate() {
+            if self.mesh().sliding[k].is_none() {
+                let slid = contacts.floor_slip[k] + (x[k] - cable.input.supports.start[k]);
+                works.friction -= friction::at_plane(slid, limit, contacts.slip).1.dot(&self.ways[k]);
+            }
+        }
+        let own = &contacts.self_contacts;
+        if own.shape.is_on() {
+            for pair in solver.own_contacts() {
+                let force = -contacts.barrier.at(pair.gap_m).slope * pair.weight;
+                works.impacts += force * pair.normal.dot(&pair.difference(self.ways));
+            }
+            for rub in &own.friction_contacts {
+                let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, contacts.tuning.slip_m);
+                works.friction -= slope * rub.pair.tangent().dot(&rub.pair.difference(self.ways));
+            }
+        }
+    }
+}
