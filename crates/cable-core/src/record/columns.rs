@@ -15,6 +15,16 @@ pub(super) const ENERGY_COLUMNS: [&str; 4] =
 pub(super) const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
 pub(super) const ROBOT_COLUMNS: [&str; 5] =
     ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
+/// The work of each force on the robot since the run began; rows of older tables end before.
+pub(super) const ROBOT_WORK_COLUMNS: [&str; 7] = [
+    "robot_drive_work_j",
+    "robot_slip_work_j",
+    "robot_rolling_work_j",
+    "robot_weight_work_j",
+    "robot_cable_work_j",
+    "robot_ground_work_j",
+    "robot_impact_work_j",
+];
 pub(super) const EVENT_COLUMNS: [&str; 8] =
     ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message", "cause"];
 /// Columns of tables that were written before causes were.
@@ -52,7 +62,9 @@ pub(super) fn history_columns<'a>(
         }
     }
     columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
-    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
+    if robot == RobotColumns::Written {
+        columns.extend(ROBOT_COLUMNS.into_iter().chain(ROBOT_WORK_COLUMNS).map(String::from));
+    }
     columns
 }
 
@@ -63,5 +75,10 @@ pub(super) fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> 
     let peaks = s.peaks();
     let peaks = [peaks.greatest.tension_n, peaks.held.tension_n];
     let always = ENERGY_COLUMNS.into_iter().zip(energies).chain(PEAK_COLUMNS.into_iter().zip(peaks));
-    always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
+    let work = s
+        .robot
+        .map(|r| r.work)
+        .map(|w| [w.drive_j, w.slip_j, w.rolling_j, w.weight_j, w.cable_j, w.ground_j, w.impact_j]);
+    let of_robot = ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten());
+    always.chain(of_robot).chain(ROBOT_WORK_COLUMNS.into_iter().zip(work.into_iter().flatten()))
 }

@@ -17,7 +17,7 @@
 //!
 //! | table | a row per | columns |
 //! |---|---|---|
-//! | `history.csv` | time | `time_s`, `max_tension_n`, `max_tension_arc_length_m`, for each support `NAME.reaction_x_n`, `NAME.reaction_y_n` (`CABLE.NAME.…` where there are several cables), `kinetic_energy_j`, `gravity_energy_j`, `stretch_energy_j`, `bending_energy_j`, `peak_tension_n` (the greatest of any inner step since the row before), `held_tension_n` (the greatest mean over `breaking_time_s` since then), and with a robot `robot_x_m`, `robot_y_m`, `robot_pitch_deg`, `robot_speed_m_per_s`, `robot_thrust_n` |
+//! | `history.csv` | time | `time_s`, `max_tension_n`, `max_tension_arc_length_m`, for each support `NAME.reaction_x_n`, `NAME.reaction_y_n` (`CABLE.NAME.…` where there are several cables), `kinetic_energy_j`, `gravity_energy_j`, `stretch_energy_j`, `bending_energy_j`, `peak_tension_n` (the greatest of any inner step since the row before), `held_tension_n` (the greatest mean over `breaking_time_s` since then), and with a robot `robot_x_m`, `robot_y_m`, `robot_pitch_deg`, `robot_speed_m_per_s`, `robot_thrust_n`, and the work of each force on it since the run began, `robot_drive_work_j`, `robot_slip_work_j`, `robot_rolling_work_j`, `robot_weight_work_j`, `robot_cable_work_j`, `robot_ground_work_j`, `robot_impact_work_j` (together its energy of motion; older tables have none) |
 //! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`], or those chosen ([`NodeChoice`]) |
 //! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message`, `cause` (JSON) |
 //!

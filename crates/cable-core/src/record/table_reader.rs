@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::choice::{NodeColumns, node_of};
 use super::columns::{
     ENERGY_COLUMNS, EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, PEAK_COLUMNS,
-    ROBOT_COLUMNS,
+    ROBOT_COLUMNS, ROBOT_WORK_COLUMNS,
 };
 use super::csv_records::WholeRecords;
 use super::table_error::{ReadError, RowFault};
@@ -230,7 +230,8 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     let mut k = 3;
     while k < header.len() {
         let name = header.get(k).unwrap_or_default();
-        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).chain(ROBOT_COLUMNS).find(|c| *c == name) {
+        let of_robot = ROBOT_COLUMNS.into_iter().chain(ROBOT_WORK_COLUMNS);
+        if let Some(known) = ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).chain(of_robot).find(|c| *c == name) {
             table.extras.push(Extra { name: known, values: Vec::new() });
             k += 1;
             continue;
