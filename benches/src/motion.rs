@@ -1,9 +1,11 @@
 //! Convergence is measured on these motions; each has one figure to be read off, and its exact
 //! value.
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::mass_spring::settings::Tuning;
+use cable_core::model::mass_spring::{MassSpringModel, Stepping};
 use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
@@ -48,23 +50,48 @@ impl Motion {
     /// # Errors
     /// The model cannot follow it.
     pub fn measure(&self, model: Model, elements: usize, step_s: f64) -> Result<Measured, Error> {
+        let sim = Simulation::with_settings(self.meshed(elements), model, settings(step_s))?;
+        self.follow(sim, step_s)
+    }
+
+    /// Follows it by `mass-spring` in sub-steps of a part of the longest that is stable.
+    ///
+    /// # Errors
+    /// The model cannot follow it.
+    pub fn measure_in_sub_steps(&self, elements: usize, step_s: f64, stable_fraction: f64) -> Result<Measured, Error> {
+        let mut tuning = Tuning::default();
+        tuning.sub_step.stable_fraction = stable_fraction;
+        let tuning = Arc::new(tuning);
+        let sim = Simulation::with_mechanics(self.meshed(elements), settings(step_s), move |problem, settings| {
+            Ok(Box::new(MassSpringModel::with_tuning(problem, settings, Arc::clone(&tuning))?))
+        })?;
+        self.follow(sim, step_s)
+    }
+
+    fn meshed(&self, elements: usize) -> Scene {
         let mut scene = (self.scene)(elements);
         for cable in &mut scene.cables {
             cable.segments = Some(elements);
         }
-        let settings = Settings {
-            tolerance: ANY_TOLERANCE,
-            stepping: Stepping::Explicit,
-            inner_step_s: Some(step_s),
-            histories: false,
-            ..Settings::default()
-        };
-        let mut sim = Simulation::with_settings(scene, model, settings)?;
+        scene
+    }
+
+    fn follow(&self, mut sim: Simulation, step_s: f64) -> Result<Measured, Error> {
         sim.settle()?;
         let mut run = Run { sim, step_s };
         let began = Instant::now();
         let figure = (self.run)(&mut run)?;
         Ok(Measured { figure, elapsed_s: began.elapsed().as_secs_f64() })
+    }
+}
+
+fn settings(step_s: f64) -> Settings {
+    Settings {
+        tolerance: ANY_TOLERANCE,
+        stepping: Stepping::Explicit,
+        inner_step_s: Some(step_s),
+        histories: false,
+        ..Settings::default()
     }
 }
 
@@ -108,7 +135,7 @@ fn floor(points_m: Vec<[f64; 2]>) -> Obstacle {
 
 /// All of them.
 #[must_use]
-pub fn motions() -> [Motion; 9] {
+pub fn motions() -> [Motion; 10] {
     [
         Motion {
             id: "swing",
@@ -211,6 +238,33 @@ pub fn motions() -> [Motion; 9] {
                 let mut impulse = 0.0;
                 run.follow(0.35, |sim, step_s| impulse += step_s * (force_on(sim, 1).x - rest))?;
                 Ok(Vec2::new(impulse.abs() / ((BAR_EA_N * 1.0f64).sqrt() * MOVED_M), 0.0))
+            },
+            exact: Some(|| Vec2::new(1.0, 0.0)),
+        },
+        Motion {
+            id: "wall",
+            about: "a bar of 20 m hung from a wall runs against it at 1 m/s: mean pull beyond that at rest, from 0.2 to 0.8 of the \
+                    time 2L/c after which its wave is back, over √(EA ρ) v",
+            meshes: &[20, 40, 80, 160],
+            scene: |_| running_bar(),
+            run: |run| {
+                let rest = force_on(&run.sim, 0).norm();
+                let mut states = run.sim.states();
+                if let Some(state) = states.first_mut() {
+                    let speeds = state.velocity_m_per_s.iter_mut().skip(1);
+                    speeds.for_each(|v| *v = Vec2::new(0.0, -RUN_M_PER_S));
+                    state.in_motion = true;
+                }
+                run.sim.set_states(&states)?;
+                let back_s = 2.0 * 20.0 / BAR_EA_N.sqrt();
+                let (mut impulse, mut time_s) = (0.0, 0.0);
+                run.follow(0.8 * back_s, |sim, step_s| {
+                    if sim.time_s() > 0.2 * back_s {
+                        impulse += step_s * (force_on(sim, 0).norm() - rest);
+                        time_s += step_s;
+                    }
+                })?;
+                Ok(Vec2::new(impulse / (time_s * BAR_EA_N.sqrt() * RUN_M_PER_S), 0.0))
             },
             exact: Some(|| Vec2::new(1.0, 0.0)),
         },
@@ -373,6 +427,15 @@ fn pulled_bar() -> Scene {
     let mut scene = catalog::cable_alone([20.0, 1.0, BAR_EA_N], vec![Support::fixed("wall", [0.0, 0.0]), end]);
     scene.environment.gravity_m_per_s2 = 0.0;
     scene
+}
+
+/// Speed at which a bar runs against a wall, m/s.
+const RUN_M_PER_S: f64 = 1.0;
+
+/// A bar of 20 m that hangs, so that it stays taut as it runs.
+fn running_bar() -> Scene {
+    let supports = vec![Support::fixed("wall", [0.0, 0.0]), Support::new("end", SupportKind::Free)];
+    catalog::cable_alone([20.0, 1.0, BAR_EA_N], supports)
 }
 
 /// How far a mass has fallen before its rope is taut, m, and the rope's stiffness, N.

@@ -13,9 +13,16 @@ use cable_core::{Model, Vec2};
 
 const FILE: &str = "docs/convergence.md";
 
-/// Steps of the ladder, s. `mass-spring` takes its own steps within them: the longest that its mesh
-/// is stable with.
+/// Steps of the ladder, s. `mass-spring` takes its own steps within them, see [`STABLE_FRACTIONS`].
 const STEPS: [f64; 5] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0, 1.0 / 1920.0];
+
+/// Sub-steps of the ladder of `mass-spring`, in parts of the longest that its mesh is stable with;
+/// the first is that of the program.
+const STABLE_FRACTIONS: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
+
+/// The finest mesh is taken for that ladder on which a run took at most so long, s: the shortest
+/// sub-steps take 16 times as long.
+const LONGEST_OF_LADDER_S: f64 = 2.0;
 
 /// A mesh is not tried where the one before took longer than this, s.
 const LONGEST_S: f64 = 20.0;
@@ -46,7 +53,8 @@ const HEAD: &str = "# How errors of motions fall
 
 `cargo run --release -p cable-benches --bin convergence` makes this page. Each motion is followed on a ladder of meshes with the shortest step, and of steps on the
 finest mesh, where the error is of the step alone: against half of the shortest. Elsewhere it is that of the figure named, relative to what it should be; the order is the exponent by which it fell
-from the line before. `mass-spring` takes steps of its own, as long as its mesh is stable with: only its mesh is changed. Times are of the motion alone, on one core of
+from the line before. `mass-spring` takes steps of its own, 0.8 of the longest that its mesh is stable with; its ladder of steps is of parts of that, on the finest mesh that takes
+at most 2 s, against half of the shortest. Times are of the motion alone, on one core of
 whatever machine made the page.
 ";
 
@@ -86,9 +94,29 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
             if let Ok(limit) = by(finest, 0.5 * step) {
                 table(&mut text, &format!("`{model}`, steps"), &lines, (limit.figure, scale));
             }
+        } else {
+            sub_steps(&mut text, motion, &lines, scale);
         }
     }
     Ok(text)
+}
+
+/// The ladder of sub-steps of `mass-spring`, where its runs on the meshes of the motion, which are
+/// given, leave the time for it.
+fn sub_steps(text: &mut String, motion: &Motion, meshes: &[Line], scale: f64) {
+    let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.elapsed_s <= LONGEST_OF_LADDER_S);
+    let Some(&mesh) = meshes.iter().rposition(quick).and_then(|k| motion.meshes.get(k)) else { return };
+    let step = STEPS[STEPS.len() - 1];
+    let by = |fraction: f64| motion.measure_in_sub_steps(mesh, step, fraction).map_err(|e| e.to_string());
+    let lines = STABLE_FRACTIONS.iter().enumerate().map(|(k, &fraction)| Line {
+        name: format!("{fraction} of the stable"),
+        finer: k.checked_sub(1).map_or(1.0, |j| STABLE_FRACTIONS[j] / fraction),
+        run: by(fraction),
+    });
+    let lines: Vec<Line> = lines.collect();
+    if let Ok(limit) = by(0.5 * STABLE_FRACTIONS[STABLE_FRACTIONS.len() - 1]) {
+        table(text, &format!("`mass-spring`, sub-steps on {mesh} elements"), &lines, (limit.figure, scale));
+    }
 }
 
 /// The figure without the errors of mesh and step, both taken to be of the second order.

@@ -1,6 +1,7 @@
 //! This file makes the JSON object of an answer: SI units in the key names, never a number that is
 //! not finite.
 
+use cable_core::solution::robot_report::RobotReport;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, InertiaEffect, ModelReason,
     NextCheaper, Node, Pressure, Solution, SupportReaction, TensionPeaks, Warning,
@@ -57,6 +58,9 @@ pub struct Answer<'a> {
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
     pub warnings: Vec<WarningEntry<'a>>,
+    /// The robot, where the scene has one that can move, with the work of each force on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub robot: Option<&'a RobotReport>,
     /// The verification of the answer.
     pub verification: Option<&'a Verification>,
     /// The answers of other models and meshes, with `--compare`.
@@ -286,6 +290,7 @@ pub fn answer<'a>(
         nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
         contacts: Vec::new(),
         warnings: s.warnings.iter().map(WarningEntry::of).collect(),
+        robot: s.robot.as_ref(),
         verification: s.verification.as_ref(),
         compared: &figures.compared,
     };

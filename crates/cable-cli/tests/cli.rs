@@ -437,6 +437,44 @@ fn run_takes_the_likely_bending_stiffness_where_it_is_asked_for() {
     assert!((run / rest - 1.0).abs() < 1e-2, "{run} N for {rest} N");
 }
 
+/// The work of each force on a robot is in `history.csv` and in the JSON: together it is the
+/// robot's energy of motion. Tables without it are read as before.
+#[test]
+fn run_writes_the_work_on_the_robot() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drive.toml");
+    let scene = catalog::robot_drive();
+    std::fs::write(&file, scene.to_toml()).unwrap();
+    let out = folder.path().join("out");
+    let mut arguments = vec!["run", file.to_str().unwrap(), "--for", "1.5s", "--every", "0.1s", "--no-errors"];
+    arguments.extend(["--no-bending", "--json", "--out", out.to_str().unwrap()]);
+    let o = cable(&arguments);
+    assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+    let last: Value = serde_json::from_str(text(&o.stdout).lines().last().unwrap()).unwrap();
+    let table = std::fs::read(out.join("history.csv")).unwrap();
+    let history = cable_core::record::read_history(table.as_slice()).unwrap();
+    let of = |name: &str| {
+        let column = history.extras.iter().find(|e| e.name == name).unwrap_or_else(|| panic!("{name} is missing"));
+        *column.values.last().unwrap()
+    };
+    let mut sum = 0.0;
+    for force in ["drive", "slip", "rolling", "weight", "cable", "ground", "impact"] {
+        let work = of(&format!("robot_{force}_work_j"));
+        assert_eq!(last["robot"]["work"][format!("{force}_j")].as_f64(), Some(work), "{force}");
+        sum += work;
+    }
+    let mass = cable_core::scene::preset::robot_preset(&scene.robot.unwrap().preset).unwrap().mass_kg.value;
+    let kinetic = 0.5 * mass * of("robot_speed_m_per_s").powi(2);
+    assert!(kinetic > 1.0 && (sum / kinetic - 1.0).abs() < 1e-9, "{sum} J for {kinetic} J");
+    assert!(of("robot_drive_work_j") > kinetic && of("robot_rolling_work_j") < 0.0);
+    // A table of before ends with the thrust.
+    let line = |row: &str| row.split(',').take(row.split(',').count() - 7).collect::<Vec<_>>().join(",") + "\n";
+    let older: String = text(&table).lines().map(line).collect();
+    let older = cable_core::record::read_history(older.as_bytes()).unwrap();
+    assert_eq!(older.extras.last().unwrap().name, "robot_thrust_n");
+    assert_eq!(older.time_s, history.time_s);
+}
+
 /// What a run neglects of bending is said once, of its first rest.
 #[test]
 fn run_says_once_what_its_first_rest_neglects_of_bending() {

@@ -29,6 +29,16 @@ pub(super) const ACCOUNT_COLUMNS: [&str; 10] = [
 pub(super) const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
 pub(super) const ROBOT_COLUMNS: [&str; 5] =
     ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
+/// The work of each force on the robot since the run began; rows of older tables end before.
+pub(super) const ROBOT_WORK_COLUMNS: [&str; 7] = [
+    "robot_drive_work_j",
+    "robot_slip_work_j",
+    "robot_rolling_work_j",
+    "robot_weight_work_j",
+    "robot_cable_work_j",
+    "robot_ground_work_j",
+    "robot_impact_work_j",
+];
 pub(super) const EVENT_COLUMNS: [&str; 8] =
     ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message", "cause"];
 /// Columns of tables that were written before causes were.
@@ -58,7 +68,7 @@ fn always_written() -> impl Iterator<Item = &'static str> {
 
 /// The name of a column of `history.csv` that is of no support; None where there is none of it.
 pub(super) fn known_extra(name: &str) -> Option<&'static str> {
-    always_written().chain(ROBOT_COLUMNS).find(|known| *known == name)
+    always_written().chain(ROBOT_COLUMNS).chain(ROBOT_WORK_COLUMNS).find(|known| *known == name)
 }
 
 /// Columns of `history.csv`, from the names of the cables, and of their supports.
@@ -76,7 +86,9 @@ pub(super) fn history_columns<'a>(
         }
     }
     columns.extend(always_written().map(String::from));
-    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
+    if robot == RobotColumns::Written {
+        columns.extend(ROBOT_COLUMNS.into_iter().chain(ROBOT_WORK_COLUMNS).map(String::from));
+    }
     columns
 }
 
@@ -89,5 +101,10 @@ pub(super) fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> 
     let account = s.energy_account().unwrap_or_default();
     let balance = account.works_j().into_iter().chain([account.exchanged_j, account.unaccounted_j()]);
     let always = always_written().zip(energies.into_iter().chain(peaks).chain(balance));
-    always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
+    let work = s
+        .robot
+        .map(|r| r.work)
+        .map(|w| [w.drive_j, w.slip_j, w.rolling_j, w.weight_j, w.cable_j, w.ground_j, w.impact_j]);
+    let of_robot = ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten());
+    always.chain(of_robot).chain(ROBOT_WORK_COLUMNS.into_iter().zip(work.into_iter().flatten()))
 }

@@ -43,7 +43,7 @@ impl Going {
     }
 }
 
-/// RobotWork of each force on the vehicle, force times way, J.
+/// Work of each force on the vehicle, force times way, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RobotWork {

@@ -10,7 +10,7 @@ use crate::geometry::handles;
 use crate::geometry::supports::support_position;
 use crate::panels::analysis::tension_budget;
 use crate::panels::cable::property::PROPERTIES;
-use crate::panels::readouts::extremes;
+use crate::panels::readouts::{extremes, take_likely_bending};
 use crate::panels::scene::{map, robot as robot_form};
 use crate::panels::{robot, warnings};
 use crate::record::measure::Measure;
@@ -141,6 +141,9 @@ fn analyses(state: &AppState) -> Vec<Entry> {
         view("Show less and more friction", ViewCommand::SetFrictionRange(!friction.on, friction.factors)),
         view("Unmark the place on the cable", ViewCommand::SetTensionMarker(None)),
     ];
+    all.extend(
+        take_likely_bending(state).map(|(name, take)| scene(format!("{name}: the likely bending stiffness"), take)),
+    );
     let most = tension_budget::at_the_largest(state);
     all.extend(
         most.map(|marker| view("At the largest: break the tension down", ViewCommand::SetTensionMarker(Some(marker)))),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use cable_core::record::{Event, HistoryTable, Manifest, NodeRow, RunTables};
-use cable_core::robot::RobotReport;
+use cable_core::robot::{RobotReport, RobotWork};
 use cable_core::scene::SupportKind;
 use cable_core::solution::{
     CableSolution, Cost, Energy, ModelReason, SupportReaction, TensionPeak, TensionPeaks, Warning,
@@ -207,8 +207,23 @@ fn robot(scene: &Scene, history: &HistoryTable, k: usize, cables: &[CableSolutio
         thrust_n: of("robot_thrust_n")?,
         hitch_x_n: pull[0],
         hitch_y_n: pull[1],
+        work: robot_work(history, k),
         ..RobotReport::default()
     })
+}
+
+/// The work of the forces on it; none where older tables hold none.
+fn robot_work(history: &HistoryTable, k: usize) -> RobotWork {
+    let of = |name| extra(history, name, k).unwrap_or(0.0);
+    RobotWork {
+        drive_j: of("robot_drive_work_j"),
+        slip_j: of("robot_slip_work_j"),
+        rolling_j: of("robot_rolling_work_j"),
+        weight_j: of("robot_weight_work_j"),
+        cable_j: of("robot_cable_work_j"),
+        ground_j: of("robot_ground_work_j"),
+        impact_j: of("robot_impact_work_j"),
+    }
 }
 
 /// Events that began between the time before and this one. How long they lasted is in no table.

@@ -127,6 +127,18 @@ fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
             format::force(r.push_x_n.hypot(r.push_y_n)),
             "On its body, where the cable lies on it or is pushed along",
         ),
+        (
+            "Work of the tracks",
+            format::energy(r.work.drive_j + r.work.slip_j),
+            "Of the drive since the start, less what it brakes and what slips take; all work together is its energy of motion",
+        ),
+        ("Work of the cable", format::energy(r.work.cable_j), "On its hitch and body since the start"),
+        ("Work of rolling resistance", format::energy(r.work.rolling_j), "Of the ground on its tracks since the start"),
+        (
+            "Work of weight and ground",
+            format::energy(r.work.weight_j + r.work.ground_j + r.work.impact_j),
+            "By how high it stands, where it tips over corners, and where something stops it",
+        ),
     ];
     for (name, value, help) in rows {
         readout::row(ui, name, &value, help, |_| {});

@@ -8,7 +8,7 @@ use cable_viewer::state::{AppState, Item, NoAnswer, WorkerStatus};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::fixture::{Bench, PanelUi, bench, outline_and_form, state, warn, with_pulley};
+use crate::fixture::{Bench, PanelUi, bench, driven, outline_and_form, state, warn, with_pulley};
 
 const TALL: [f32; 2] = [320.0, 900.0];
 
@@ -302,6 +302,18 @@ fn readouts_tell_the_figures_and_where() {
     click(&mut harness, "Show sag");
     let shown = harness.state().commands.last();
     assert_eq!(shown, Some(&Command::View(ViewCommand::CentreOn([5.0, 5.0 - 2.9652]))));
+}
+
+/// The work of the forces on a robot stands in its panel: together it is its energy of motion.
+#[test]
+fn the_robot_panel_tells_the_work_of_the_forces_on_it() {
+    let harness = open_with(driven(), panels::robot::ui);
+    for name in ["Work of the tracks", "Work of the cable", "Work of rolling resistance", "Work of weight and ground"] {
+        harness.get_by_label(name);
+    }
+    for work_j in [2874.0, -1068.0, -1210.0, -474.5] {
+        harness.get_by_label(&cable_viewer::units::format::energy(work_j));
+    }
 }
 
 #[test]

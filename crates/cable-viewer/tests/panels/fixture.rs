@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cable_core::robot::{Going, RobotReport};
+use cable_core::robot::{Going, RobotReport, RobotWork};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
     CableSolution, ContactReport, ContactState, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning,
@@ -226,6 +226,14 @@ pub fn driven() -> AppState {
         hitch_y_n: 212.0,
         going: Going::Slowed,
         leg: Some(0),
+        work: RobotWork {
+            drive_j: 2874.0,
+            rolling_j: -1210.0,
+            weight_j: -471.0,
+            cable_j: -1068.0,
+            impact_j: -3.5,
+            ..RobotWork::default()
+        },
         ..RobotReport::default()
     });
     state.live.snapshot.solution = Some(Arc::new(answer));

@@ -50,9 +50,11 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
         let written: Vec<_> = b.cables[0].nodes.iter().map(|n| Node { force_n: [0.0; 2], ..*n }).collect();
         assert_eq!(*a.cables[0].nodes, written, "{} s", a.time_s);
         assert_eq!(a.robot.unwrap().x_m, b.robot.unwrap().x_m);
+        assert_eq!(a.robot.unwrap().work, b.robot.unwrap().work, "{} s", a.time_s);
         assert_eq!(a.energy, b.energy);
     }
     let last = saved.last().unwrap();
+    assert!(last.robot.unwrap().work.drive_j > 0.0, "{:?}", last.robot);
     assert_eq!(state(&harness).live.recording.shown_s, Some(last.time_s));
     assert_eq!(state(&harness).live.snapshot.solution.as_ref().unwrap().time_s, last.time_s);
     // Time can be taken up where it ended.

@@ -272,6 +272,16 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     assert!(with < 0.99 * flexible, "{with} N of {flexible} N");
     let said = format!("ignored: {:+.2} %", 100.0 * (with / flexible - 1.0));
     harness.get_by_label(&said);
+    // The stiffness can be taken, and that be undone: it is one edit.
+    click(&mut harness, "Take 1.4 N·m²");
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene.cables[0].bending_stiffness_n_m2, 1.4);
+    assert_eq!(answer(&harness).cables[0].assumptions.bending_stiffness_n_m2, 1.4);
+    assert!((answer(&harness).max_tension().tension_n / with - 1.0).abs() < 1e-6);
+    apply(&mut harness, Command::Scene(cable_viewer::command::SceneCommand::Undo));
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene, catalog::round_post());
+    assert_eq!(answer(&harness).max_tension().tension_n, flexible);
     // It is of this answer: another one has not been compared.
     let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };
     let [x, y] = state(&harness).document.scene.cables[0].supports[1].at_m.unwrap();

@@ -13,7 +13,7 @@ use cable_core::timeline::{RunPeaks, TensionRanges};
 use cable_core::{Cable, Scene};
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::command::{Command, ViewCommand};
+use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::render::theme;
 use crate::state::questions::{bending_query, bending_query_fits};
@@ -353,8 +353,14 @@ fn bending_stiffness(
     }
     let likely = unit::Unit::N_M2.text(likely);
     let help = format!("This answer is of a perfectly flexible cable; of its preset {likely} is likely");
-    if let Some((text, more)) = compared(state, cable, solved) {
-        figure(ui, name, text, &format!("{help}{more}"), None);
+    if let Some(Compared { text, more, answered }) = compared(state, cable, solved) {
+        readout::row(ui, name, &text, &format!("{help}{more}"), |ui| {
+            let Some((label, take)) = take_likely_bending(state).filter(|_| answered) else { return };
+            let does = "Gives the cable that bending stiffness, as an edit of the scene";
+            if ui.add(egui::Button::new(label).small()).on_hover_text(does).clicked() {
+                commands.extend([take, SceneCommand::EditDone].map(Command::Scene));
+            }
+        });
         return;
     }
     readout::row(ui, name, "ignored", &help, |ui| {
@@ -368,35 +374,59 @@ fn bending_stiffness(
     });
 }
 
-/// Returns what came of comparing an answer with one that has the likely bending stiffness, in
-/// short and in full; None where nobody asked.
-fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
+/// The edit that gives the present cable the bending stiffness that is likely of its preset, and
+/// its name; None where that is not known, or the cable has one.
+#[must_use]
+pub fn take_likely_bending(state: &AppState) -> Option<(String, SceneCommand)> {
+    let index = state.current_cable();
+    let cable = state.document.scene.cables.get(index)?;
+    let likely = cable.likely_bending_stiffness_n_m2();
+    if likely == 0.0 || cable.bending_stiffness_n_m2 != 0.0 {
+        return None;
+    }
+    let value = Box::new(Cable { bending_stiffness_n_m2: likely, ..cable.clone() });
+    Some((format!("Take {}", unit::Unit::N_M2.text(likely)), SceneCommand::SetCable { cable: index, value }))
+}
+
+/// The outcome of comparing an answer with one that has the likely bending stiffness.
+struct Compared {
+    /// In short.
+    text: String,
+    /// More in words, after a sentence on the stiffness.
+    more: String,
+    /// True if there is an answer with it.
+    answered: bool,
+}
+
+/// Returns what came of comparing an answer with one that has the likely bending stiffness; None
+/// where nobody asked.
+fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<Compared> {
     if !bending_query_fits(state) {
         return None;
     }
-    let ignored = "ignored".to_owned();
+    let without = |text: &str, more| Some(Compared { text: text.to_owned(), more, answered: false });
     let found = match &state.analysis.neglected_bending.progress {
         Progress::None => return None,
-        Progress::Running(..) => return Some(("ignored, being compared".to_owned(), String::new())),
-        Progress::Failed(why) => return Some((ignored, format!(". {why}"))),
+        Progress::Running(..) => return without("ignored, being compared", String::new()),
+        Progress::Failed(why) => return without("ignored", format!(". {why}")),
         Progress::Done(found) => found.iter().find(|b| b.cable == cable.name)?,
     };
     let Some(with) = found.greatest_tension_n else {
         let why = found.unknown.as_ref().map_or_else(|| "not sought".to_owned(), sentence);
-        return Some((ignored, format!(". No answer was found with that: {why}")));
+        return without("ignored", format!(". No answer was found with that: {why}"));
     };
     let most = extremes::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
     let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { format::force(with) };
     let part = |of: Option<f64>, text: fn(f64) -> String| {
         of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))
     };
-    let details = format!(
+    let more = format!(
         ". With that the greatest tension is {} ({change}), forces on supports change {}, the shape {}",
         format::force(with),
         part(found.changes.support_force_n, format::force),
         part(found.changes.position_m, format::length),
     );
-    Some((format!("ignored: {change}"), details))
+    Some(Compared { text: format!("ignored: {change}"), more, answered: true })
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
