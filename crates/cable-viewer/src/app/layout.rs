@@ -327,7 +327,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
             // What comes and goes above changes no identity below: a drag in a section would end.
             let named = UiBuilder::new().scope_id(ui.scope_id().with(title));
             let drawn = ui.scope_builder(named, |ui| {
-                // What is asked for is unfolded.
+                // A section that is asked for is unfolded.
                 let open = (shown == Some(section)).then_some(true);
                 CollapsingHeader::new(title).default_open(true).open(open).show_unindented(ui, |ui| {
                     // One section that is too wide does not widen the others.

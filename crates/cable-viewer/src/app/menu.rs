@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<
     });
 }
 
-/// What opens a dialog that is about the program.
+/// The buttons that open dialogs about the program.
 fn dialogs(ui: &mut Ui, commands: &mut Vec<Command>) {
     for (text, help, command) in [
         ("Help", "Pointer and keys (F1)", FileCommand::SetDialog(Some(Dialog::Help))),

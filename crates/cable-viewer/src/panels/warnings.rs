@@ -285,7 +285,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     }
 }
 
-/// What makes the figures doubtful, which the form of the solver shows.
+/// The entry of a reason to doubt the figures, of which the form of the solver shows more.
 fn of_problem(problem: quality::Problem) -> Entry {
     let quality::Problem { title, figure, why } = problem;
     Entry {
@@ -439,7 +439,7 @@ fn show(entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         commands.push(Command::View(ViewCommand::ZoomOn(at_m)));
     }
-    // What has no place has a form, or nothing to show.
+    // An entry without a place has a form, or nothing to show.
     if entry.item.is_some() && (entry.at_m.is_some() || entry.item == Some(Item::Solver)) {
         commands.push(Command::View(ViewCommand::Select(entry.item)));
     }

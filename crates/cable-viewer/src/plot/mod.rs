@@ -118,7 +118,7 @@ pub struct Graph<'a> {
     pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
-    /// How there comes to be something to show, where there is nothing yet.
+    /// The way to something to show, where there is nothing yet.
     pub hint: Option<&'a str>,
     /// Its export was asked for elsewhere than beside it.
     pub export: bool,
@@ -466,7 +466,7 @@ fn name_limits(ui: &Ui, graph: &Graph<'_>, shown: &egui_plot::PlotTransform, hig
         if let Some(other) = before.filter(|other| other.intersects(place.expand(1.0))) {
             place = place.translate(vec2(other.left() - 4.0 - place.right(), 0.0));
         }
-        // What lies below shines through.
+        // The line below shines through.
         painter.rect_filled(place, 2.0, visuals.extreme_bg_color.gamma_multiply(0.6));
         painter.galley(place.min + vec2(2.0, 0.0), words, visuals.text_color());
         before = Some(place);

@@ -45,7 +45,7 @@ pub struct Palette {
     pub support: Color32,
     /// Picked and hovered things, and nothing else.
     pub accent: Color32,
-    /// What warns, and nothing else.
+    /// Warnings, and nothing else.
     pub warn: Color32,
     /// The light of an answer whose laws were all asked and hold: told from red by its brightness
     /// too.

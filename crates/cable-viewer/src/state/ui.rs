@@ -36,7 +36,7 @@ pub enum GraphRequest {
 /// A part of the panel on the right that answers a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToolSection {
-    /// What takes a tension apart at the marked place.
+    /// The sum that a tension is at the marked place.
     MarkedPlace,
     /// The figures of the answer.
     Readouts,

@@ -60,7 +60,7 @@ fn a_cable_drawn_thicker_than_it_is_is_said_to_be() {
     }
 }
 
-/// What stands in the strip above the results lies over nothing else in it.
+/// Words in the strip above the results lie over nothing else in it.
 #[test]
 fn the_words_of_the_legend_keep_apart_for_every_quantity() {
     let mut harness = open(catalog::tank());

@@ -21,7 +21,7 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, St
         let cloth = vec![top, top + vec2(FLAG[1], 5.5), top + vec2(0.0, 11.0)];
         view.painter.add(egui::Shape::convex_polygon(cloth, colour, Stroke::NONE));
         view.painter.circle_filled(foot, if marked { 4.5 } else { 3.0 }, colour);
-        // What a leg does is told of the one that is asked about: two such labels hid what they
+        // The task of a leg is told of the one that is asked about: two such labels hid what they
         // stood at.
         let text = if marked { text } else { format!("leg {}", k + 1) };
         figures.push((top, text, view.palette.text));

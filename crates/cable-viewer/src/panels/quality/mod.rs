@@ -145,7 +145,7 @@ fn grows_for_long(state: &AppState, answer: &Solution) -> Option<&'static str> {
     let peaks = kinetic_peaks_j::<GROWTH_SPANS>(history)?;
     let [before, .., last] = peaks;
     let moves = last > MIN_KINETIC_SHARE * answer.energy.stretch_j.abs();
-    // What falls turns height into motion.
+    // A cable that falls turns height into motion.
     let total_j = |s: &Sample| s.energy_j.iter().sum::<f64>();
     let from_s = answer.time_s.max(history.samples.back()?.time_s) - GROWTH_SPANS as f64 * GROWTH_SPAN_S;
     let gained_j = total_j(history.samples.back()?) - total_j(history.view([from_s, from_s], None).first()?);
