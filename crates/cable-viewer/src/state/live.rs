@@ -16,7 +16,7 @@ use crate::record::sample::Sample;
 pub const MIN_MOVE_M: f64 = 1e-6;
 
 /// The answer of the worker, and how time runs.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Live {
     /// The playback: whether and how fast time runs.
     pub playback: Playback,
@@ -40,24 +40,6 @@ pub struct Live {
     pub robot_speed_command: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
     pub manual_robot_speed: Option<f64>,
-}
-
-impl Default for Live {
-    fn default() -> Self {
-        Self {
-            playback: Playback::default(),
-            snapshot: Snapshot::default(),
-            latest: Snapshot::default(),
-            recording: Recording::default(),
-            history: History::default(),
-            reopened_run: None,
-            earlier_run: None,
-            reset_is_last: false,
-            restart_is_reset: false,
-            robot_speed_command: None,
-            manual_robot_speed: None,
-        }
-    }
 }
 
 impl Live {
