@@ -113,7 +113,7 @@ fn timeline() {
 
 #[test]
 fn robot() {
-    picture("robot", driven, panels::robot::ui, [320.0, 420.0]);
+    picture("robot", driven, panels::robot::ui, [320.0, 520.0]);
 }
 
 #[test]

@@ -273,7 +273,7 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     let said = format!("ignored: {:+.2} %", 100.0 * (with / flexible - 1.0));
     harness.get_by_label(&said);
     // The stiffness can be taken, and that be undone: it is one edit.
-    click(&mut harness, "Take 1.4 N·m²");
+    click(&mut harness, "Take 1.400 N·m²");
     harness.run_steps(3);
     assert_eq!(state(&harness).document.scene.cables[0].bending_stiffness_n_m2, 1.4);
     assert_eq!(answer(&harness).cables[0].assumptions.bending_stiffness_n_m2, 1.4);
