@@ -10,7 +10,6 @@ mod monitor;
 mod without_inertia;
 
 pub use self::monitor::RunMonitor;
-use self::without_inertia::RunWithoutInertia;
 
 use crate::error::SolveError;
 use crate::model::Inertia;
@@ -187,7 +186,6 @@ pub struct Timeline {
     /// Steps made.
     count: u64,
     monitor: RunMonitor,
-    without_inertia: Option<RunWithoutInertia>,
 }
 
 impl std::fmt::Debug for Timeline {
@@ -212,7 +210,7 @@ impl Timeline {
         let given = step_s.map(|s| Simulation::check_step(s, inertia).map(|()| Instant::nearest(s).max(Instant(1))));
         let step = given.transpose()?.unwrap_or_else(|| usual_step(inertia));
         let monitor = RunMonitor::new(&simulation);
-        Ok(Self { simulation, inertia, step, count: 0, monitor, without_inertia: None })
+        Ok(Self { simulation, inertia, step, count: 0, monitor })
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where
@@ -227,7 +225,7 @@ impl Timeline {
     /// cheaper choice would have cost in error so far. Beside one without inertia there is none.
     #[must_use]
     pub fn with_next_cheaper(mut self) -> Self {
-        self.without_inertia = RunWithoutInertia::beside(&self.simulation, self.inertia, self.step_s());
+        self.monitor.add_run_without_inertia(&self.simulation, self.inertia, self.step_s());
         self
     }
 
@@ -237,7 +235,8 @@ impl Timeline {
     pub fn inertia_effect(&self) -> Option<InertiaEffect> {
         (self.inertia == Inertia::Dynamic).then(|| InertiaEffect {
             numbers: self.monitor.motion_numbers(),
-            without: self.without_inertia.as_ref().map(|run| run.next_cheaper(&self.monitor)),
+            without: self.monitor.next_cheaper(),
+            run_error: self.monitor.relative_error(),
             tolerance: self.simulation.settings().tolerance,
         })
     }
@@ -271,9 +270,6 @@ impl Timeline {
             advance(&mut self.simulation, next.seconds(), self.inertia)?;
             self.count += 1;
             self.monitor.follow(&mut self.simulation);
-            if let Some(run) = &mut self.without_inertia {
-                run.follow(&self.simulation, self.count);
-            }
             watch(&self.simulation);
         }
         let mut solution = if self.step.times(self.count) < instant {
@@ -282,9 +278,7 @@ impl Timeline {
         } else {
             self.simulation.solution()
         };
-        if let Some(run) = &self.without_inertia {
-            solution.next_cheaper = Some(run.next_cheaper(&self.monitor));
-        }
+        solution.next_cheaper = self.monitor.next_cheaper().or(solution.next_cheaper);
         // Adding steps up rounds; the instant asked for is the one meant.
         solution.time_s = instant.max(self.step.times(self.count)).seconds();
         Ok(solution)

@@ -42,7 +42,7 @@ fn effect(scene: &Scene) -> InertiaEffect {
     let question = Question::History(Inertia::Dynamic);
     let mut sim = Simulation::for_question(scene.clone(), Model::Auto, Settings::default(), question).unwrap();
     sim.settle().unwrap();
-    let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_next_cheaper();
+    let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_errors().with_next_cheaper();
     let answer = timeline.at(Instant::nearest(SECONDS), |_| ()).unwrap();
     let effect = timeline.inertia_effect().expect("a run with inertia");
     assert_eq!(answer.next_cheaper, effect.without);
@@ -88,11 +88,11 @@ fn a_run_without_inertia_has_no_such_numbers() {
     assert_eq!(timeline.inertia_effect(), None);
 }
 
-/// The most by which runs with and without inertia differ, in parts of the greatest tension: on
-/// twice as many elements, in half the steps.
+/// The most by which runs with and without inertia differ, beyond what they do at rest, in parts of
+/// the greatest tension: on four times as many elements, in half the steps.
 fn difference(scene: &Scene) -> Option<f64> {
     let mut scene = scene.clone();
-    scene.cables[0].segments = scene.cables[0].segments.map(|n| 2 * n);
+    scene.cables[0].segments = scene.cables[0].segments.map(|n| 4 * n);
     let run = |model, inertia, step_s| {
         let settings = Settings { inner_step_s: Some(step_s), histories: false, ..Settings::default() };
         let mut sim = Simulation::for_question(scene.clone(), model, settings, Question::History(inertia)).ok()?;
@@ -101,15 +101,16 @@ fn difference(scene: &Scene) -> Option<f64> {
     };
     let mut with = run(Model::Fem, Inertia::Dynamic, 1.0 / 480.0)?;
     let mut without = run(Model::Auto, Inertia::QuasiStatic, 1.0 / 120.0)?;
-    let (mut apart, mut most) = (0.0f64, 0.0f64);
-    for k in 1..=60u64 {
+    let (mut at_rest, mut apart, mut most) = (0.0f64, 0.0f64, 0.0f64);
+    for k in 0..=60u64 {
         let at = Instant::nearest(SECONDS / 60.0).times(k);
         let (a, b) = (with.at(at, |_| ()).ok()?, without.at(at, |_| ()).ok()?);
         let errors = ErrorEstimates::between(&b.cables[0], &a.cables[0]);
         apart = apart.max(errors.max_tension_n?).max(errors.support_force_n?);
+        at_rest = if k == 0 { apart } else { at_rest };
         most = most.max(a.max_tension().tension_n);
     }
-    Some(apart / most)
+    Some((apart - at_rest) / most)
 }
 
 /// Of random motions, slow and fast, in the air and on a floor, the verdict is that of finer runs
@@ -117,7 +118,7 @@ fn difference(scene: &Scene) -> Option<f64> {
 #[test]
 #[ignore = "minutes"]
 fn verdicts_are_those_of_finer_runs() {
-    let (mut right, mut near, mut wrong, mut slow) = (0, 0, Vec::new(), 0);
+    let (mut right, mut near, mut wrong, mut slow, mut hidden) = (0, 0, Vec::new(), 0, 0);
     for number in 0..100u64 {
         let mut dice = Dice(number.wrapping_mul(0x2000_0003) + 19);
         let reach = dice.log(1e-6, 1.0);
@@ -137,12 +138,16 @@ fn verdicts_are_those_of_finer_runs() {
         let line = format!("{number}: reach {reach:.1e} m, {said}; finer: {is:?}");
         println!("{line}");
         match is {
+            _ if said.matters().is_none() => hidden += 1,
             Some(is) if is > 0.5 * tolerance && is < 2.0 * tolerance => near += 1,
             is if said.matters() == Some(!is.is_some_and(|is| is <= tolerance)) => right += 1,
             _ => wrong.push(line),
         }
     }
-    println!("{right} right, {near} near the tolerance, {} wrong, {slow} go without inertia", wrong.len());
+    println!(
+        "{right} right, {near} near the tolerance, {hidden} hidden, {} wrong, {slow} go without inertia",
+        wrong.len()
+    );
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!((20..80).contains(&slow), "{slow}");
+    assert!(right > 60 && slow > 10, "{right} {slow}");
 }

@@ -23,15 +23,21 @@ pub struct InertiaEffect {
     /// rest: forces in parts of the greatest tension of the run. None where there is none beside
     /// it.
     pub without: Option<NextCheaper>,
+    /// The greatest error of the run's own forces so far, in parts of its greatest tension; None
+    /// where it is not known.
+    pub run_error: Option<f64>,
     /// Relative accuracy asked for.
     pub tolerance: f64,
 }
 
 impl InertiaEffect {
     /// Returns whether forces without inertia differ by more than the tolerance, or are not known;
-    /// None where no run without inertia goes beside this one.
+    /// None where no run without inertia goes beside this one, or where the error of this one hides
+    /// it.
     #[must_use]
     pub fn matters(&self) -> Option<bool> {
-        self.without.map(|without| !without.force_error.is_some_and(|error| error <= self.tolerance))
+        let Some(apart) = self.without?.force_error else { return Some(true) };
+        let hidden = apart - self.run_error.unwrap_or(0.0) <= self.tolerance;
+        if apart <= self.tolerance { Some(false) } else { (!hidden).then_some(true) }
     }
 }

@@ -2,17 +2,19 @@
 //! errors of its figures.
 
 use super::coarse::CoarseRuns;
+use super::without_inertia::RunWithoutInertia;
 use super::{RunPeaks, TensionRanges};
 use crate::math::larger;
 use crate::model::Inertia;
 use crate::scene::Cable;
 use crate::simulation::Simulation;
-use crate::solution::{CableSolution, MotionNumbers, Warning, WarningCause};
+use crate::solution::{CableSolution, MotionNumbers, NextCheaper, Warning, WarningCause};
 
 /// Looks at each step of a run, and remembers.
 #[derive(Debug)]
 pub struct RunMonitor {
     coarse: Option<CoarseRuns>,
+    without_inertia: Option<RunWithoutInertia>,
     /// One a cable.
     peaks: Vec<RunPeaks>,
     /// Greatest error of a force so far, N; None where one was not known.
@@ -26,7 +28,13 @@ impl RunMonitor {
     pub fn new(simulation: &Simulation) -> Self {
         let so_far = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };
         let peaks = simulation.answers().iter().map(so_far).collect();
-        Self { coarse: None, peaks, worst_n: Some(0.0), motion_numbers: MotionNumbers::default().with(simulation) }
+        Self {
+            coarse: None,
+            without_inertia: None,
+            peaks,
+            worst_n: Some(0.0),
+            motion_numbers: MotionNumbers::default().with(simulation),
+        }
     }
 
     /// The same, with errors in motion: coarser runs go beside one that has settled at its start,
@@ -57,6 +65,9 @@ impl RunMonitor {
     /// Looks at a run that has made one more step, whose answer need not be judged yet.
     pub(super) fn look(&mut self, simulation: &Simulation) {
         self.coarse = self.coarse.take().and_then(|coarse| coarse.follow(simulation));
+        if let Some(run) = &mut self.without_inertia {
+            run.follow(simulation);
+        }
         self.note(simulation);
     }
 
@@ -72,6 +83,19 @@ impl RunMonitor {
     pub fn relative_error(&self) -> Option<f64> {
         let most = self.peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger);
         self.worst_n.map(|worst| if most > 0.0 { worst / most } else { worst })
+    }
+
+    /// Puts a run without inertia beside one that has it, in steps of `step_s` (s), and has settled
+    /// at its start.
+    pub(super) fn add_run_without_inertia(&mut self, simulation: &Simulation, inertia: Inertia, step_s: f64) {
+        self.without_inertia = RunWithoutInertia::beside(simulation, inertia, step_s);
+    }
+
+    /// What the next cheaper choice, a run without inertia, would have cost in error so far; None
+    /// where none goes beside the run.
+    #[must_use]
+    pub fn next_cheaper(&self) -> Option<NextCheaper> {
+        self.without_inertia.as_ref().map(|run| run.next_cheaper(&self.peaks))
     }
 
     /// The Mach and Froude numbers of the run so far.

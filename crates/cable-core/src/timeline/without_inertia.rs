@@ -1,7 +1,7 @@
 //! A run without inertia beside one with it: what the next cheaper choice would have cost in error,
 //! and whether the masses matter.
 
-use super::{QUASI_STATIC_STEP_S, RunMonitor, advance};
+use super::{QUASI_STATIC_STEP_S, RunPeaks, advance};
 use crate::math::larger;
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -35,8 +35,9 @@ pub(super) struct RunWithoutInertia {
     /// None once it has no answer.
     simulation: Option<Simulation>,
     model: Model,
-    /// Number of steps of the run that make one of it.
+    /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
+    count: u64,
     /// The most by which the two differed so far, and at rest: of their meshes, or of what friction
     /// allows.
     apart: ErrorEstimates,
@@ -63,15 +64,16 @@ impl RunWithoutInertia {
         let apart =
             ErrorEstimates { max_tension_n: Some(0.0), support_force_n: Some(0.0), position_m: Some(0.0), ..none };
         let greatest_n = vec![0.0; run.answers().len()];
-        let mut this = Self { simulation, model, times, apart, apart_at_rest: apart, greatest_n };
+        let mut this = Self { simulation, model, times, count: 0, apart, apart_at_rest: apart, greatest_n };
         this.compare(run);
         this.apart_at_rest = this.apart;
         Some(this)
     }
 
-    /// Goes on to a run that has made so many steps.
-    pub fn follow(&mut self, run: &Simulation, count: u64) {
-        if !count.is_multiple_of(self.times) {
+    /// Goes on to the run it is beside, which has made one more step.
+    pub fn follow(&mut self, run: &Simulation) {
+        self.count += 1;
+        if !self.count.is_multiple_of(self.times) {
             return;
         }
         let went = self.simulation.as_mut().is_some_and(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_ok());
@@ -93,9 +95,10 @@ impl RunWithoutInertia {
         }
     }
 
-    /// The most by which it has differed from a run so far, beyond what it did at rest.
-    pub fn next_cheaper(&self, monitor: &RunMonitor) -> NextCheaper {
-        let runs = monitor.peaks().iter().map(|run| run.peaks.greatest.tension_n);
+    /// The most by which it has differed from a run with such peaks so far, beyond what it did at
+    /// rest.
+    pub fn next_cheaper(&self, peaks: &[RunPeaks]) -> NextCheaper {
+        let runs = peaks.iter().map(|run| run.peaks.greatest.tension_n);
         let most = runs.clone().fold(0.0, larger);
         let peaks = runs.zip(&self.greatest_n).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
         let force = |apart: &ErrorEstimates| apart.max_tension_n.zip(apart.support_force_n).map(|(a, b)| larger(a, b));

@@ -10,9 +10,13 @@ impl Sentence for InertiaEffect {
     fn sentence(&self, units: UnitSystem) -> String {
         let mach = format!("Mach number {:.1e}", self.numbers.mach);
         let froude = self.numbers.froude.map_or_else(String::new, |froude| format!(", Froude number {froude:.1e}"));
-        let (Some(without), Some(matters)) = (self.without, self.matters()) else { return format!("{mach}{froude}") };
-        let verdict = if matters { "matters" } else { "does not matter" };
+        let Some(without) = self.without else { return format!("{mach}{froude}") };
+        let verdict = match self.matters() {
+            Some(true) => "inertia matters",
+            Some(false) => "inertia does not matter",
+            None => "the error of this run hides whether inertia matters",
+        };
         let tolerance = format!("{:.1e}", self.tolerance);
-        format!("{mach}{froude}: inertia {verdict} at tolerance {tolerance} ({})", without.sentence(units))
+        format!("{mach}{froude}: {verdict} at tolerance {tolerance} ({})", without.sentence(units))
     }
 }
