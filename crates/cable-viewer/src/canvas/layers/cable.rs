@@ -4,15 +4,13 @@
 use cable_core::solution::Node;
 use egui::{Align2, Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
-use crate::canvas::layers::surface_offset;
+use crate::canvas::layers::surface_offset::{self, MIN_WIDTH};
 use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
 use crate::state::{AppState, Freshness, Item};
 use crate::units::format;
 
-/// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
-pub const MIN_WIDTH: f32 = 4.5;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than
 /// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;

@@ -4,9 +4,10 @@
 use cable_core::solution::{CableSolution, ContactReport, Node};
 use egui::{Pos2, Vec2, vec2};
 
-use crate::canvas::layers::cable::MIN_WIDTH;
 use crate::canvas::view::CanvasView;
 
+/// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
+pub const MIN_WIDTH: f32 = 4.5;
 /// Distance along the cable over which it comes back to its place beside a contact, points.
 /// Shorter: a step is seen; longer: a cable that leaves the ground at once is drawn off its place.
 const RAMP: f32 = 24.0;
