@@ -3,9 +3,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::assembly::bends_energy;
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::{Weight, bar_energy, bends_energy};
 use crate::solution::Energy;
 
 /// All of it.

@@ -19,9 +19,8 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
-use crate::model::fem::newton::solver_memory::NodalWays;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::energy_account::Works;
+use crate::model::fem::newton::NodalWays;
+use crate::model::fem::state::{CableState, Works};
 
 /// The impulses of contacts of a step whose forces acted for 1/`a` (s) that are over with it.
 struct EndedImpulses<'a> {

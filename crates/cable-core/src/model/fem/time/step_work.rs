@@ -15,15 +15,10 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::energy_account::Works;
-use crate::model::fem::state::stored_energy::{bending_energy, gravity_energy};
-use crate::model::fem::system::assembly::bends_slope;
-use crate::model::fem::system::bar_weight::{self, Weight};
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::step_input::Unknowns;
-use crate::model::fem::system::{bar_energy, mesh::Mesh};
+use crate::model::fem::newton::SolverMemory;
+use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
+use crate::model::fem::system::bar_weight::{self};
+use crate::model::fem::system::{ContactPair, Mesh, Unknowns, Weight, bar_energy, bends_slope};
 use crate::model::fem::time::loss_memory;
 use crate::scene::SupportKind;
 use crate::solution::Energy;
