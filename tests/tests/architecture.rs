@@ -301,6 +301,30 @@ fn the_core_imports_one_way() {
     assert!(in_loops(&files).len() <= 5, "{:?}", in_loops(&files));
 }
 
+/// Wings of a model name what another wing's entrance hands out (`wing::X`), or a room as a whole
+/// (`wing::room`, for `room::f`), and nothing inside a room.
+#[test]
+fn wings_of_a_model_see_only_each_others_entrances() {
+    let all = modules(&root().join("crates/cable-core/src"));
+    let mut wrong = BTreeSet::new();
+    for (name, code) in &all {
+        for path in paths_of(name, code, &all) {
+            let [first, model, wing, ..] = path.as_slice() else { continue };
+            let entrance = [first.as_str(), model, wing].join("::");
+            let is_wing = first == "model" && all.keys().any(|m| m.starts_with(&format!("{entrance}::")));
+            if !is_wing || *name == entrance || name.starts_with(&format!("{entrance}::")) {
+                continue;
+            }
+            // What the path names of the wing's modules, one in another.
+            let rooms = (4..=path.len()).take_while(|n| all.contains_key(&path[..*n].join("::"))).count();
+            if rooms > 0 && path.len() > 3 + rooms {
+                wrong.insert(format!("{name}: {}", path.join("::")));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} imports go past an entrance: {wrong:#?}", wrong.len());
+}
+
 /// Only the folder of the models knows which model it has: others ask for a capability, a label or
 /// a rank.
 #[test]

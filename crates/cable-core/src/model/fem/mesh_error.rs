@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::system::step_input::WorkBudget;
+use crate::model::fem::system::WorkBudget;
 use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};

@@ -41,12 +41,11 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
-use crate::model::fem::equilibrium::quasi_static::slides_as_a_whole;
+use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::mesh_error::{Refinement, TwoMeshes};
-use crate::model::fem::obstacle::outline_placement::outline_report;
-use crate::model::fem::obstacle::outline_placement::place_outline;
+use crate::model::fem::obstacle::{outline_report, place_outline};
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::system::step_input::WorkBudget;
+use crate::model::fem::system::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -90,7 +89,7 @@ pub struct FemModel {
     problem: Arc<Problem>,
     /// Points to which supports were dragged by hand, m.
     dragged: Vec<Option<Vec2>>,
-    statics: free::statics::Statics,
+    statics: free::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
     /// True if the search for a first equilibrium in contact starts from that of `spans`.
@@ -121,7 +120,7 @@ impl FemModel {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_tuning(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
-        let statics = free::statics::Statics::new(problem.clone(), settings)?;
+        let statics = free::Statics::new(problem.clone(), settings)?;
         let dynamics = dynamics::Dynamics::new(problem.clone(), settings, tuning)?;
         let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
         Ok(Self {
@@ -203,13 +202,8 @@ impl FemModel {
             }
             statics.buckled_shapes()
         };
-        let histories = elastica::buckled_equilibria::other_equilibria(
-            &self.problem,
-            self.time_s(),
-            &self.dragged,
-            &self.solution(),
-            free,
-        )?;
+        let histories =
+            elastica::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }
@@ -304,7 +298,7 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = results::bending_error::bending_error(&self.dynamics.cable);
+        let (off, s) = results::bending_error(&self.dynamics.cable);
         self.bending_error = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {
@@ -669,10 +663,8 @@ impl Mechanics for FemModel {
     }
 
     fn borrow(&mut self, own: Option<OwnedResources>) {
-        let own = own.unwrap_or_else(|| OwnedResources {
-            memory: None,
-            problem: state::outline_path::with_outline(self.problem.clone()),
-        });
+        let own =
+            own.unwrap_or_else(|| OwnedResources { memory: None, problem: state::with_outline(self.problem.clone()) });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.cable.problem = own.problem;
         place_outline(&mut self.dynamics.cable);

@@ -2,7 +2,7 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, larger};
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 part! {
     /// The contacts of the cable, and the points where friction holds it.

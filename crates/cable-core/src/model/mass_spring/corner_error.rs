@@ -19,7 +19,7 @@
 use std::ops::RangeInclusive;
 
 use crate::energy::bending::turn;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// The turn of the cable round an obstacle.
 #[derive(Clone, Copy, Debug, Default)]

@@ -1,6 +1,6 @@
 //! The integrator of dynamic steps is explicit, or that of the preview.
 
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::model::settings::Stepping;
 
 /// A display frame, s.

@@ -64,6 +64,12 @@ use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::gauge::TensionGauge;
+use crate::model::mass_spring::dynamics::{
+    Account, ChainState, Report, Rollback, SupportDrives, integrate, transaction,
+};
+use crate::model::mass_spring::equilibrium::{Anchors, Estimate, Start, find_equilibrium, quasi_static_step};
+use crate::model::mass_spring::mesh::{Mesh, even_out, first_support_arc_lengths};
+use crate::model::mass_spring::xpbd::preview;
 pub use crate::model::settings::Stepping;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -71,23 +77,10 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
 use crate::state::State;
 use contact_memory::ContactMemory;
-use dynamics::chain_state::{ChainState, Report};
-use dynamics::momentum::Account;
-use dynamics::rollback::{Rollback, transaction};
-use dynamics::sub_step::integrate;
-use dynamics::supports::SupportDrives;
 use dynamics::{Clock, buried_nodes, hands};
-use equilibrium::contact_energy::Anchors;
-use equilibrium::error_estimate::{Estimate, Start};
-use equilibrium::quasi_static::quasi_static_step;
-use equilibrium::static_rest::find_equilibrium;
 use forces::{nodal, tension};
 use integrator::is_preview;
-use mesh::cable_mesh::Mesh;
-use mesh::edit::even_out;
-use mesh::node_placement::first_support_arc_lengths;
 use settings::Tuning;
-use xpbd::sub_step::preview;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
@@ -297,12 +290,8 @@ impl MassSpringModel {
 
     fn step_report(&mut self) -> StepReport {
         let fastest = self.settings.hand_speed_m_per_s;
-        let corner = results::contacts::corner_warning(
-            &self.chain.mesh,
-            &self.chain.contacts,
-            &self.chain.report.cost,
-            &self.settings,
-        );
+        let corner =
+            results::corner_warning(&self.chain.mesh, &self.chain.contacts, &self.chain.report.cost, &self.settings);
         let mut warnings = std::mem::take(&mut self.chain.report.warnings);
         warnings.extend(corner);
         warnings.extend(self.chain.drives.warnings(&self.chain.mesh, fastest));

@@ -6,21 +6,12 @@
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
-use crate::model::spans::acceptance::clearance;
-use crate::model::spans::acceptance::equilibrium;
-use crate::model::spans::acceptance::tension_loss;
-use crate::model::spans::acceptance::tunnelling;
-use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::acceptance::{clearance, equilibrium, tension_loss, tunnelling};
+use crate::model::spans::boundary::{Loose, Mode};
 use crate::model::spans::changes;
-use crate::model::spans::contact::point_load;
-use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::newton::slip_predictor::predict_slip;
-use crate::model::spans::newton::{Converged, Workspace};
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::CableSection;
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::contact::{point_load, slack_pocket};
+use crate::model::spans::newton::{Converged, Workspace, predict_slip};
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure};
 use crate::model::spans::section_layout::{SectionLayout, place_ends};
 use crate::model::spans::slack::{self, LooseShapes};
 

@@ -4,14 +4,9 @@ use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point, remove_auxiliary_weight};
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
-use crate::model::spans::boundary::segment_cursor::{CachedPiece, SegmentCursor};
-use crate::model::spans::contact::load_balance::load_balance;
-use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode, SegmentCursor, TensionProfile};
+use crate::model::spans::contact::{load_balance, slack_pocket};
+use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SharedNodes, SupportReaction};
 

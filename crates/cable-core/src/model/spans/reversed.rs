@@ -6,7 +6,7 @@
 
 use crate::math::Vec2;
 use crate::model::spans::results::Report;
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::Failure;
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SharedNodes, SupportReaction};

@@ -7,11 +7,8 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::model::catenary::layout::auxiliary_weight;
-use crate::model::spans::boundary::capstan::CableLaw;
-use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::boundary::{CableLaw, Curve, SUPPORT_CONTACT_DISTANCE_M};
+use crate::model::spans::section::{BoundaryConditions, CableSection, EndCondition, Failure, SolveContext};
 use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
 use crate::problem::wheel_passage::facing;
@@ -285,7 +282,7 @@ pub(in crate::model::spans) fn place_ends(
         if gap.is_some_and(|g| g < -SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
-        crate::model::spans::contact::support_contact::place(section, context, side, at);
+        crate::model::spans::contact::place(section, context, side, at);
     }
     Ok(())
 }

@@ -6,10 +6,9 @@
 
 use crate::error::SolveError;
 use crate::model::fem::dynamics::{Dynamics, StepRequest};
-use crate::model::fem::remesh::adapt::settle_down;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause};
+use crate::model::fem::remesh::settle_down;
+use crate::model::fem::state::{CableState, renew_input};
+use crate::model::fem::system::{Converged, Failure, FailureCause};
 use crate::model::gauge::TensionGauge;
 use crate::model::{Inertia, Model};
 

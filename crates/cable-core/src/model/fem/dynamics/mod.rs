@@ -9,24 +9,17 @@ mod halving;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::outline_placement::prepare_way;
-use crate::model::fem::remesh::adapt::remesh;
+use crate::model::fem::mesh::SlideOver;
+use crate::model::fem::newton::SolverMemory;
+use crate::model::fem::obstacle::{IntersectionCheck, prepare_way};
+use crate::model::fem::remesh::remesh;
 use crate::model::fem::results;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::fold_imperfection::open_collinear_folds;
-use crate::model::fem::state::moving_mass::MovingMass;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
-use crate::model::fem::time::bdf2::Weights;
-use crate::model::fem::time::hands::HandDrive;
-use crate::model::fem::time::rollback::Rollback;
-use crate::model::fem::time::sliding_tensions::keep_balanced_tensions;
-use crate::model::fem::time::step_impulses::{account_for_step, forces_in_step};
-use crate::model::fem::time::step_inertia::set_inertia;
-use crate::model::fem::time::time_control::TimeControl;
-use crate::model::fem::time::{hands, loss_memory, plastic_impact};
+use crate::model::fem::state::{CableState, MovingMass, open_collinear_folds};
+use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
+use crate::model::fem::time::{
+    HandDrive, Rollback, TimeControl, Weights, account_for_step, forces_in_step, hands, keep_balanced_tensions,
+    loss_memory, plastic_impact, set_inertia,
+};
 use crate::model::gauge::TensionGauge;
 use crate::model::smoothed_target::held_warning;
 use crate::model::{Inertia, StepReport};

@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica;
-use crate::model::fem::free::beam::buckled_shapes::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
+use crate::model::fem::free::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
 use crate::model::initial_equilibrium::is_buried;
 use crate::problem::Problem;
 use crate::solution::error_estimates::{greatest_tension, place};

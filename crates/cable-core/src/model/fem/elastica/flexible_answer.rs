@@ -1,7 +1,7 @@
 //! The shape, tension and friction of an answer are read at any arc length.
 
 use crate::math::Vec2;
-use crate::model::fem::free::beam::equilibrium::nearest_turn;
+use crate::model::fem::free::nearest_turn;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ContactReport, ContactState, Node};
 

@@ -46,6 +46,8 @@ mod guess;
 mod refinement;
 mod stiffening;
 
+pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
+
 use crate::contact::swept_corners;
 use crate::math::Vec2;
 use crate::problem::Problem;

@@ -2,7 +2,7 @@
 //! ask for them, or at half the distance.
 
 use crate::model::fem::elastica::boundary_value::{Elastica, LENGTH, Piece, STATES, force};
-use crate::model::fem::free::beam::mesh::places;
+use crate::model::fem::free::places;
 
 /// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
 /// larger: its square is seen.

@@ -2,10 +2,9 @@
 //! then renewed, until nothing changes.
 
 use crate::math::{bounded, larger};
-use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::newton::SolverMemory;
+use crate::model::fem::state::{CableState, ChangedNodes, StickSlipChanges, update_stick_slip};
+use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
 /// A solution in which normal forces and stick-slip states were renewed.
 #[derive(Clone, Copy, Debug)]

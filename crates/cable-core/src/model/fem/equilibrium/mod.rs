@@ -9,3 +9,5 @@
 pub(in crate::model::fem) mod lagged_friction;
 pub(in crate::model::fem) mod quasi_static;
 pub(in crate::model::fem) mod relaxation;
+
+pub(in crate::model::fem) use quasi_static::slides_as_a_whole;

@@ -8,10 +8,9 @@
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::lagged_friction::Lagged;
-use crate::model::fem::obstacle::outline_placement::prepare_way;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::step_setup::prepare_input;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, load_scale};
+use crate::model::fem::obstacle::prepare_way;
+use crate::model::fem::state::{CableState, prepare_input};
+use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns, load_scale};
 
 /// Length of cable (m) whose dead loads set the first resistance.
 const DEAD_LOAD_LENGTH_M: f64 = 0.1;

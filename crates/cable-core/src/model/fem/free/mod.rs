@@ -34,3 +34,10 @@ pub(in crate::model::fem) mod straight_route;
 pub(in crate::model::fem) mod wheel_arcs;
 pub(in crate::model::fem) mod wheel_friction_memory;
 pub(in crate::model::fem) mod wheel_friction_newton;
+
+pub(in crate::model::fem) use statics::Statics;
+
+pub(in crate::model::fem) use beam::buckled_shapes::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
+pub(in crate::model::fem) use beam::equilibrium::nearest_turn;
+pub(in crate::model::fem) use beam::mesh::places;
+pub(in crate::model::fem) use stations::{Restraint, StationLayout, place};

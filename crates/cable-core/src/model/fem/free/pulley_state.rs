@@ -1,7 +1,7 @@
 //! A pulley holds its cable by friction or lets it slide, and remembers where it held it.
 
 use crate::math::Vec2;
-use crate::model::spans::contact::wheel_friction::{CableProperties, WheelFriction};
+use crate::model::spans::contact::{CableProperties, WheelFriction};
 
 /// State of friction at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]

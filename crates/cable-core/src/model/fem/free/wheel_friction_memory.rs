@@ -5,7 +5,7 @@ use crate::math::{larger, perp};
 use crate::model::fem::free::pulley_balance::PulleyNetwork;
 use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState};
 use crate::model::fem::free::stations::Restraint;
-use crate::model::spans::contact::wheel_friction::{CableProperties, WheelEnds, WheelFriction};
+use crate::model::spans::contact::{CableProperties, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.

@@ -10,3 +10,9 @@
 pub(in crate::model::fem) mod bar_count;
 pub(in crate::model::fem) mod sliding_node;
 pub(in crate::model::fem) mod tangent_path;
+
+pub(in crate::model::fem) use bar_count::bar_count;
+pub(in crate::model::fem) use sliding_node::{
+    BalancedTensions, SlideOver, SlidingNode, SlidingNodeLoad, StickSlip, mean_factor, round_of,
+};
+pub(in crate::model::fem) use tangent_path::{BarEnd, TangentPath, angle_between, rotate};

@@ -24,10 +24,7 @@ use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::GapConstraint;
 use crate::model::fem::settings::NewtonTuning;
-use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::contact::self_contact::Coupling;
-use crate::model::fem::system::step_context::{StepContext, longest};
+use crate::model::fem::system::{ContactPair, Coupling, StepContext, System, longest};
 
 /// The contacts that a step is about to make.
 #[derive(Clone, Debug)]

@@ -2,10 +2,7 @@
 
 use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::{Vec2, cross, larger};
-use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::contact::self_contact::{Coupling, couple};
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::{ContactPair, Coupling, Mesh, System, couple};
 
 /// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]

@@ -16,11 +16,7 @@ use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::contact::contact_set::ContactSet;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_context::StepContext;
-use crate::model::fem::system::step_input::{Converged, Failure, StepInput, Unknowns};
+use crate::model::fem::system::{ContactSet, Converged, Failure, Mesh, StepContext, StepInput, Unknowns, bar_energy};
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;

@@ -20,9 +20,7 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
+use crate::model::fem::system::{Converged, Mesh, StepInput, Unknowns, bar_energy};
 
 /// Roundings of a coordinate that a bar's length may be off by.
 const ROUNDING: f64 = 16.0;
@@ -266,7 +264,7 @@ mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
     use crate::model::fem::newton::minimize::Workspace;
-    use crate::model::fem::system::step_context::StepContext;
+    use crate::model::fem::system::StepContext;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};

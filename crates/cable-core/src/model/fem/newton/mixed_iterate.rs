@@ -1,8 +1,7 @@
 //! The iterate of the mixed Newton iteration in contact holds what its unknowns are beside places.
 
 use crate::contact::friction::Branch;
-use crate::model::fem::system::bar_energy::BarIterate;
-use crate::model::fem::system::step_input::Unknowns;
+use crate::model::fem::system::{BarIterate, Unknowns};
 
 /// State of the mixed iteration in contact beside positions and slides; the minimiser finds it
 /// empty and uses none of it.

@@ -20,3 +20,7 @@ pub(in crate::model::fem) mod mixed_free;
 pub(in crate::model::fem) mod mixed_iterate;
 pub(in crate::model::fem) mod solver_memory;
 pub(in crate::model::fem) mod step_bound;
+
+pub(in crate::model::fem) use minimize::Workspace;
+pub(in crate::model::fem) use mixed_free::MixedFreeSolver;
+pub(in crate::model::fem) use solver_memory::{SolverMemory, WorkspaceMemory};

@@ -2,7 +2,7 @@
 
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
-use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
+use crate::model::fem::system::{Unknowns, WorkBudget};
 
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]

@@ -3,10 +3,9 @@
 
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
-use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath};
+use crate::model::fem::mesh::{BarEnd, TangentPath};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::system::step_context::{StepContext, longest};
-use crate::model::fem::system::step_input::{StepInput, Unknowns};
+use crate::model::fem::system::{StepContext, StepInput, Unknowns, longest};
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.

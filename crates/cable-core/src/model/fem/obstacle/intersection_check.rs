@@ -9,11 +9,9 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Model;
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::TangentPath;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_context::StepContext;
+use crate::model::fem::mesh::{SlideOver, SlidingNode, TangentPath, round_of};
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::{Mesh, StepContext};
 use crate::problem::Problem;
 
 /// A cable among its obstacles, at given positions.

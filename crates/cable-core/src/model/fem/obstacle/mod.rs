@@ -7,3 +7,6 @@
 
 pub(in crate::model::fem) mod intersection_check;
 pub(in crate::model::fem) mod outline_placement;
+
+pub(in crate::model::fem) use intersection_check::IntersectionCheck;
+pub(in crate::model::fem) use outline_placement::{outline_report, place_outline, prepare_way, put_outline};

@@ -24,15 +24,8 @@ use crate::contact::self_contact_pairs::SortedNodes;
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::outline_path::MovingOutline;
-use crate::model::fem::state::step_setup::prepare_step;
-use crate::model::fem::state::support_stop::stopped_by_obstacles;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::contact::outline_motion::OutlineMotion;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_context::StepContext;
+use crate::model::fem::state::{CableState, Meshing, MovingOutline, prepare_step, stopped_by_obstacles};
+use crate::model::fem::system::{ContactPair, Mesh, OutlineMotion, StepContext};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 

@@ -12,15 +12,13 @@
 
 use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::mesh::{SlideOver, SlidingNode};
+use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::moving_mass::attribute_to;
-use crate::model::fem::state::step_setup::renew_input;
+use crate::model::fem::state::{CableState, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
 
 /// Arc of a bar on its rounds below which it is unwound, rad: its tangent points have passed each

@@ -1,12 +1,10 @@
 //! Marks are the places on a round at which its material is counted.
 
 use crate::math::smaller;
-use crate::model::fem::mesh::sliding_node::SlidingNode;
-use crate::model::fem::mesh::tangent_path::{BarEnd, rotate};
+use crate::model::fem::mesh::{BarEnd, SlidingNode, rotate};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::moving_mass::attribute_to;
+use crate::model::fem::state::{CableState, attribute_to};
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;

@@ -2,11 +2,9 @@
 //! not change.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::SlidingNode;
+use crate::model::fem::mesh::SlidingNode;
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::motion::NodeMotion;
-use crate::model::fem::state::moving_mass::{MovingMass, attribute_to};
+use crate::model::fem::state::{CableState, MovingMass, NodeMotion, attribute_to};
 use crate::model::fem::system::contact::floor_friction;
 
 /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.

@@ -2,14 +2,10 @@
 
 use crate::contact::Gap;
 use crate::math::{bounded, perp};
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::motion::NodalMotion;
-use crate::model::fem::system::step_context::StepContext;
-use crate::model::fem::system::step_input::load_scale;
+use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, TangentPath, angle_between, round_of};
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::state::{CableState, Meshing, NodalMotion};
+use crate::model::fem::system::{StepContext, load_scale};
 
 /// Least part of the material between two nodes on each side of a node put between them.
 const LEAST_PART: f64 = 1e-3;

@@ -11,3 +11,6 @@ pub(in crate::model::fem) mod adapt;
 pub(in crate::model::fem) mod arc_marks;
 pub(in crate::model::fem) mod edit;
 mod edit_criteria;
+
+pub(in crate::model::fem) use adapt::{even_out, remesh, settle_down};
+pub(in crate::model::fem) use edit::{insert, remove};

@@ -3,8 +3,8 @@
 use crate::energy::bending::turn;
 use crate::math::larger;
 use crate::model::fem::results::forces::bar_tensions;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::ContactPair;
 
 /// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
 /// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries

@@ -2,12 +2,11 @@
 
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::sliding_node::{BalancedTensions, SlideOver, SlidingNodeLoad};
+use crate::model::fem::mesh::{BalancedTensions, SlideOver, SlidingNodeLoad};
 use crate::model::fem::results::forces::LyingEnd;
 use crate::model::fem::results::self_contact;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::contact::floor_friction::RoundFloorFriction;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::{ContactPair, RoundFloorFriction};
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// One report for each stretch of neighbouring contacts with one obstacle.

@@ -4,11 +4,8 @@
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::bar_weight::Weight;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::{ContactPair, Mesh, Weight, bar_weight};
 use crate::model::fem::time::loss_memory;
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than

@@ -16,9 +16,11 @@ mod self_contact;
 mod supports;
 mod weighted_capstan;
 
+pub(in crate::model::fem) use bending_error::bending_error;
+
 use self::forces::{bar_tension, bar_tensions, end_forces};
 use crate::math::larger;
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 use crate::model::fem::time::loss_memory;
 use crate::solution::{Assumptions, CableSolution};
 

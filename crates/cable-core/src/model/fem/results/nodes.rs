@@ -3,13 +3,12 @@
 
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
-use crate::model::fem::mesh::sliding_node::{SlidingNode, SlidingNodeLoad};
-use crate::model::fem::mesh::tangent_path::angle_between;
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::mesh::{SlidingNode, SlidingNodeLoad, angle_between};
+use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::results::forces::{curvature_at, half, moments, shear};
 use crate::model::fem::results::weighted_capstan::WeightedCapstan;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::contact::floor_friction::RoundFloorFriction;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::RoundFloorFriction;
 use crate::model::fem::time::loss_memory;
 use crate::solution::Node;
 

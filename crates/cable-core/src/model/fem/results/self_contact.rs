@@ -2,7 +2,7 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of

@@ -1,9 +1,9 @@
 //! Each support reports where it is and what the cable does to it.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::model::fem::mesh::SlideOver;
 use crate::model::fem::results::forces::half;
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 use crate::solution::SupportReaction;
 

@@ -1,7 +1,6 @@
 //! The division of a cable into bars, and the nodes of its supports and loads.
 
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::{ContactPair, Mesh};
 use crate::problem::Series;
 
 /// The division of the cable into bars, and the nodes of supports and loads.

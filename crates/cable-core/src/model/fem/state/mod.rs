@@ -23,3 +23,15 @@ pub(in crate::model::fem) mod outline_path;
 pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod stick_slip;
 pub(in crate::model::fem) mod support_stop;
+
+pub(in crate::model::fem) use outline_path::{MovingOutline, with_outline};
+
+pub(in crate::model::fem) use cable_state::{CableState, NodeTensions, StepAnswers};
+pub(in crate::model::fem) use fold_imperfection::open_collinear_folds;
+pub(in crate::model::fem) use meshing::Meshing;
+pub(in crate::model::fem) use momentum_account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
+pub(in crate::model::fem) use motion::{NodalMotion, NodeMotion};
+pub(in crate::model::fem) use moving_mass::{MovingMass, attribute_to};
+pub(in crate::model::fem) use step_setup::{prepare_input, prepare_step, renew_input};
+pub(in crate::model::fem) use stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
+pub(in crate::model::fem) use support_stop::stopped_by_obstacles;

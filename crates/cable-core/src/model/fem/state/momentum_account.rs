@@ -1,7 +1,7 @@
 //! The momentum account sums up the impulses on a cable since the step of its caller began.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::model::fem::mesh::SlideOver;
 use crate::solution::MomentumAccount;
 
 /// Numbers of the kinds of force in [`Kinds`].

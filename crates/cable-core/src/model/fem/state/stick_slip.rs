@@ -2,8 +2,8 @@
 //! the law at what it found.
 
 use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::system::Unknowns;
 use crate::model::fem::system::contact::floor_friction;
-use crate::model::fem::system::step_input::Unknowns;
 
 /// Factors of sliding nodes count as found when they change by less than this.
 const SCALE_TOLERANCE: f64 = 1e-9;

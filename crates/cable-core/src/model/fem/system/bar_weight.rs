@@ -18,7 +18,7 @@
 //! to and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
-use crate::model::fem::mesh::tangent_path::TangentPath;
+use crate::model::fem::mesh::TangentPath;
 use crate::model::fem::system::mesh::Mesh;
 
 /// The weight of one bar with a sliding node at an end.
@@ -207,8 +207,7 @@ pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], b
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-    use crate::model::fem::mesh::tangent_path::BarEnd;
+    use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
     use proptest::prelude::*;
 
     const BODY: Vec2 = Vec2::new(0.7, -3.0);
@@ -230,8 +229,7 @@ mod tests {
             |mark: Vec2| if j == 1 { [round(mark), BarEnd::point(at)] } else { [BarEnd::point(at), round(mark)] };
         let [a, b] = ends(Vec2::x());
         let touches = TangentPath::between(&a, &b).ends[1 - j] / radius;
-        let back =
-            crate::model::fem::mesh::tangent_path::rotate(touches, if j == 1 { -sense * lap } else { sense * lap });
+        let back = crate::model::fem::mesh::rotate(touches, if j == 1 { -sense * lap } else { sense * lap });
         let mut sliding = vec![None, None];
         sliding[1 - j] = Some(on(round(back)));
         let mesh = Mesh {
@@ -271,7 +269,7 @@ mod tests {
             let mut sum = (path.ends[0] + path.ends[1]) * (0.5 * path.straight);
             for k in 0..parts {
                 let turned = lap * (f64::from(k) + 0.5) / f64::from(parts) * if j == 1 { sense } else { -sense };
-                sum += crate::model::fem::mesh::tangent_path::rotate(end.mark, turned) * (end.radius * end.radius * lap / f64::from(parts));
+                sum += crate::model::fem::mesh::rotate(end.mark, turned) * (end.radius * end.radius * lap / f64::from(parts));
             }
             let w = weight(&mesh, &x);
             prop_assert!((w.center - sum / path.length).norm() < 1e-6, "{} {}", w.center, sum / path.length);

@@ -22,3 +22,21 @@ pub(in crate::model::fem) mod mass;
 pub(in crate::model::fem) mod mesh;
 pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;
+
+pub(in crate::model::fem) use assembly::System;
+pub(in crate::model::fem) use bar_energy::BarIterate;
+pub(in crate::model::fem) use bar_weight::Weight;
+pub(in crate::model::fem) use contact::contact_energy::{add_barrier, add_floor, add_friction};
+pub(in crate::model::fem) use contact::contact_pair::ContactPair;
+pub(in crate::model::fem) use contact::contact_set::ContactSet;
+pub(in crate::model::fem) use contact::floor_friction::RoundFloorFriction;
+pub(in crate::model::fem) use contact::friction_contact::slip_at_rest;
+pub(in crate::model::fem) use contact::outline_motion::OutlineMotion;
+pub(in crate::model::fem) use contact::self_contact::{Coupling, SelfContactLaws, couple};
+pub(in crate::model::fem) use loss_branches::{Loss, damping_time};
+pub(in crate::model::fem) use mesh::{Clamp, Mesh, bars_between};
+pub(in crate::model::fem) use step_context::{StepContext, longest};
+pub(in crate::model::fem) use step_input::{
+    Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, load_scale, node_scale,
+    tolerance,
+};

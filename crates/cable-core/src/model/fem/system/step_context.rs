@@ -2,7 +2,7 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::sliding_node::SlidingNodeLoad;
+use crate::model::fem::mesh::SlidingNodeLoad;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::contact::contact_set::ContactSet;

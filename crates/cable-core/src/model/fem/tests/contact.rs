@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::system::step_input::Converged;
+use crate::model::fem::system::Converged;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::problems;
 use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -403,7 +403,7 @@ fn legs_that_land_on_each_other_go_on_together() {
         rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.velocities)).abs()).fold(0.0, f64::max)
     };
     let (before, approach) = (momentum(&d), fastest(&d));
-    crate::model::fem::time::plastic_impact::land_on_itself(&mut d.cable, 1.0 / 240.0, 240.0);
+    crate::model::fem::time::land_on_itself(&mut d.cable, 1.0 / 240.0, 240.0);
     let (after, left) = (momentum(&d), fastest(&d));
     println!("{} contacts: {approach} m/s became {left}, momentum {before:?} {after:?}", rubs.len());
     assert!(approach > 2.5 && left < 0.5 * approach, "{approach} {left}");

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::remesh::adapt::settle_down;
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::remesh::settle_down;
 use crate::model::{Inertia, Settings};
 use crate::problem::problems;
 use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -280,9 +280,9 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     let node = d.cable.mesh.sliding[k].unwrap();
     let (radius, aside) = (node.end.radius, 0.3 * turn);
     // The material that is there, but for what its strain makes of a hundredth of a millimetre.
-    let mark = crate::model::fem::mesh::tangent_path::rotate(node.end.mark, node.end.sense * aside);
-    d.cable.mesh.sliding[k] = Some(crate::model::fem::mesh::sliding_node::SlidingNode {
-        end: crate::model::fem::mesh::tangent_path::BarEnd { mark, ..node.end },
+    let mark = crate::model::fem::mesh::rotate(node.end.mark, node.end.sense * aside);
+    d.cable.mesh.sliding[k] = Some(crate::model::fem::mesh::SlidingNode {
+        end: crate::model::fem::mesh::BarEnd { mark, ..node.end },
         ..node
     });
     let material = aside * radius;

@@ -11,7 +11,7 @@
 //! second; this 1 − β and 1 − 2β of that.
 
 use crate::math::Vec2;
-use crate::model::fem::state::motion::NodalMotion;
+use crate::model::fem::state::NodalMotion;
 
 /// Part β of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V.
 /// N. Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order

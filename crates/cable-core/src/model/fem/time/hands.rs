@@ -2,9 +2,8 @@
 //! support itself.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::step_input::Unknowns;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::{Unknowns, bar_weight};
 use crate::model::hand::Hand;
 use crate::model::smoothed_target::{SmoothedTarget, is_led};
 use crate::solution::Warning;

@@ -1,7 +1,7 @@
 //! The relaxation branches of a cable's loss take part in a step and remember it.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 
 /// Engineering strain of bar `e` at places `x` (m).
 fn strain(cable: &CableState, e: usize, x: &[Vec2]) -> f64 {

@@ -28,3 +28,15 @@ pub(in crate::model::fem) mod step_inertia;
 pub(in crate::model::fem) mod step_size;
 pub(in crate::model::fem) mod step_solver;
 pub(in crate::model::fem) mod time_control;
+
+pub(in crate::model::fem) use bdf2::Weights;
+pub(in crate::model::fem) use hands::HandDrive;
+#[cfg(test)]
+pub(in crate::model::fem) use plastic_impact::land_on_itself;
+pub(in crate::model::fem) use rollback::Rollback;
+pub(in crate::model::fem) use sleeping::Sleep;
+pub(in crate::model::fem) use sliding_tensions::keep_balanced_tensions;
+pub(in crate::model::fem) use step_impulses::{account_for_step, forces_in_step};
+pub(in crate::model::fem) use step_inertia::set_inertia;
+pub(in crate::model::fem) use step_size::StepSizeController;
+pub(in crate::model::fem) use time_control::TimeControl;

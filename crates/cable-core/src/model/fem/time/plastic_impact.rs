@@ -15,7 +15,7 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 
 /// Makes the contacts with obstacles plastic after a step of `h` (s) whose forces acted for 1/`a`
 /// (s).

@@ -1,12 +1,9 @@
 //! A step that fails returns to the checkpoint before it.
 
 use crate::math::Vec2;
-use crate::model::fem::obstacle::outline_placement::place_outline;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::motion::NodalMotion;
-use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::system::contact::contact_set::ContactSet;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::obstacle::place_outline;
+use crate::model::fem::state::{CableState, NodalMotion, renew_input};
+use crate::model::fem::system::{ContactSet, Mesh};
 
 /// A state to go back to.
 #[derive(Clone, Debug)]

@@ -6,9 +6,7 @@
 //! comparison.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::outline_path::MovingOutline;
-use crate::model::fem::state::step_setup::prepare_input;
+use crate::model::fem::state::{CableState, MovingOutline, prepare_input};
 
 /// Way of a hand that wakes a sleeping cable, in distances by which its nodes may have moved.
 /// Smaller: the lag of a hand's filter keeps it awake; larger: a slow hand moves nothing and then

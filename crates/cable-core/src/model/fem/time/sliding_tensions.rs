@@ -1,9 +1,9 @@
 //! A sliding node keeps the tensions between which its friction acted in a step, for the report of
 //! its contact.
 
-use crate::model::fem::mesh::sliding_node::{BalancedTensions, StickSlip};
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::step_input::Unknowns;
+use crate::model::fem::mesh::{BalancedTensions, StickSlip};
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::Unknowns;
 
 /// Keeps the tensions and the turn between which friction acts at each sliding node.
 pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unknowns: &Unknowns) {

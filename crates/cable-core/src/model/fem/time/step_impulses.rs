@@ -10,12 +10,8 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::momentum_account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
-use crate::model::fem::state::moving_mass::MovingMass;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::step_input::Unknowns;
-use crate::model::fem::system::{bar_energy, bar_weight};
+use crate::model::fem::state::{CONTACTS, CableState, Kinds, LOADS, MovingMass, SUPPORTS, WEIGHT, kind_of};
+use crate::model::fem::system::{ContactPair, Unknowns, bar_energy, bar_weight};
 use crate::model::fem::time::bdf2::Weights;
 use crate::scene::SupportKind;
 

@@ -1,8 +1,8 @@
 //! A step with inertia has masses, predicted places and damping, which its weights in time give.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::loss_branches::damping_time;
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::damping_time;
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::loss_memory;
 

@@ -15,7 +15,7 @@
 
 use crate::math::{Vec2, bounded, larger, smaller};
 use crate::model::fem::settings::StepTuning;
-use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::state::CableState;
 
 /// The observed frequency of the motion, and the step that follows from it.
 #[derive(Clone, Debug)]

@@ -2,12 +2,9 @@
 //! else by that of contact, until friction and normal forces agree.
 
 use crate::math::larger;
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::stick_slip::{ChangedNodes, update_stick_slip};
-use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::newton::{SolverMemory, Workspace};
+use crate::model::fem::state::{CableState, ChangedNodes, update_stick_slip};
+use crate::model::fem::system::{ContactPair, Converged, Failure, FailureCause, Unknowns};
 
 impl SolverMemory {
     /// The contacts of the last step that was solved with contact.

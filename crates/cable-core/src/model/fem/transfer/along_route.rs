@@ -5,17 +5,12 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::math::Vec2;
 use crate::model::Settings;
-use crate::model::fem::mesh::bar_count::bar_count;
+use crate::model::fem::mesh::bar_count;
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::state::cable_state::{CableState, NodeTensions, StepAnswers};
-use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::motion::NodalMotion;
-use crate::model::fem::state::outline_path::MovingOutline;
-use crate::model::fem::state::step_setup::prepare_input;
-use crate::model::fem::system::contact::contact_set::ContactSet;
-use crate::model::fem::system::loss_branches::Loss;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_input::{StepInput, load_scale, tolerance};
+use crate::model::fem::state::{
+    CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
+};
+use crate::model::fem::system::{ContactSet, Loss, Mesh, StepInput, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
 use crate::model::fem::transfer::from_state::thread_pulleys;
 use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, depenetrate, place_nodes, route};

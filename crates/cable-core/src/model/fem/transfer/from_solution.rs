@@ -9,12 +9,11 @@
 //! sliding nodes at once, with the material the answer has there.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::{BarEnd, angle_between, rotate};
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::remesh::edit::{insert, remove};
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, angle_between, rotate, round_of};
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::remesh::{insert, remove};
+use crate::model::fem::state::CableState;
+use crate::model::fem::system::ContactPair;
 use crate::solution::Node;
 use crate::state::State;
 

@@ -4,14 +4,11 @@
 use std::sync::Arc;
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::free::stations::{Restraint, StationLayout};
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-use crate::model::fem::mesh::tangent_path::BarEnd;
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::remesh::adapt::even_out;
-use crate::model::fem::remesh::edit::{insert, remove};
-use crate::model::fem::state::cable_state::CableState;
-use crate::model::fem::state::step_setup::renew_input;
+use crate::model::fem::free::{Restraint, StationLayout};
+use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::remesh::{even_out, insert, remove};
+use crate::model::fem::state::{CableState, renew_input};
 use crate::problem::wheel_passage::facing;
 use crate::scene::PulleySide;
 use crate::state::State;

@@ -3,7 +3,7 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::Mesh;
 use crate::numerics::bisect;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;

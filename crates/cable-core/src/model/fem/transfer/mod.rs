@@ -13,31 +13,26 @@ pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
 pub mod initial_guess;
 
+pub(in crate::model::fem) use initial_guess::{PUSHED_OUT_REACHES, bow, depenetrate, leaning_way, push_chain_out};
+
 use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::mixed_free::MixedFreeSolver;
-use crate::model::fem::newton::solver_memory::{SolverMemory, WorkspaceMemory};
-use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::outline_placement::put_outline;
+use crate::model::fem::newton::{MixedFreeSolver, SolverMemory, WorkspaceMemory};
+use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
-use crate::model::fem::time::hands::HandDrive;
-use crate::model::fem::time::rollback::Rollback;
-use crate::model::fem::time::sleeping::Sleep;
-use crate::model::fem::time::step_size::StepSizeController;
-use crate::model::fem::time::time_control::TimeControl;
+use crate::model::fem::state::renew_input;
+use crate::model::fem::system::{Unknowns, WorkBudget};
+use crate::model::fem::time::{HandDrive, Rollback, Sleep, StepSizeController, TimeControl};
 use crate::model::fem::transfer::along_route::cable_along_route;
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
 use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes, thread_pulleys};
-use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, depenetrate};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;

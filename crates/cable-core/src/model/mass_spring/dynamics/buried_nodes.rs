@@ -2,7 +2,7 @@
 
 use crate::error::SolveError;
 use crate::model::Model;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
 /// sign there, and what should push it out would hold it in. A shallow penetration is pushed

@@ -5,8 +5,7 @@ use crate::model::mass_spring::contact_memory::ContactMemory;
 use crate::model::mass_spring::dynamics::Clock;
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::dynamics::supports::SupportDrives;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::remesh;
+use crate::model::mass_spring::mesh::{Mesh, remesh};
 use crate::solution::{Cost, Warning};
 
 part! {

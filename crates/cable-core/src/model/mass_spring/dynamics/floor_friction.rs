@@ -1,7 +1,7 @@
 //! The floor of a plan view brakes the nodes that slide on it.
 
 use crate::model::mass_spring::dynamics::momentum::Account;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s).
 pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut Account, h: f64) {

@@ -7,7 +7,7 @@ use crate::model::mass_spring::dynamics::SubStep;
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};
 use crate::model::mass_spring::forces::reactions;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::solution::Warning;
 
 /// Moves the free ends of all hands that hold supports on for `h` (s).

@@ -3,7 +3,7 @@
 use crate::math::{Vec2, bounded, larger};
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::dynamics::momentum::Account;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
 /// normal impulse and a friction impulse within the Coulomb cone. Inside the cone the

@@ -3,7 +3,7 @@
 //! momentum along.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::solution::MomentumAccount;
 
 /// Impulses since the caller's step began, N s.

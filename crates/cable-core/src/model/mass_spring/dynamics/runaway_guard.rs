@@ -6,7 +6,7 @@
 
 use crate::math::Vec2;
 use crate::model::mass_spring::dynamics::supports::SupportDrives;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::problem::Problem;
 use crate::solution::{Warning, WarningCause};
 

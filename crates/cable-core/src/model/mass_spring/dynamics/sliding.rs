@@ -1,8 +1,7 @@
 //! Material slides over pulleys (see [`crate::model::mass_spring::mesh::pulley`]).
 
 use crate::model::mass_spring::dynamics::SubStep;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::least_straight_length;
+use crate::model::mass_spring::mesh::{Mesh, least_straight_length};
 
 /// Slides the material over all pulleys in a sub-step; friction stops it within the capstan's cone.
 pub(in crate::model::mass_spring) fn slide(mesh: &mut Mesh, SubStep { length_s: h, kick_s: kick }: SubStep) {

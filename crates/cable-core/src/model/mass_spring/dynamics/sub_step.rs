@@ -11,8 +11,7 @@ use crate::model::mass_spring::dynamics::sliding::slide;
 use crate::model::mass_spring::dynamics::supports::HandSettings;
 use crate::model::mass_spring::dynamics::{SubStep, floor_friction, hands, impacts};
 use crate::model::mass_spring::forces::{nodal, tension};
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::release_pulleys;
+use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
 use crate::problem::Problem;
 
 /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is

@@ -5,8 +5,7 @@ use crate::model::Settings;
 use crate::model::hand::Hand;
 use crate::model::mass_spring::dynamics::Clock;
 use crate::model::mass_spring::dynamics::momentum::Account;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::release_pulleys;
+use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
 use crate::model::smoothed_target::{SmoothedTarget, held_warning, is_led};
 use crate::solution::Warning;
 

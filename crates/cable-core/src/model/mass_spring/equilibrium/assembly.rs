@@ -9,7 +9,7 @@ use crate::energy::{Curvature, Energy};
 use crate::math::{Mat2, Vec2};
 use crate::model::mass_spring::equilibrium::system::System;
 use crate::model::mass_spring::forces::bending;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Adds the energy of weight, wind and loads; returns its value, J.
 pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut System, time_s: f64) -> f64 {

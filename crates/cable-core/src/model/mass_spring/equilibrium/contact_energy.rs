@@ -12,7 +12,7 @@ use crate::contact::pairs::Pair;
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
 use crate::model::mass_spring::equilibrium::system::System;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::model::mass_spring::settings::ContactTuning;
 
 /// Friction at one place, frozen for a step.

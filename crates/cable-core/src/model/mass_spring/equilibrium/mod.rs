@@ -18,3 +18,8 @@ pub(in crate::model::mass_spring) mod newton;
 pub(in crate::model::mass_spring) mod quasi_static;
 pub(in crate::model::mass_spring) mod static_rest;
 pub(in crate::model::mass_spring) mod system;
+
+pub(in crate::model::mass_spring) use contact_energy::Anchors;
+pub(in crate::model::mass_spring) use error_estimate::{Estimate, Start};
+pub(in crate::model::mass_spring) use quasi_static::quasi_static_step;
+pub(in crate::model::mass_spring) use static_rest::find_equilibrium;

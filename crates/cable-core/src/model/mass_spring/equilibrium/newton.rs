@@ -18,8 +18,7 @@ use crate::model::mass_spring::equilibrium::assembly;
 use crate::model::mass_spring::equilibrium::contact_energy::{Anchors, Contacts};
 use crate::model::mass_spring::equilibrium::system::System;
 use crate::model::mass_spring::forces::pulley;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::remesh;
+use crate::model::mass_spring::mesh::{Mesh, remesh};
 
 /// Least shift, of EA over the shortest element: some roundings of the diagonal, to which it adds
 /// nothing there, and from which a few failures raise it again.

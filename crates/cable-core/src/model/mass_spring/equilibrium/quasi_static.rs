@@ -3,7 +3,7 @@
 
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::mass_spring::dynamics::chain_state::ChainState;
+use crate::model::mass_spring::dynamics::ChainState;
 use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::static_rest::find_equilibrium;
 use crate::numerics::HalvedSteps;

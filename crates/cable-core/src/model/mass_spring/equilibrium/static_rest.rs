@@ -2,11 +2,11 @@
 
 use crate::error::{NoEquilibrium, SolveError};
 use crate::math::Vec2;
-use crate::model::mass_spring::dynamics::chain_state::ChainState;
+use crate::model::mass_spring::dynamics::ChainState;
 use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::newton::EquilibriumSolver;
 use crate::model::mass_spring::forces::nodal;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Moves the nodes to equilibrium. On an error they are somewhere on the way.
 pub(in crate::model::mass_spring) fn find_equilibrium(

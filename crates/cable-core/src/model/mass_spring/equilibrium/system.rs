@@ -6,7 +6,7 @@ use crate::error::SolveError;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandFactor, BandMatrix};
 use crate::math::{Mat2, Vec2};
 use crate::model::Model;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Gradient and Hessian of the energy, and the factor and step of Newton's method.
 pub(in crate::model::mass_spring) struct System {

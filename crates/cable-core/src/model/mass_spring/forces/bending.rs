@@ -4,7 +4,7 @@
 use crate::energy::Energy;
 use crate::energy::bending::{BendingEnergy, ClampBend};
 use crate::math::Vec2;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::scene::SupportKind;
 
 /// Direction that a clamp gives the cable at a node now.

@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 use crate::model::mass_spring::forces::{bending, pulley};
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Computes the tensions, and all forces but those of supports and contacts.
 pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, time_s: f64) {

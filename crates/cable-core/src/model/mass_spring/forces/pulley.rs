@@ -2,8 +2,7 @@
 //! [`crate::model::mass_spring::mesh::pulley`]).
 
 use crate::math::{Vec2, cross, perp};
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::pulley::{ElementGeometry, angle_of, principal_angle};
+use crate::model::mass_spring::mesh::{ElementGeometry, Mesh, angle_of, principal_angle};
 
 /// Updates what the cable does at all pulleys.
 pub(in crate::model::mass_spring) fn update_all(mesh: &mut Mesh, time_s: f64) {

@@ -2,7 +2,7 @@
 
 use crate::contact::Gap;
 use crate::math::Vec2;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Speed of a supported node, m/s, below which it does not slide on the ground.
 const RESTING_SPEED: f64 = 1e-9;

@@ -2,7 +2,7 @@
 
 use crate::math::larger;
 use crate::model::mass_spring::forces::reactions;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 
 /// Tension at a node, N: the mean of the elements beside it, the greater of both sides of a pulley,
 /// and at a supported end the force that holds it, ground beside it left out.

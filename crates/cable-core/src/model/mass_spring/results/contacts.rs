@@ -6,7 +6,7 @@ use crate::model::Settings;
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::corner_error::wrap;
 use crate::model::mass_spring::forces::reactions;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::model::mass_spring::mesh::Mesh;
 use crate::solution::{ContactReport, ContactSample, ContactState, Cost, Warning, WarningCause};
 
 /// A contact, and the relative uncertainty of the tension beyond it.

@@ -8,8 +8,10 @@
 pub(in crate::model::mass_spring) mod contacts;
 pub(in crate::model::mass_spring) mod nodes;
 
+pub(in crate::model::mass_spring) use contacts::corner_warning;
+
 use crate::math::Vec2;
-use crate::model::mass_spring::dynamics::chain_state::ChainState;
+use crate::model::mass_spring::dynamics::ChainState;
 use crate::solution::{Assumptions, CableSolution, ErrorEstimates};
 use crate::state::State;
 use nodes::NodeReader;

@@ -5,8 +5,7 @@ use crate::math::{Vec2, angle, perp};
 use crate::model::arc_nodes;
 use crate::model::hand::Hand;
 use crate::model::mass_spring::forces::{bending, nodal, reactions};
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::pulley::Pulley;
+use crate::model::mass_spring::mesh::{Mesh, Pulley};
 use crate::solution::{Node, SupportReaction};
 
 /// Tensions of both sides of a point that are the same to this part make one node.

@@ -23,9 +23,7 @@
 //! from the last sub-step, is added.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::least_straight_length;
-use crate::model::mass_spring::mesh::pulley::Pulley;
+use crate::model::mass_spring::mesh::{Mesh, Pulley, least_straight_length};
 
 /// Friction of the material on a pulley in a sub-step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,3 +7,5 @@
 
 pub(in crate::model::mass_spring) mod constraint_solve;
 pub(in crate::model::mass_spring) mod sub_step;
+
+pub(in crate::model::mass_spring) use sub_step::preview;

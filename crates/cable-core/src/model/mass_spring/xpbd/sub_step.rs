@@ -18,16 +18,12 @@ use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
-use crate::model::mass_spring::dynamics::chain_state::ChainState;
-use crate::model::mass_spring::dynamics::floor_friction;
-use crate::model::mass_spring::dynamics::hands;
-use crate::model::mass_spring::dynamics::impacts;
-use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
-use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};
+use crate::model::mass_spring::dynamics::{
+    ChainState, HandSettings, RunawayGuard, SupportDrives, floor_friction, hands, impacts,
+};
 use crate::model::mass_spring::forces::{nodal, pulley, tension};
 use crate::model::mass_spring::integrator::FRAME_S;
-use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-use crate::model::mass_spring::mesh::edit::release_pulleys;
+use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
 use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningCause};

@@ -11,8 +11,7 @@ use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
-use crate::model::spans::section::cable_section::{CableSection, Contact, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableSection, Contact, Failure, SolveContext};
 
 /// Depth that is none, m: what is asked of every answer.
 const DEPTH: f64 = 1e-6;

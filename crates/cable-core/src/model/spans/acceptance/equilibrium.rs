@@ -4,13 +4,10 @@
 
 use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
-use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
-use crate::model::spans::contact::point_load;
-use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::boundary::{ContactPath, SlideResult};
+use crate::model::spans::contact::{point_load, slack_pocket};
 use crate::model::spans::results;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableEquilibrium, CableSection, Contact, EndCondition, Failure, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at

@@ -14,3 +14,7 @@ pub(in crate::model::spans) mod equilibrium;
 pub(in crate::model::spans) mod penetration;
 pub(in crate::model::spans) mod tension_loss;
 pub(in crate::model::spans) mod tunnelling;
+
+pub(in crate::model::spans) use tension_loss::find;
+
+pub(in crate::model::spans) use penetration::Penetration;

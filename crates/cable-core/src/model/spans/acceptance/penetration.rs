@@ -9,7 +9,7 @@ use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
+use crate::model::spans::section::{CableSection, SolveContext};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
 /// branches of a deep catenary is seen from one only.

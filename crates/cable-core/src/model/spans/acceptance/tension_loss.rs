@@ -2,8 +2,7 @@
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableSection, Failure, SolveContext};
 
 /// The kind of loss, its place on the cable (m) and in the plane (m), in the last state that was
 /// found.

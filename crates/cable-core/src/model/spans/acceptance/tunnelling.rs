@@ -4,7 +4,7 @@
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross, larger, smaller};
 use crate::model::spans::acceptance::penetration;
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, SolveContext};
+use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;

@@ -19,7 +19,7 @@
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
 use crate::model::spans::boundary::segment_cursor::Sliding;
-use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
+use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const DIFFERENCE_STEP: f64 = 1e-6;

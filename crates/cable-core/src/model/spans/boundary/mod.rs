@@ -16,3 +16,11 @@ pub(in crate::model::spans) mod curve;
 pub(in crate::model::spans) mod friction_memory;
 pub(in crate::model::spans) mod loose;
 pub(in crate::model::spans) mod segment_cursor;
+
+pub(in crate::model::spans) use capstan::{CableLaw, ContactPath, SlideResult};
+pub(in crate::model::spans) use curve::{BoundaryPoint, ChainRange, Curve, PieceShape, SUPPORT_CONTACT_DISTANCE_M};
+pub(in crate::model::spans) use friction_memory::{
+    Breakpoint, Ends, Mode, SlipFront, StickZone, SweepDirection, TensionProfile,
+};
+pub(in crate::model::spans) use loose::{BearingEdge, Heap, Loose, LyingStretch, SlackForm, SlackPart};
+pub(in crate::model::spans) use segment_cursor::{CachedPiece, SegmentCursor};

@@ -1,8 +1,8 @@
 //! A cycle of changes is found where a section comes back to contacts that it had: from there the
 //! same changes would follow again.
 
-use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::section::cable_section::{CableSection, Contact};
+use crate::model::spans::boundary::Mode;
+use crate::model::spans::section::{CableSection, Contact};
 
 /// Contacts are the same that lie alike within this part of the cable's length. Smaller: rounding
 /// hides a cycle. Larger: changes that converge are taken for one.
@@ -56,9 +56,8 @@ fn are_alike(a: &Contact, b: &Contact, within: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::spans::boundary::curve::ChainRange;
-    use crate::model::spans::boundary::friction_memory::{Ends, TensionProfile};
-    use crate::model::spans::section::cable_section::Connection;
+    use crate::model::spans::boundary::{ChainRange, Ends, TensionProfile};
+    use crate::model::spans::section::Connection;
 
     /// A section of 10 m with a contact from each arc length on, m.
     fn section(from: &[f64]) -> CableSection {

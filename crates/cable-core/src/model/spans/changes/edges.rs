@@ -2,8 +2,8 @@
 //! across it.
 
 use crate::math::{Vec2, smaller};
-use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
+use crate::model::spans::boundary::{ChainRange, Curve};
+use crate::model::spans::section::{CableSection, SolveContext};
 
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.

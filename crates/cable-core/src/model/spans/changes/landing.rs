@@ -3,17 +3,13 @@
 use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
-use crate::model::spans::acceptance::penetration;
-use crate::model::spans::acceptance::penetration::Penetration;
-use crate::model::spans::acceptance::tunnelling;
-use crate::model::spans::boundary::curve::{ChainRange, SUPPORT_CONTACT_DISTANCE_M};
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::acceptance::{Penetration, penetration, tunnelling};
+use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, TensionProfile};
 use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::changes::load_landing;
 use crate::model::spans::contact::release_below;
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
 
 /// Depth inside an obstacle from which a span touches it, of the section: points nearer than that
 /// are one.

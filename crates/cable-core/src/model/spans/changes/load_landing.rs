@@ -3,12 +3,11 @@
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFT_FRACTION;
-use crate::model::spans::section::cable_section::{
-    CableSection, Connection, Contact, EndCondition, RestingLoad, SolveContext,
+use crate::model::spans::boundary::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::contact::LIFT_FRACTION;
+use crate::model::spans::section::{
+    CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
 };
-use crate::model::spans::section::failure::Failure;
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,8 @@
 //! Two neighbouring contacts of one chain become one.
 
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::{ContactPath, Mode};
 use crate::model::spans::contact::release_below;
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
+use crate::model::spans::section::{CableSection, SolveContext};
 
 /// Merges two neighbouring contacts of one chain. Returns whether there were any.
 pub(super) fn merge_contacts(section: &mut CableSection, context: &SolveContext) -> bool {

@@ -27,14 +27,10 @@ use crate::model::spans::changes::edges::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
 use crate::model::spans::changes::release::{lifted_wheel, release_turned_contact, release_vanishing_contact};
-use crate::model::spans::contact::kink_load;
-use crate::model::spans::contact::point_load;
-use crate::model::spans::contact::release_below;
-use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::contact::{kink_load, point_load, release_below, slack_pocket};
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Converged, Workspace};
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableSection, Failure, SolveContext};
 
 /// Solves a section with the contacts that belong to its answer.
 ///

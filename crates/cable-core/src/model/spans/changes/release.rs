@@ -1,8 +1,7 @@
 //! Contacts are released that would have to pull, or that have vanished.
 
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Mode, TensionProfile};
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::boundary::{Breakpoint, Mode, TensionProfile};
+use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
 
 /// Extent (m or rad) by which the interval of a contact has turned round when it is released:
 /// rounding of a contact in a point.

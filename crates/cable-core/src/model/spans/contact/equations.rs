@@ -13,9 +13,7 @@
 //! have the same tension, so that moving it changes nothing.
 
 use crate::math::larger;
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::friction_memory::{Ends, Mode, SlipFront, StickZone, TensionProfile};
+use crate::model::spans::boundary::{BoundaryPoint, ContactPath, Ends, Mode, SlipFront, StickZone, TensionProfile};
 
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

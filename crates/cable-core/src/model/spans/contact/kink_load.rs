@@ -6,10 +6,9 @@
 //! rest on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Mode, TensionProfile};
+use crate::model::spans::boundary::{Breakpoint, Mode, TensionProfile};
 use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
-use crate::model::spans::section::cable_section::{CableSection, Contact, Kink, RestingLoad, SolveContext};
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{CableSection, Contact, Failure, Kink, RestingLoad, SolveContext};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
 const CHAIN_END_ROUNDING: f64 = 1e-12;

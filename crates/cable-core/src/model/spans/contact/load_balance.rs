@@ -1,7 +1,7 @@
 //! The forces on a dead load that lies on a boundary, see `point_load`.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
+use crate::model::spans::section::{CableSection, EndCondition, SolveContext};
 
 /// Forces on a load.
 #[derive(Clone, Copy, Debug)]

@@ -19,3 +19,8 @@ pub(in crate::model::spans) mod release_below;
 pub(in crate::model::spans) mod slack_pocket;
 pub(in crate::model::spans) mod support_contact;
 pub(in crate::model) mod wheel_friction;
+
+pub(in crate::model::spans) use load_balance::load_balance;
+pub(in crate::model::spans) use point_load::LIFT_FRACTION;
+pub(in crate::model::spans) use support_contact::place;
+pub(in crate::model) use wheel_friction::{CableProperties, WheelEnds, WheelFriction};

@@ -17,15 +17,13 @@
 use crate::catenary::PointForce;
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_balance::load_balance;
-use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
-use crate::model::spans::section::cable_section::{
-    CableSection, Connection, Contact, EndCondition, RestingLoad, SolveContext,
+use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
+use crate::model::spans::section::{
+    CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
 };
-use crate::model::spans::section::failure::Failure;
 
 /// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger:
 /// creep.

@@ -6,10 +6,9 @@
 //! about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one
 //! post with a bottom between them are two until they meet.
 
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::friction_memory::{Ends, Mode, TensionProfile};
-use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, SolveContext};
+use crate::model::spans::boundary::{ContactPath, Ends, Mode, TensionProfile};
+use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
+use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than
 /// what the check lets pass: contacts that it refuses are not parted.

@@ -16,7 +16,7 @@
 //! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, SolveContext};
+use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
 /// A pocket opens when material is short by this part of the section. Smaller: rounding opens it.
 /// Larger: the cable there is too short by as much.

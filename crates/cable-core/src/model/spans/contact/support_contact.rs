@@ -1,8 +1,8 @@
 //! A support may come to lie on a boundary, slide along it, or lift the cable off it.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
-use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
+use crate::model::spans::boundary::SUPPORT_CONTACT_DISTANCE_M;
+use crate::model::spans::section::{CableSection, EndCondition, SolveContext};
 
 /// Moves an end that is held to `at`, m.
 pub(in crate::model::spans) fn place(section: &mut CableSection, context: &SolveContext, side: usize, at: Vec2) {

@@ -6,9 +6,9 @@
 //! directions and moves no material.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
-use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, StickZone, TensionProfile};
+use crate::model::spans::boundary::{
+    Breakpoint, CableLaw, ChainRange, ContactPath, Curve, Ends, Mode, StickZone, TensionProfile,
+};
 use crate::model::spans::contact::equations;
 
 /// A wheel is one arc.

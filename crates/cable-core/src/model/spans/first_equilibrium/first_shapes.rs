@@ -16,7 +16,7 @@
 //! - **Posts as polygons.** A cable that nothing but friction holds may pass between the points
 //!   that stand for a post: more points, for it alone ([`posts_seen_nearer`]).
 
-use crate::model::spans::initial::shortest_path::{POST_POLYGONS, PostPolygon};
+use crate::model::spans::initial::{POST_POLYGONS, PostPolygon};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::settings::ContinuationSettings;
 

@@ -2,15 +2,12 @@
 //! again step by step once it has an equilibrium.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::boundary::{Loose, Mode};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
 use crate::model::spans::initial::{contacts, tightening};
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 

@@ -4,9 +4,7 @@
 use crate::model::spans::contact::point_load;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::CableSection;
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection};
 use crate::model::spans::section_layout::SectionLayout;
 
 /// Part of the friction that is missing to which it is found: three digits are shown.

@@ -16,17 +16,14 @@ mod multiple_equilibria;
 pub(super) use first_shapes::{FirstShape, shapes_with_friction};
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::Mode;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{
     FIRST_SHAPES, FirstFriction, FirstLength, SlackCable, posts_seen_nearer,
 };
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::CableSection;
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;

@@ -8,9 +8,7 @@ use crate::math::{bounded, larger, smaller};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::initial::contacts;
 use crate::model::spans::newton::{self, Workspace};
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
 use crate::model::spans::section_layout::SectionLayout;
 
 /// Factor of the drag after a step that failed.

@@ -3,16 +3,13 @@
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
-use crate::model::spans::boundary::curve::ChainRange;
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFT_FRACTION;
+use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, TensionProfile};
+use crate::model::spans::contact::LIFT_FRACTION;
 use crate::model::spans::initial::material::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
-use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
-use crate::model::spans::initial::tightening;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::initial::{shortest_path, tightening};
+use crate::model::spans::section::{BoundaryConditions, CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 

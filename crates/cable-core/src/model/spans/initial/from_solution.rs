@@ -8,12 +8,11 @@
 //! cone.
 
 use crate::math::{Vec2, cross, perp};
-use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
-use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, SweepDirection, TensionProfile};
-use crate::model::spans::contact::point_load::LIFT_FRACTION;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::boundary::{
+    Breakpoint, ChainRange, Curve, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, SweepDirection, TensionProfile,
+};
+use crate::model::spans::contact::LIFT_FRACTION;
+use crate::model::spans::section::{BoundaryConditions, CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 

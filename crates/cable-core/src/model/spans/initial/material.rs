@@ -1,9 +1,8 @@
 //! These functions lay the material of a cable along its taut string.
 
 use crate::math::smaller;
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, TensionProfile};
-use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
+use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, TensionProfile};
+use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 
 /// Rounds of moving a free end to where the material ends. What is off is in each the strain times
 /// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.

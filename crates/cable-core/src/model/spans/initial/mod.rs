@@ -16,3 +16,6 @@ pub(in crate::model::spans) mod material;
 pub(in crate::model::spans) mod route;
 pub(in crate::model::spans) mod shortest_path;
 pub(in crate::model::spans) mod tightening;
+
+pub(in crate::model::spans) use route::section_route;
+pub(in crate::model::spans) use shortest_path::{POST_POLYGONS, PostPolygon};

@@ -3,7 +3,7 @@
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::BoundaryConditions;
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear

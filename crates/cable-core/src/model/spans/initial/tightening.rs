@@ -1,8 +1,8 @@
 //! This module lays a section along its shortest path.
 
-use crate::model::spans::boundary::friction_memory::TensionProfile;
+use crate::model::spans::boundary::TensionProfile;
 use crate::model::spans::initial::material::{measure, spread};
-use crate::model::spans::section::cable_section::{CableSection, Contact, SolveContext};
+use crate::model::spans::section::{CableSection, Contact, SolveContext};
 
 /// Length of the taut string through what it touches, m.
 pub(in crate::model::spans) fn taut_length(section: &CableSection, context: &SolveContext) -> f64 {

@@ -2,14 +2,9 @@
 
 use crate::linalg::PivotingBand;
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::segment_cursor::CachedPiece;
-use crate::model::spans::contact::equations;
-use crate::model::spans::contact::load_balance::load_balance;
-use crate::model::spans::contact::point_load;
-use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
+use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode};
+use crate::model::spans::contact::{equations, load_balance, point_load};
+use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 
 /// A row sees the unknowns of its contact and of both spans beside it: four on either side.
 type Band = PivotingBand<4, 13>;

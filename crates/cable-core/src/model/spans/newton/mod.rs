@@ -26,16 +26,15 @@ pub(in crate::model::spans) mod stability;
 #[cfg(test)]
 mod tests;
 
+pub(in crate::model::spans) use slip_predictor::predict_slip;
+
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::friction_memory::{Mode, StickZone, TensionProfile};
-use crate::model::spans::contact::equations;
-use crate::model::spans::contact::point_load;
+use crate::model::spans::boundary::{ContactPath, Mode, StickZone, TensionProfile};
+use crate::model::spans::contact::{equations, point_load};
 use crate::model::spans::newton::jacobian::{System, assemble, gather, has_tension_unknown, pinned, renew, scatter};
 use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::{CableSection, SolveContext};
+use crate::model::spans::section::{BoundaryConditions, CableSection, SolveContext};
 
 /// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times
 /// EA/T.

@@ -20,11 +20,8 @@
 //! there and judges each contact again.
 
 use crate::math::{Vec2, angle, exp, larger};
-use crate::model::spans::boundary::capstan::ContactPath;
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::friction_memory::{Ends, Mode};
-use crate::model::spans::boundary::segment_cursor::CachedPiece;
-use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
+use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Ends, Mode};
+use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::settings::SlipSettings;
 
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the

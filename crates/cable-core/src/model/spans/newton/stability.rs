@@ -1,8 +1,8 @@
 //! This check finds whether an equilibrium is stable.
 
-use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::Mode;
 use crate::model::spans::newton::{Workspace, assemble, has_tension_unknown};
-use crate::model::spans::section::cable_section::{CableSection, Connection, EndCondition, SolveContext};
+use crate::model::spans::section::{CableSection, Connection, EndCondition, SolveContext};
 
 /// True if a balance without friction is stable: it returns after a disturbance.
 ///

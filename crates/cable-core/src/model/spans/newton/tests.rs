@@ -1,7 +1,5 @@
 use crate::model::spans::newton::*;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::CableEquilibrium;
-use crate::model::spans::section::cable_section::Connection;
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Connection};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout};
 use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};

@@ -10,10 +10,9 @@ use std::sync::Arc;
 
 use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
-use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
-use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Mode, StickZone, TensionProfile};
-use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::boundary::{
+    CableLaw, ChainRange, ContactPath, Curve, Ends, Loose, Mode, StickZone, TensionProfile,
+};
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
 

@@ -9,3 +9,9 @@
 pub(in crate::model::spans) mod boundary_conditions;
 pub(in crate::model::spans) mod cable_section;
 pub(in crate::model::spans) mod failure;
+
+pub(in crate::model::spans) use boundary_conditions::BoundaryConditions;
+pub(in crate::model::spans) use cable_section::{
+    CableEquilibrium, CableSection, Connection, Contact, EndCondition, Kink, RestingLoad, SolveContext,
+};
+pub(in crate::model::spans) use failure::Failure;

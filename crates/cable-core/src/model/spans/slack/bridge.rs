@@ -13,7 +13,7 @@
 //! falls plumb it rises beyond all bounds.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::loose::{SlackForm, SlackPart};
+use crate::model::spans::boundary::{SlackForm, SlackPart};
 use crate::model::spans::slack::drape::{HALVINGS, SlackSolver};
 use crate::model::spans::slack::joint::StretchTensions;
 use crate::numerics::bisect;

@@ -2,8 +2,7 @@
 //! both sides as in a cable that slides down there.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::capstan::SlideResult;
-use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::boundary::{LyingStretch, SlackForm, SlackPart, SlideResult};
 use crate::model::spans::slack::drape::{HALVINGS, SlackSolver, plumb};
 use crate::numerics::bisect;
 

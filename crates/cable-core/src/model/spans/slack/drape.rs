@@ -2,10 +2,8 @@
 //! cable under tension would bridge.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::capstan::SlideResult;
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult};
+use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 

@@ -5,9 +5,8 @@
 //! else the edge it rests on carries it within its friction cone.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::curve::BoundaryPoint;
-use crate::model::spans::boundary::loose::{BearingEdge, Heap, LyingStretch, SlackForm, SlackPart};
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::{BearingEdge, BoundaryPoint, Heap, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::Frame;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.

@@ -18,7 +18,7 @@
 //! is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::boundary::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::drape::{HALVINGS, LooseShapes, STRAIGHT_TURN, SlackSolver};
 use crate::numerics::bisect;
 

@@ -9,10 +9,9 @@
 //! hangs plumb. The sum over all of them bounds the stretched cable.
 
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::loose::SlackForm;
-use crate::model::spans::initial::route::section_route;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::SlackForm;
+use crate::model::spans::initial::section_route;
+use crate::model::spans::section::{BoundaryConditions, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::drape::{LooseShapes, SlackSolver};
@@ -76,7 +75,7 @@ fn goes_one_way(route: &[Vec2], frame: Frame) -> bool {
 mod tests {
     use super::*;
     use crate::model::spans::newton::Workspace;
-    use crate::model::spans::section::cable_section::{CableEquilibrium, Connection};
+    use crate::model::spans::section::{CableEquilibrium, Connection};
     use crate::model::spans::slack::tests::catalogue_with_lengths;
 
     #[test]

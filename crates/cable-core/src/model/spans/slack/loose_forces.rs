@@ -1,8 +1,8 @@
 //! A loose cable pulls at its ends and presses on what carries it; some of it hangs, and some lies.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::{Loose, SlackForm, SlackPart};
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::{Loose, SlackForm, SlackPart};
+use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 
 impl Loose {

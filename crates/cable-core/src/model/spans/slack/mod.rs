@@ -48,10 +48,9 @@ mod report;
 mod upper_surfaces;
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::initial::route::section_route;
-use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
+use crate::model::spans::boundary::Loose;
+use crate::model::spans::initial::section_route;
+use crate::model::spans::section::{BoundaryConditions, CableSection, EndCondition, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::drape::SlackSolver;

@@ -2,7 +2,7 @@
 //! or into a heap.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::{SlackForm, SlackPart};
+use crate::model::spans::boundary::{SlackForm, SlackPart};
 use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::heap;
 use crate::model::spans::slack::upper_surfaces::NONE_M;

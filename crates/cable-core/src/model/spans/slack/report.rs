@@ -3,8 +3,8 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::model::spans::boundary::loose::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
@@ -102,7 +102,7 @@ impl SlackPart {
                     - context.law.load * (self.arc_lengths[1] - self.arc_lengths[0])
             }
             SlackForm::Heap(heap) => {
-                heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::BearingEdge::force).sum()
+                heap.edges.iter().flatten().map(crate::model::spans::boundary::BearingEdge::force).sum()
             }
         }
     }

@@ -3,8 +3,8 @@
 //! All coordinates are in the frame of the load: u across it, v against it.
 
 use crate::math::{Vec2, cross, larger, perp, smaller};
-use crate::model::spans::boundary::curve::{Curve, PieceShape};
-use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::boundary::{Curve, PieceShape};
+use crate::model::spans::section::SolveContext;
 
 /// A boundary that faces the load with less than this part of itself is a wall: the cable hangs
 /// beside it.

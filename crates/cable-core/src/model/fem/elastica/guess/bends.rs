@@ -4,7 +4,7 @@
 use crate::math::{cross, perp};
 use crate::model::fem::elastica::boundary_value::{ANGLE, ARC, End, Joint, MOMENT, Piece, STATES, force, tangent};
 use crate::model::fem::elastica::guess::ElasticaGuess;
-use crate::model::fem::free::beam::equilibrium::nearest_turn;
+use crate::model::fem::free::nearest_turn;
 
 /// The end of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,8 +7,8 @@ use crate::model::fem::elastica::boundary_value::{Contact, Joint, Owner};
 use crate::model::fem::elastica::chain::ChainContact;
 use crate::model::fem::elastica::flexible_answer::{MobilisedFriction, mobilised_friction};
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
-use crate::model::fem::free::stations::place as support_place;
-use crate::model::fem::mesh::sliding_node::round_of;
+use crate::model::fem::free::place as support_place;
+use crate::model::fem::mesh::round_of;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 

@@ -12,7 +12,7 @@
 //! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::mean_factor;
+use crate::model::fem::mesh::mean_factor;
 use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;
 

@@ -175,7 +175,7 @@ pub(in crate::model::spans) struct ContactPath<'a> {
     pub law: CableLaw,
     /// μ.
     pub friction: f64,
-    /// See [`SolveContext`](crate::model::spans::section::cable_section::SolveContext).
+    /// See [`SolveContext`](crate::model::spans::section::SolveContext).
     pub drag: f64,
     /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.
