@@ -117,7 +117,7 @@ pub struct InertiaEntry {
     /// Over the square root of gravity times length; null without gravity.
     pub froude_number: Option<f64>,
     /// True if a run without inertia differs by more than the tolerance or has no answer; null
-    /// where none goes beside this one, or where the error of this one hides it.
+    /// where none goes beside this one, or where it is not clear.
     pub matters: Option<bool>,
 }
 

@@ -236,7 +236,6 @@ impl Timeline {
         (self.inertia == Inertia::Dynamic).then(|| InertiaEffect {
             numbers: self.monitor.motion_numbers(),
             without: self.monitor.next_cheaper(),
-            run_error: self.monitor.relative_error(),
             tolerance: self.simulation.settings().tolerance,
         })
     }

@@ -14,7 +14,7 @@ impl Sentence for InertiaEffect {
         let verdict = match self.matters() {
             Some(true) => "inertia matters",
             Some(false) => "inertia does not matter",
-            None => "the error of this run hides whether inertia matters",
+            None => "it is not clear whether inertia matters",
         };
         let tolerance = format!("{:.1e}", self.tolerance);
         format!("{mach}{froude}: {verdict} at tolerance {tolerance} ({})", without.sentence(units))
