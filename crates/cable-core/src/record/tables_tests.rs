@@ -90,8 +90,8 @@ proptest! {
         let account = [6, 14, 15].map(|k| (history.extras[k].name, history.extras[k].values[0].to_bits()));
         let bits = f64::to_bits;
         let unaccounted = s.energy_account().unwrap().unaccounted_j();
-        prop_assert_eq!(account[0], ("supports_work_j", bits(values[0])));
-        prop_assert_eq!(account[1], ("exchanged_energy_j", bits(values[1])));
+        prop_assert_eq!(account[0], ("supports_work_j", bits(values[1])));
+        prop_assert_eq!(account[1], ("exchanged_energy_j", bits(values[2])));
         prop_assert_eq!(account[2], ("unaccounted_energy_j", bits(unaccounted)));
         let events = read_events(e.as_slice()).unwrap();
         prop_assert_eq!(&events[0].cause, &s.warnings[0].cause);
