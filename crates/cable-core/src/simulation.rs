@@ -538,6 +538,8 @@ impl Simulation {
             segments: None,
             inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
             histories: false,
+            // What runs beside another only says how far off that is.
+            energy_account: self.settings.energy_account && times >= 1.0,
             ..self.settings
         };
         let source = match &self.source {

@@ -277,6 +277,20 @@ fn random(seed: u64) -> Scene {
 }
 
 #[test]
+fn without_an_account_the_motion_is_the_same_to_the_bit() {
+    let scene = random(3);
+    let [with, without] = [true, false].map(|energy_account| {
+        let settings = Settings { energy_account, ..Settings::default() };
+        let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, settings).expect("a sound scene");
+        sim.settle().expect("it rests");
+        (0..60).for_each(|_| sim.step(1.0 / 240.0).expect("a step"));
+        sim.solution().cables.remove(0)
+    });
+    assert!(with.energy_account.is_some() && without.energy_account.is_none());
+    assert_eq!(with.nodes, without.nodes);
+}
+
+#[test]
 fn random_scenes_close() {
     let (mut worst, mut count) = (0.0, 0);
     let only = std::env::var("SEED").ok().and_then(|s| s.parse::<u64>().ok());

@@ -33,6 +33,11 @@ pub struct Settings {
     /// as the first one. No figure of the answer depends on it.
     #[serde(default = "yes")]
     pub histories: bool,
+    /// True if `fem` keeps the energy account of a cable in motion
+    /// ([`crate::solution::CableSolution::energy_account`]): 7 to 10 % of the instructions of an
+    /// inner step. No other figure depends on it.
+    #[serde(default = "yes")]
+    pub energy_account: bool,
     /// True if a cable breaks where its tension reaches its breaking tension; a whole one is only
     /// warned of else.
     #[serde(default = "yes")]
@@ -57,6 +62,7 @@ impl Default for Settings {
             hand_speed_m_per_s: hand_speed(),
             hand_stiffness_n_per_m: None,
             histories: true,
+            energy_account: true,
             breaks: true,
         }
     }

@@ -48,6 +48,8 @@ pub struct Dynamics {
     pub(super) rollback: Rollback,
     /// True if it has come to rest, or moves from a state that did.
     pub(super) rested: bool,
+    /// True if an energy account is kept.
+    pub(super) accounts_energy: bool,
 }
 
 impl Dynamics {
@@ -227,18 +229,24 @@ impl Dynamics {
         }
     }
 
-    /// One step of `h` (s) with inertia.
-    pub(in crate::model::fem) fn dynamic_step(
-        &mut self,
-        h: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<Converged, Failure> {
+    /// Begins a step of the energy account; returns the energy that the cable has.
+    fn begin_energy_account(&mut self) -> Energy {
         let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
         let mut energies = self.cable.motion.energies;
         let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
         self.cable.motion.energies = energies;
         let motion = &self.cable.motion;
         self.solver.ways.begin(&motion.positions, &motion.velocities, &self.cable.answers.reaction);
+        before
+    }
+
+    /// One step of `h` (s) with inertia.
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let before = self.accounts_energy.then(|| self.begin_energy_account());
         let weights = self.begin_step(h, dragged);
         let a = weights.rate;
         let (mut unknowns, exact) =
@@ -262,8 +270,10 @@ impl Dynamics {
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
         let slid = MovingMass::of(&self.cable).sliding_momentum();
-        self.solver.ways.end(&unknowns.positions);
-        let work = work_in_step(&self.cable, &unknowns, &self.solver);
+        let work = before.map(|before| {
+            self.solver.ways.end(&unknowns.positions);
+            (before, work_in_step(&self.cable, &unknowns, &self.solver))
+        });
         loss_memory::relax(&mut self.cable, h, &unknowns.positions);
         self.cable.commit_contacts(&unknowns);
         self.move_to(&unknowns, weights);
@@ -271,11 +281,13 @@ impl Dynamics {
         account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
-        let after = match work.stored() {
-            Some(rest) => Energy { kinetic_j: kinetic_energy_of_step(&self.cable, a), ..rest },
-            None => stored_energy(&self.cable),
-        };
-        self.cable.motion.energies.add(&work.between(before, after), after);
+        if let Some((before, work)) = &work {
+            let after = match work.stored() {
+                Some(rest) => Energy { kinetic_j: kinetic_energy_of_step(&self.cable, a), ..rest },
+                None => stored_energy(&self.cable),
+            };
+            self.cable.motion.energies.add(&work.between(*before, after), after);
+        }
         results::gauge_tension(&mut self.cable);
         let cable = &self.cable;
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
@@ -283,17 +295,19 @@ impl Dynamics {
         self.time_control.step_size.observe(&self.cable, h);
         plastic_impact::land_on_obstacles(&mut self.cable, h, a, &self.solver.ways);
         plastic_impact::land_on_itself(&mut self.cable, h, a, &self.solver.ways);
-        if !self.cable.meshing.was_contact_free {
-            self.cable.motion.energies.land(kinetic_energy(&self.cable));
+        if self.accounts_energy {
+            if !self.cable.meshing.was_contact_free {
+                self.cable.motion.energies.land(kinetic_energy(&self.cable));
+            }
+            self.cable.motion.energies.end_step();
         }
-        self.cable.motion.energies.end_step();
         let momentum = MovingMass::of(&self.cable).momentum();
         self.cable.motion.account.close(self.cable.motion.time, momentum);
         self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {
             self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
             let changed = remesh(&mut self.cable, Inertia::Dynamic);
-            if changed != Remeshed::default() {
+            if self.accounts_energy && changed != Remeshed::default() {
                 self.cable.motion.energies.edit(stored_energy(&self.cable));
                 self.cable.motion.energies.end_step();
             }

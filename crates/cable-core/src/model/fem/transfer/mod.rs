@@ -69,6 +69,7 @@ impl Dynamics {
                 hand_targets: Vec::new(),
             },
             rested: false,
+            accounts_energy: settings.energy_account,
             cable,
         })
     }
