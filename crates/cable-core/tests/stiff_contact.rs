@@ -713,7 +713,10 @@ fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
                 "{part}: {} N",
                 contact.tension_after_n
             );
-            assert!(tension > 0.0 && lies < turn, "{part}: {lies}");
+            // Where its stiffness takes less than the tolerance of its tension it rests as a
+            // flexible cable does, which lies on all of the turn.
+            let flexible = 2.0 * loss < Settings::default().tolerance * pull;
+            assert!(tension > 0.0 && lies < if flexible { turn + 1e-6 } else { turn }, "{part}: {lies}");
         } else {
             assert_eq!(contact.begins_m, contact.ends_m, "{part}");
             let tension = contact.tension_after_n + 0.5 * ei * bend * bend;
