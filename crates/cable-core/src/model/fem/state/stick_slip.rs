@@ -64,7 +64,7 @@ impl TriedExponents {
         if self.0.len() <= k {
             self.0.resize(k + 1, None);
         }
-        let before = std::mem::replace(&mut self.0[k], Some([used, asked]));
+        let before = self.0[k].replace([used, asked]);
         let slope = before.map_or(f64::NAN, |[x, g]| (asked - g) / (used - x));
         if slope.is_finite() && slope < MAX_EXPONENT_SLOPE {
             larger(used + (asked - used) / (1.0 - slope), 0.0)
