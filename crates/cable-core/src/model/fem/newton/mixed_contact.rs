@@ -21,10 +21,11 @@ use crate::model::fem::system::{ContactSet, Converged, Failure, Mesh, StepContex
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
 
-/// Iterations after which it is asked of an answer whether it lies below its start. Fewer: the
-/// energy of steps that no start can miss is worked out twice more. More: what strayed is believed.
-/// Of 90 000 steps of violent scenes 1 in 30 000 lay above, after 25 iterations.
-const UNDOUBTED_ITERATIONS: usize = 8;
+/// Iterations above which an answer is asked whether its energy is below that of its start. Fewer:
+/// two assemblies more in steps that converge at once. More: another local minimum is believed. Of
+/// 89 489 undamped solves in 100 violent scenes none that took more than one iteration ended above
+/// its start by more than supports gave; scene 20330 has one that did, after 25.
+const MAX_UNCHECKED_ITERATIONS: usize = 8;
 
 /// Part of the sliding at which friction changes from holding to slipping that counts as none: of
 /// friction as much.
@@ -54,7 +55,7 @@ impl Workspace {
         }
         let found = self.undamped_newton(step, SelfTouch::Avoid, unknowns);
         if let Some(done) = found
-            && !(done.iterations > UNDOUBTED_ITERATIONS && self.lies_above_start(step, unknowns))
+            && !(done.iterations > MAX_UNCHECKED_ITERATIONS && self.raises_energy(step, unknowns))
         {
             return Ok(done);
         }
@@ -64,7 +65,7 @@ impl Workspace {
         }
         let mut undamped = self.mixed.undamped_iterations;
         let mut done = self.minimise_by_line_search(step, unknowns);
-        if self.mixed.near_enough && (done.is_err() || self.lies_above_start(step, unknowns)) {
+        if self.mixed.near_enough && (done.is_err() || self.raises_energy(step, unknowns)) {
             self.go_back(unknowns);
             done = self.minimise_by_line_search(step, unknowns);
         }
@@ -102,10 +103,10 @@ impl Workspace {
     }
 
     /// True if Φ is greater at `unknowns` than where the step began, by more than supports can have
-    /// given. Down from its start a step leads to no such place: what found it strayed into another
-    /// valley. (A cable of 100 N that was whipped round the edge of a beam had 2.9 kN and four
+    /// given. No descent from the start leads there: the iteration found another local minimum. (A
+    /// cable of 100 N that was whipped round the edge of a beam had 2.9 kN and four
     /// times the kinetic energy at the end of such a step.)
-    fn lies_above_start(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> bool {
+    fn raises_energy(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> bool {
         let begun = std::mem::take(&mut self.mixed.begun);
         let at_start = self.assemble(step, &begun, Curvature::Exact);
         let noise = ENERGY_NOISE * self.magnitude.abs();

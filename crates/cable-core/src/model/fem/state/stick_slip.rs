@@ -52,9 +52,9 @@ const MAX_EXPONENT_SLOPE: f64 = 0.9;
 /// The exponents with which sliding nodes were tried last, and those that their turns asked for
 /// then.
 ///
-/// The next guess is the secant's (A. Steffensen, "Remarks on iteration", Scandinavian Actuarial
-/// Journal 1933, node by node): nearly slack bars hang from a round, and turn over it by the more
-/// the less they pull, so that the exponent itself goes to and fro.
+/// The next guess is the secant's (J. F. Steffensen, "Remarks on iteration", Skandinavisk
+/// Aktuarietidskrift 16, 1933, node by node): nearly slack bars hang from a round, and turn over it
+/// by the more the less they pull, so that the exponent itself goes to and fro.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TriedExponents(Vec<Option<[f64; 2]>>);
 
@@ -112,9 +112,9 @@ pub(in crate::model::fem) fn update_stick_slip(
         let mut next = node;
         let inertia =
             cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
-        // What would push where it leaves has no tension that friction could raise: with that
-        // tension friction goes to nothing. (What pulls where it comes is found in the step: with
-        // a test of it friction came and went in one jump, and no state was lawful.)
+        // Friction goes to nothing with the tension that it raises, and a bar that would push has
+        // none. (The pull with which the cable comes is a result of the step: with a test of it
+        // friction came and went in one jump, and no state was lawful.)
         let turn = load.turn_with(inertia);
         let presses = turn > 0.0 && load.at_material[1] > 0.0;
         let exponent = if presses { node.friction * turn } else { 0.0 };
