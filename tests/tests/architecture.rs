@@ -315,7 +315,7 @@ fn wings_of_a_model_see_only_each_others_entrances() {
             if !is_wing || *name == entrance || name.starts_with(&format!("{entrance}::")) {
                 continue;
             }
-            // What the path names of the wing's modules, one in another.
+            // The modules of the wing that the path names, one in another.
             let rooms = (4..=path.len()).take_while(|n| all.contains_key(&path[..*n].join("::"))).count();
             if rooms > 0 && path.len() > 3 + rooms {
                 wrong.insert(format!("{name}: {}", path.join("::")));

@@ -41,7 +41,8 @@ pub struct Answer<'a> {
     /// The greatest tensions of the run so far and their errors, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
-    /// How fast the run is so far, and whether masses matter in it; of one with inertia only.
+    /// Mach and Froude numbers of the run so far, and whether masses matter in it; only with
+    /// inertia.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inertia: Option<InertiaEntry>,
     /// The energy of each cable since it began to move, and the work of each kind of force.
@@ -173,7 +174,7 @@ pub struct Figures {
     pub bending: Vec<NeglectedBending>,
     /// The greatest tensions of a run so far, one a cable.
     pub run_peaks: Vec<RunPeaksEntry>,
-    /// How fast the motion is, and what it would be without inertia.
+    /// Mach and Froude numbers of the motion, and its difference from one without inertia.
     pub inertia: Option<InertiaEffect>,
     /// The answers of other models and meshes, where they were asked for.
     pub compared: Vec<ComparedEntry>,

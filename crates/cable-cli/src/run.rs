@@ -93,7 +93,7 @@ struct RunTotals {
     /// Of the cable that is pulled hardest.
     peaks: RunPeaks,
     relative_error: Option<f64>,
-    /// How fast the motion is, and what it would be without inertia.
+    /// Mach and Froude numbers of the motion, and its difference from one without inertia.
     inertia: Option<InertiaEffect>,
     /// True if errors were asked for.
     errors_asked: bool,

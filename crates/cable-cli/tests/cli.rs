@@ -475,7 +475,7 @@ fn run_writes_the_work_on_the_robot() {
     assert_eq!(older.time_s, history.time_s);
 }
 
-/// What a run neglects of bending is said once, of its first rest.
+/// A run says once, of its first rest, which bending it neglects.
 #[test]
 fn run_says_once_what_its_first_rest_neglects_of_bending() {
     let folder = tempfile::tempdir().unwrap();

@@ -102,7 +102,7 @@ enum RunPhase {
     InMotion,
 }
 
-/// What several steps say together.
+/// The reports of several steps, summed.
 struct StepSum {
     report: StepReport,
     /// Of each cable.
@@ -538,7 +538,7 @@ impl Simulation {
             segments: None,
             inner_step_s: Some(self.settings.inner_step_s.unwrap_or(STEP_S) / times),
             histories: false,
-            // What runs beside another only says how far off that is.
+            // A run beside another only serves as a measure of its error.
             energy_account: self.settings.energy_account && times >= 1.0,
             ..self.settings
         };

@@ -87,7 +87,7 @@ impl TimeDebt {
         steps
     }
 
-    /// What is left, s: less than a step.
+    /// The time left, s: less than a step.
     #[must_use]
     pub fn seconds(self) -> f64 {
         self.0.seconds()

@@ -196,7 +196,7 @@ fn squeezed_against_a_wall_it_jams() {
     }
 }
 
-/// Where trials of the robot's speed run out, the step ends with forces out of balance: that was
+/// If trials of the robot's speed run out, the step ends with forces out of balance: that was
 /// not said.
 #[test]
 fn a_step_in_which_robot_and_cable_do_not_agree_says_so() {

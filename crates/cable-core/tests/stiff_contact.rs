@@ -713,8 +713,8 @@ fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
                 "{part}: {} N",
                 contact.tension_after_n
             );
-            // Where its stiffness takes less than the tolerance of its tension it rests as a
-            // flexible cable does, which lies on all of the turn.
+            // A stiffness that takes less than the tolerance of the tension is neglected: the cable
+            // lies on all of the turn, as a flexible one does.
             let flexible = 2.0 * loss < Settings::default().tolerance * pull;
             assert!(tension > 0.0 && lies < if flexible { turn + 1e-6 } else { turn }, "{part}: {lies}");
         } else {

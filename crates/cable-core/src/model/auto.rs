@@ -34,7 +34,7 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, ModelReason) {
     } else if problem.floor_friction.is_some() {
         (Model::Fem, ModelReason::FloorFriction)
     } else if problem.cable.self_contact {
-        // Where its strands meet `fem` takes over.
+        // `fem` takes over if its strands meet.
         (Model::Spans, ModelReason::ClearOfItself)
     } else if !problem.world.is_empty() || problem.outline.is_some() {
         (Model::Spans, ModelReason::Obstacles)

@@ -91,7 +91,7 @@ impl RunMonitor {
         self.without_inertia = RunWithoutInertia::beside(simulation, inertia, step_s);
     }
 
-    /// What the next cheaper choice, a run without inertia, would have cost in error so far; None
+    /// The error that the next cheaper choice, a run without inertia, would have had so far; None
     /// where none goes beside the run.
     #[must_use]
     pub fn next_cheaper(&self) -> Option<NextCheaper> {

@@ -56,7 +56,7 @@ fn after_a_second(engine: &mut Engine, shares: &[f64]) -> (f64, (String, Vec<Run
             greatest_n = greatest_n.max(answer.peaks().greatest.tension_n);
         }
         let Some(answer) = report.answers.last().filter(|a| a.time_s > 1.0 - 1e-9) else { continue };
-        // What the history shows is the greatest of any inner step.
+        // The history shows the greatest tension of any inner step.
         assert_eq!(greatest_n, report.snapshot.peaks[0].peaks.greatest.tension_n);
         return (answer.time_s, (bits(answer), report.snapshot.peaks));
     }

@@ -65,7 +65,7 @@ enum Phase {
     },
 }
 
-/// What hands and the robot's remote control ask for.
+/// The requests of hands and of the robot's remote control.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steering {
     /// The support that a hand holds by a spring.

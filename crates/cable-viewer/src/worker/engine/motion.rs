@@ -108,7 +108,7 @@ impl Engine {
         let settings = self.edit.as_ref().map_or_else(Settings::default, |e| e.settings);
         let Some(run) = &mut self.run else { return Ok(()) };
         run.begin(inertia, settings)?;
-        // What is seen of a fast motion is as near in time as of one at normal speed.
+        // The picture of a fast motion is as near in time as that of one at normal speed.
         let most = ((FRAME_S / usual_step(inertia).seconds()).round() as u64).max(1);
         let mut left = run.owe(time_s, inertia);
         while left > 0 {

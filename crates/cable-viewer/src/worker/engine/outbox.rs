@@ -23,7 +23,7 @@ pub struct Report {
     pub paused_itself: bool,
 }
 
-/// What waits for the window.
+/// Reports that wait for the window.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
     pub snapshot: Snapshot,

@@ -129,7 +129,7 @@ fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
 /// The answer for the flexible cable, where its stiffness changes less than the `tolerance`; None
 /// where it changes more, or where the flexible shape has angles, which stiffness rounds off.
 ///
-/// Where a cable is bent by κ its tension falls by EI κ²/2, and it leaves what it lies on over a
+/// A bend of curvature κ lowers the tension by EI κ²/2, and the cable leaves its support over a
 /// length √(EI/T) that is short beside 1/κ. The chain of bars knows neither on bars that are
 /// longer.
 fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {

@@ -301,3 +301,40 @@ pub(in crate::model::fem) fn mean_factor(ratio: f64) -> f64 {
     // Beyond the series' third term nothing is left at this size.
     if z.abs() < 1e-4 { 1.0 + z * (0.5 + z / 6.0) } else { (ratio - 1.0) / z }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on(sense: f64) -> SlidingNode {
+        let end = BarEnd { center: Vec2::zeros(), radius: 0.1, mark: Vec2::y(), sense };
+        SlidingNode::new(end, 0.5, SlideOver::Obstacle { obstacle: 0, feature: 0 })
+    }
+
+    /// The last node between two such wraps was taken out, and the cable ran through the post.
+    #[test]
+    fn issue_016_wraps_of_one_round_in_opposite_senses_are_two() {
+        let [left, right] = [on(1.0), on(-1.0)];
+        assert!(left.shares_round(&left) && !left.opposes(&left));
+        assert!(!left.shares_round(&right) && left.opposes(&right));
+    }
+
+    /// The cable comes up to a post at 45° and leaves it at 45°, nearly slack; the step that brings
+    /// what slides to a stop pulls with 10 N where it comes.
+    #[test]
+    fn issue_016_friction_turns_by_the_pulls_between_which_it_acts() {
+        let node = on(-1.0);
+        let ends = [Vec2::new(-1.0, -1.0), Vec2::new(1.0, -1.0)].map(BarEnd::point);
+        let paths = [TangentPath::between(&ends[0], &node.end), TangentPath::between(&node.end, &ends[1])];
+        let load = |pull: f64| {
+            let body = Vec2::new(0.0, -5.0);
+            SlidingNodeLoad::new(&node, [pull, 1.0], [&paths[0], &paths[1]], body, [0.1; 2])
+        };
+        let [slack, taut] = [0.0, 1e-3].map(load);
+        // The pull of the bar is not seen in the turn beside what it takes to stop the cable.
+        assert!((slack.turn_with(-10.0) - taut.turn_with(-10.0)).abs() < 1e-5);
+        assert!(taut.turn_with(0.0).to_bits() == taut.turn.to_bits());
+        // Nearly slack it hangs down where it comes.
+        assert!(slack.turn > slack.turn_with(-10.0) + 0.3, "{} {}", slack.turn, slack.turn_with(-10.0));
+    }
+}

@@ -116,10 +116,10 @@ impl Rounding {
     }
 }
 
-/// What the minimisation knows of the cable's contacts with itself.
+/// Contacts of the cable with itself, in the minimisation.
 #[derive(Debug, Default)]
 pub struct SelfContactWork {
-    /// Those of the last assembly.
+    /// Pairs of the last assembly.
     pub(in crate::model::fem) pairs: Vec<SelfPair>,
     pub(in crate::model::fem) order: SortedNodes,
     /// Entries of the Hessian outside its band.
@@ -565,4 +565,23 @@ fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
 fn grow(shift: f64, input: &StepInput) -> f64 {
     let least = if input.stopping.shift > 0.0 { input.stopping.shift } else { 1.0 };
     if shift > 0.0 { SHIFT_INCREASE * shift } else { least }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps were taken for balanced by 1e13 N of contact at gaps of 1e-16 m.
+    #[test]
+    fn issue_016_a_gap_lost_in_its_rounding_hides_no_force() {
+        let barrier = Barrier { reach: 1e-4, stiffness: 10.0 };
+        let of = |gap: f64| {
+            let mut rounding = Rounding { tolerance: 1e-4, ..Rounding::default() };
+            rounding.add(&barrier, gap, barrier.at(gap).curvature, 1e-15);
+            rounding
+        };
+        let (narrow, lost) = (of(1e-10), of(1e-13));
+        assert!(narrow.relief > 0.0 && !narrow.gap_is_lost, "{narrow:?}");
+        assert!(lost.gap_is_lost && lost.relief == 0.0, "{lost:?}");
+    }
 }

@@ -151,3 +151,21 @@ pub(in crate::model::fem) fn update_stick_slip(
     cable.input.set_scale(&cable.mesh);
     changes
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Turns that fall by 0.77 and by 0.9 of what the exponent grows: substitution goes to and fro.
+    #[test]
+    fn issue_016_exponents_that_go_to_and_fro_are_found_in_a_few_rounds() {
+        for slope in [-0.77, -0.9, 0.6] {
+            let asked = |exponent: f64| 2.0 + slope * (exponent - 2.0) - 0.05 * (exponent - 2.0).powi(2);
+            let (mut tried, mut exponent) = (TriedExponents::default(), 3.0);
+            for _ in 0..5 {
+                exponent = tried.next(0, exponent, asked(exponent));
+            }
+            assert!((exponent - 2.0).abs() < 1e-6, "{slope}: {exponent}");
+        }
+    }
+}

@@ -46,7 +46,7 @@ pub struct StepInput {
     pub losses: LossTerms,
     /// Forces from outside.
     pub loads: Loads,
-    /// Where supports are led, and where the step begins.
+    /// Targets of the supports, and positions at the start of the step.
     pub supports: SupportTargets,
     /// When the iteration ends.
     pub stopping: StoppingCriteria,
