@@ -18,6 +18,16 @@ fn tall(harness: &mut Harness<'_, ViewerApp>) {
     harness.run_steps(3);
 }
 
+/// Makes the first cable ten thousand times as stiff, and asks for a part in a million.
+fn make_too_stiff(harness: &mut Harness<'_, ViewerApp>) {
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
+    cable.axial_stiffness_n *= 1e4;
+    apply(harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let settings = Settings { tolerance: 1e-6, ..harness.state().state.solver.settings };
+    apply(harness, Command::SetSettings(settings));
+    harness.run_steps(3);
+}
+
 #[test]
 fn t06_residual_displacement_and_condition_stand_in_the_solver_panel() {
     let mut harness = open_span();
@@ -33,12 +43,7 @@ fn t06_residual_displacement_and_condition_stand_in_the_solver_panel() {
     };
     assert!(read(&harness).contains('e'), "{}", read(&harness));
     // Too stiff: said before anybody believes the figures.
-    let mut cable = harness.state().state.document.scene.cables[0].clone();
-    cable.axial_stiffness_n *= 1e4;
-    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
-    let settings = Settings { tolerance: 1e-6, ..harness.state().state.solver.settings };
-    apply(&mut harness, Command::SetSettings(settings));
-    harness.run_steps(3);
+    make_too_stiff(&mut harness);
     let told = read(&harness);
     assert!(told.ends_with("e11"), "{told} with {:?}", harness.state().state.live.snapshot.error);
     // A model without a mesh has none.
@@ -94,12 +99,7 @@ fn what_makes_figures_doubtful_is_in_the_list_of_warnings() {
         assert!(!listed(&harness, title), "{title} of a sound answer");
     }
     // Too stiff for the accuracy asked for.
-    let mut cable = harness.state().state.document.scene.cables[0].clone();
-    cable.axial_stiffness_n *= 1e4;
-    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
-    let settings = Settings { tolerance: 1e-6, ..harness.state().state.solver.settings };
-    apply(&mut harness, Command::SetSettings(settings));
-    harness.run_steps(3);
+    make_too_stiff(&mut harness);
     assert!(listed(&harness, "Ill-conditioned equations"));
     harness.get_by_label_contains("Ill-conditioned equations: ").click();
     harness.run_steps(3);
