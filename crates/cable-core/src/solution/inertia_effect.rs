@@ -5,7 +5,7 @@ use super::NextCheaper;
 /// Differences of up to so many tolerances may be those of meshes: of 100 random motions 66
 /// verdicts are those of finer runs then, 5 are near the tolerance and 29 open; with 1, four are
 /// wrong.
-const UNCLEAR: f64 = 3.0;
+const MAX_OPEN_TOLERANCES: f64 = 3.0;
 
 /// Speeds of a run beside those at which inertia shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,6 +38,10 @@ impl InertiaEffect {
     #[must_use]
     pub fn matters(&self) -> Option<bool> {
         let Some(apart) = self.without?.force_error else { return Some(true) };
-        if apart <= self.tolerance { Some(false) } else { (apart > UNCLEAR * self.tolerance).then_some(true) }
+        if apart <= self.tolerance {
+            Some(false)
+        } else {
+            (apart > MAX_OPEN_TOLERANCES * self.tolerance).then_some(true)
+        }
     }
 }

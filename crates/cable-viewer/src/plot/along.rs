@@ -19,7 +19,7 @@ pub const GROUP: &str = "along";
 const PEAK: &str = "Peak since the frame before";
 /// A peak is marked where it is above the line by more than this part of it. Smaller: every frame
 /// of a swing has a mark on its line; larger: a warning names more than the graph shows.
-const PEAK_ABOVE: f64 = 0.01;
+const MIN_PEAK_FRACTION: f64 = 0.01;
 
 /// Draws it.
 pub fn ui(
@@ -69,7 +69,7 @@ fn peak(solved: &CableSolution, quantity: CableQuantity, cable: &Cable) -> Optio
     let TensionPeak { tension_n, arc_length_m, .. } = solved.peaks?.greatest;
     let tensions: Vec<[f64; 2]> = solved.nodes.iter().map(|n| [n.arc_length_m, n.tension_n]).collect();
     let now_n = value_at(&tensions, arc_length_m).unwrap_or(0.0);
-    let above = tension_n > (1.0 + PEAK_ABOVE) * now_n;
+    let above = tension_n > (1.0 + MIN_PEAK_FRACTION) * now_n;
     let points = vec![[arc_length_m, tension_n * per_newton(quantity, cable)]];
     above.then(|| Series { name: PEAK.to_owned(), points, ..Series::default() })
 }

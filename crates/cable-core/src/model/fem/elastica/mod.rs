@@ -64,7 +64,7 @@ const BOW_TOLERANCE: f64 = 1e-4;
 /// Most of the tension somewhere by which that of a bent cable may fall for its flexible answer to
 /// be taken. Smaller: chains of bars for cables that they take for flexible ones; larger: the
 /// places where a slack cable bends sharply are those of a flexible one.
-const SLIGHT_BEND: f64 = 1e-2;
+const MAX_BEND_FRACTION: f64 = 1e-2;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
@@ -141,8 +141,8 @@ fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -
     }
     let greatest = flexible.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
     let fall = |n: &Node| problem.bending_stiffness * n.curvature_per_m * n.curvature_per_m;
-    let hardly = |n: &Node| fall(n) <= smaller(SLIGHT_BEND * n.tension_n, tolerance * greatest);
-    if !flexible.nodes.iter().all(hardly) {
+    let is_slight = |n: &Node| fall(n) <= smaller(MAX_BEND_FRACTION * n.tension_n, tolerance * greatest);
+    if !flexible.nodes.iter().all(is_slight) {
         return None;
     }
     let force_n = flexible.nodes.iter().map(fall).fold(0.0, larger);

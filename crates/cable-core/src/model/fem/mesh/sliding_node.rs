@@ -222,7 +222,7 @@ impl SlidingNodeLoad {
     /// pull with which it comes, rad. Friction acts between the pulls that are left: one that grows
     /// from nothing within a step would turn the cable from hanging down to straight.
     #[must_use]
-    pub fn turn_with(&self, inertia: f64) -> f64 {
+    pub fn turn_with_inertia(&self, inertia: f64) -> f64 {
         self.paths.turn([self.force[0] - self.paths.direction[0] * inertia, self.force[1]])
     }
 
@@ -332,9 +332,9 @@ mod tests {
         };
         let [slack, taut] = [0.0, 1e-3].map(load);
         // The pull of the bar is not seen in the turn beside what it takes to stop the cable.
-        assert!((slack.turn_with(-10.0) - taut.turn_with(-10.0)).abs() < 1e-5);
-        assert!(taut.turn_with(0.0).to_bits() == taut.turn.to_bits());
+        assert!((slack.turn_with_inertia(-10.0) - taut.turn_with_inertia(-10.0)).abs() < 1e-5);
+        assert!(taut.turn_with_inertia(0.0).to_bits() == taut.turn.to_bits());
         // Nearly slack it hangs down where it comes.
-        assert!(slack.turn > slack.turn_with(-10.0) + 0.3, "{} {}", slack.turn, slack.turn_with(-10.0));
+        assert!(slack.turn > slack.turn_with_inertia(-10.0) + 0.3, "{} {}", slack.turn, slack.turn_with_inertia(-10.0));
     }
 }

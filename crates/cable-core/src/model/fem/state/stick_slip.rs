@@ -115,7 +115,7 @@ pub(in crate::model::fem) fn update_stick_slip(
         // Friction goes to nothing with the tension that it raises, and a bar that would push has
         // none. (The pull with which the cable comes is a result of the step: with a test of it
         // friction came and went in one jump, and no state was lawful.)
-        let turn = load.turn_with(inertia);
+        let turn = load.turn_with_inertia(inertia);
         let presses = turn > 0.0 && load.at_material[1] > 0.0;
         let exponent = if presses { node.friction * turn } else { 0.0 };
         let pulls = load.pull[0].abs() + load.pull[1].abs();

@@ -21,7 +21,7 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
                 StickSlip::Stick => leaves + (before - inertia - after) / stretch,
                 slips => load.ratio(slips, node.exponent) * leaves,
             };
-            node.balanced = Some(BalancedTensions { pull: [pulls, leaves], turn: load.turn_with(inertia) });
+            node.balanced = Some(BalancedTensions { pull: [pulls, leaves], turn: load.turn_with_inertia(inertia) });
         }
     }
 }
