@@ -29,10 +29,10 @@ use piece::{BreakPoint, Piece, StepOutcome};
 use support_speed_limit::too_fast;
 
 use crate::error::{SolveError, Unsupported};
-use crate::math::{RigidPose, Vec2, smaller};
+use crate::math::{RigidPose, Vec2, larger, smaller};
 use crate::model::gauge::TensionGauge;
 use crate::model::hand::default_hand_stiffness;
-use crate::model::{Inertia, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
+use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::{ModelReason, TensionPeaks};
 use crate::state::State;
@@ -82,6 +82,8 @@ pub(crate) struct BreakableCable {
     peaks_since_s: f64,
     /// A motion that is too fast for masses that move.
     too_fast: Option<Unsupported>,
+    /// True if it may come to obstacles that were out of its reach.
+    leaves_reach: bool,
 }
 
 /// The hold that draws a support.
@@ -106,6 +108,7 @@ impl BreakableCable {
         let too_fast = problem.supports.iter().find_map(too_fast);
         Ok(Self {
             too_fast,
+            leaves_reach: false,
             problem,
             source,
             settings,
@@ -180,10 +183,18 @@ impl BreakableCable {
     pub fn settle(&mut self) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         self.peaks = None;
-        for piece in &mut self.pieces {
-            piece.gauge.forget();
-            sum.add(piece.mechanics.settle()?);
-            piece.refresh_answer();
+        self.meet_what_is_in_reach()?;
+        loop {
+            for piece in &mut self.pieces {
+                piece.gauge.forget();
+                sum.add(piece.mechanics.settle()?);
+                piece.refresh_answer();
+            }
+            self.note_reach();
+            if !self.leaves_reach {
+                break;
+            }
+            self.meet_what_is_in_reach()?;
         }
         sum.warnings.extend(self.problem.notes.iter().cloned());
         Ok(sum)
@@ -218,6 +229,7 @@ impl BreakableCable {
 
     fn advance_on(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
+        self.meet_what_is_in_reach()?;
         self.detach_from_pulleys(inertia)?;
         let Some(end_s) = self.pieces.first().map(|p| p.mechanics.time_s() + dt_s) else { return Ok(sum) };
         let breaking_n = self.problem.cable.breaking_tension_n;
@@ -241,13 +253,44 @@ impl BreakableCable {
                 StepOutcome::Broke(at) => self.split(k, &at, inertia)?,
             }
         }
+        self.note_reach();
         Ok(sum)
+    }
+
+    /// Notes whether the cable is stretched beyond what its reach was reckoned with.
+    fn note_reach(&mut self) {
+        let Some(most_n) = self.problem.max_tension_within_reach_n() else { return };
+        let tensions = self.pieces.iter().flat_map(|p| p.answer.nodes.iter().map(|n| n.tension_n));
+        let peak_n = self.peaks.map_or(0.0, |p| p.greatest.tension_n);
+        self.leaves_reach |= tensions.fold(peak_n, larger) > most_n;
+    }
+
+    /// Puts all obstacles in the way of a cable that may leave the reach which it had. It touches
+    /// none of them yet, so that a new model goes on where the old one is.
+    fn meet_what_is_in_reach(&mut self) -> Result<(), SolveError> {
+        if !self.leaves_reach {
+            return Ok(());
+        }
+        self.leaves_reach = false;
+        let Some(problem) = self.problem.with_all_obstacles() else { return Ok(()) };
+        for k in 0..self.pieces.len() {
+            let mut mechanics = self.source.build(problem.clone(), self.settings)?;
+            self.draw_supports(&self.pieces[k].part, mechanics.as_mut());
+            mechanics.set_state(&self.pieces[k].mechanics.state())?;
+            self.pieces[k].mechanics = mechanics;
+        }
+        self.problem = problem;
+        Ok(())
     }
 
     /// Replaces a piece by those it breaks into.
     fn split(&mut self, k: usize, point: &BreakPoint, inertia: Inertia) -> Result<(), SolveError> {
         let BreakPoint { time_s, state, at } = point;
         let (support_arc_lengths, cleared_wheels) = (self.support_arc_lengths(), self.cleared_wheels());
+        // The pieces come to what the whole could not.
+        if let Some(problem) = self.problem.with_all_obstacles() {
+            self.problem = problem;
+        }
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
         let nodes = &piece.answer.nodes;
         let Some(node) = nodes.get(at.node) else { return Ok(()) };
@@ -292,6 +335,13 @@ impl BreakableCable {
     fn build(&self, part: CablePart, state: &State) -> Result<Piece, SolveError> {
         let problem = Arc::new(part.problem(&self.problem, state));
         let mut mechanics = self.source.build(problem, Settings { segments: None, ..self.settings })?;
+        self.draw_supports(&part, mechanics.as_mut());
+        mechanics.set_state(state)?;
+        Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
+    }
+
+    /// Has the model of a part follow what draws the cable now.
+    fn draw_supports(&self, part: &CablePart, mechanics: &mut dyn Mechanics) {
         for (own, k) in part.supports.iter().enumerate() {
             let drawn = k.and_then(|k| Some((self.dragged.get(k).copied().flatten()?, self.pulled[k])));
             match drawn {
@@ -303,8 +353,6 @@ impl BreakableCable {
         if let Some(pose) = self.robot_pose {
             mechanics.set_robot_pose(pose);
         }
-        mechanics.set_state(state)?;
-        Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
     }
 
     /// A piece whose new end has come to a pulley is off it.
@@ -344,6 +392,7 @@ impl BreakableCable {
         if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
             (*d, *pulled) = (Some(to), grasp == SupportGrip::Spring);
         }
+        self.leaves_reach = true;
         for piece in &mut self.pieces {
             let own = piece.part.supports.iter().position(|k| *k == Some(support));
             match own {
@@ -417,7 +466,7 @@ impl BreakableCable {
         let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
         // Pieces of a break since then have nothing of the whole.
-        let same = self.breaks.len() == kept.breaks.len();
+        let same = self.breaks.len() == kept.breaks.len() && Arc::ptr_eq(&self.problem, &kept.problem);
         *self = kept.checkpoint();
         for (piece, own) in self.pieces.iter_mut().zip(own) {
             piece.mechanics.borrow(own.filter(|_| same));
@@ -495,6 +544,7 @@ impl BreakableCable {
             peaks: self.peaks,
             peaks_since_s: self.peaks_since_s,
             too_fast: self.too_fast.clone(),
+            leaves_reach: self.leaves_reach,
         }
     }
 }

@@ -45,6 +45,8 @@ pub struct Problem {
     pub loads: Vec<PointLoad>,
     /// Obstacles that it can touch and that stay where they are.
     pub world: Arc<World>,
+    /// All obstacles that stay where they are, if it can come to none of them (see `reach.rs`).
+    pub(crate) unreachable: Option<Arc<World>>,
     /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,
     /// Plan view: friction coefficient with the floor and normal force per metre, N/m.

@@ -32,8 +32,9 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     scene.validate()?;
     let mut out = Vec::with_capacity(scene.cables.len());
     for (index, cable) in scene.cables.iter().enumerate() {
-        let problem = placed(scene, index, cable)?;
+        let mut problem = placed(scene, index, cable)?;
         route_check::check_route(&problem)?;
+        problem.leave_out_unreachable();
         out.push(Arc::new(problem));
     }
     Ok(out)
@@ -162,6 +163,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         supports,
         loads,
         world: Arc::new(world),
+        unreachable: None,
         outline: robot_outline(scene, cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),

@@ -8,6 +8,7 @@
 //! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
 //! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
 //! | `robot_outline.rs` | the robot as an obstacle |
+//! | `reach.rs` | obstacles that the cable cannot come to are left out |
 //! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
 //! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
@@ -20,6 +21,7 @@ mod definition;
 mod describe_place;
 mod from_scene;
 pub(crate) mod ground_route;
+mod reach;
 pub(crate) mod robot_outline;
 mod rounding_error;
 mod route_check;

@@ -1,0 +1,118 @@
+//! An obstacle that a cable cannot come to changes nothing, to the bit; one that it can come to
+//! after all, drawn aside, torn or stretched, is there.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+use cable_core::math::Vec2;
+use cable_core::model::Inertia;
+use cable_core::model::auto::Question;
+use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, catalog};
+use cable_core::{Model, Settings, Simulation, Solution};
+
+/// A cable of 10 m over 8 m, 3 m high, whose right end goes to and fro.
+fn swung() -> Scene {
+    let mut scene = catalog::hanging_span();
+    let cable = &mut scene.cables[0];
+    (cable.length_m, cable.axial_stiffness_n, cable.breaking_tension_n) = (10.0, 1e6, 1e4);
+    cable.segments = Some(40);
+    let mut right = Support::fixed("right", [4.0, 3.0]);
+    right.motion = Some(Motion { times_s: vec![0.0, 0.5, 1.0], points_m: vec![[4.0, 3.0], [4.5, 3.5], [4.0, 3.0]] });
+    cable.supports = vec![Support::fixed("left", [-4.0, 3.0]), right];
+    scene
+}
+
+fn with_floor(mut scene: Scene, height_m: f64) -> Scene {
+    let shape = Shape::Terrain { points_m: vec![[-60.0, height_m], [60.0, height_m]] };
+    scene.obstacles.push(Obstacle { name: "floor".into(), shape, friction: Some(0.3) });
+    scene
+}
+
+fn settled(scene: Scene, model: Model, inertia: Inertia) -> Simulation {
+    let mut sim =
+        Simulation::for_question(scene, model, Settings::default(), Question::History(inertia)).expect("a sound scene");
+    sim.settle().expect("it rests");
+    sim
+}
+
+fn places(answer: &Solution) -> Vec<[u64; 3]> {
+    answer.cables[0].nodes.iter().map(|n| [n.x_m, n.y_m, n.tension_n].map(f64::to_bits)).collect()
+}
+
+fn lowest(answer: &Solution) -> f64 {
+    answer.cables.iter().flat_map(|c| &c.nodes).map(|n| n.y_m).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_floor_out_of_reach_changes_no_bit() {
+    for (model, inertia) in [
+        (Model::Fem, Inertia::Dynamic),
+        (Model::MassSpring, Inertia::Dynamic),
+        (Model::Auto, Inertia::QuasiStatic),
+        (Model::Catenary, Inertia::QuasiStatic),
+    ] {
+        let [mut alone, mut over] = [swung(), with_floor(swung(), -1.0)].map(|scene| settled(scene, model, inertia));
+        assert_eq!(alone.solution().model, over.solution().model);
+        for step in 0..120 {
+            assert_eq!(places(&alone.solution()), places(&over.solution()), "{model} at step {step}");
+            for sim in [&mut alone, &mut over] {
+                match inertia {
+                    Inertia::Dynamic => sim.step(1.0 / 120.0).expect("it steps"),
+                    Inertia::QuasiStatic => sim.step_quasi_static(1.0 / 120.0).expect("it steps"),
+                };
+            }
+        }
+    }
+}
+
+/// A hand takes an end down until the cable lies on the floor.
+#[test]
+fn a_cable_that_a_hand_takes_down_meets_the_floor() {
+    for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
+        let mut sim = settled(with_floor(swung(), -1.0), Model::Auto, inertia);
+        for step in 0..480 {
+            let down = (3.0 - 0.01 * f64::from(step)).max(-0.8);
+            if inertia == Inertia::Dynamic {
+                sim.pull_support(0, 1, Vec2::new(3.0, down));
+                sim.step(1.0 / 120.0).expect("it steps");
+            } else {
+                sim.drag_support(0, 1, Vec2::new(3.0, down));
+                sim.step_quasi_static(1.0 / 120.0).expect("it steps");
+            }
+            let answer = sim.solution();
+            assert!(lowest(&answer) > -1.0, "{} m at step {step}", lowest(&answer));
+        }
+        assert!(!sim.solution().cables[0].contacts.is_empty(), "{inertia:?}: it does not lie on the floor");
+    }
+}
+
+/// A cable that breaks falls on the floor, and not through it.
+#[test]
+fn a_cable_that_breaks_meets_the_floor() {
+    let mut scene = with_floor(swung(), -1.5);
+    let cable = &mut scene.cables[0];
+    cable.breaking_tension_n = 300.0;
+    cable.service_tension_n = 100.0;
+    cable.supports[1].motion =
+        Some(Motion { times_s: vec![0.0, 1.0, 2.0], points_m: vec![[4.0, 3.0], [7.0, 3.5], [7.0, 3.5]] });
+    let mut sim = settled(scene, Model::Fem, Inertia::Dynamic);
+    for step in 0..480 {
+        sim.step(1.0 / 120.0).expect("it steps");
+        let answer = sim.solution();
+        assert!(lowest(&answer) > -1.5, "{} m at step {step}", lowest(&answer));
+    }
+    let answer = sim.solution();
+    assert!(!answer.cables[0].breaks.is_empty(), "it does not break");
+    assert!(!answer.cables[0].contacts.is_empty(), "no piece lies on the floor");
+}
+
+/// A cable that hangs at rest with more than its breaking tension, which breaks nothing at rest, is
+/// longer than its reach was reckoned.
+#[test]
+fn a_cable_that_stretches_beyond_its_strength_meets_the_floor() {
+    let mut scene = with_floor(swung(), -1.2);
+    let cable = &mut scene.cables[0];
+    (cable.axial_stiffness_n, cable.breaking_tension_n, cable.service_tension_n) = (100.0, 1.0, 0.5);
+    cable.supports[1].motion = None;
+    let mut sim = Simulation::new(scene, Model::Auto).expect("a sound scene");
+    let answer = sim.settle().expect("it rests");
+    assert!(lowest(&answer) > -1.2 && !answer.cables[0].contacts.is_empty(), "{} m", lowest(&answer));
+}
