@@ -95,16 +95,19 @@ pub struct RunPeaksEntry {
     /// True if coarser runs part from this one so far that another mesh, step or start has another
     /// greatest tension; null where that is not known.
     pub depends_on_small_differences: Option<bool>,
+    /// True if the ranges are no wider than the tolerance; null where they are not known.
+    pub resolved: Option<bool>,
 }
 
 impl RunPeaksEntry {
-    pub fn of(run: &RunPeaks) -> Self {
+    pub fn of(run: &RunPeaks, tolerance: f64) -> Self {
         Self {
             greatest_tension_n: run.peaks.greatest.tension_n,
             held_tension_n: run.peaks.held.tension_n,
             greatest_tension_range_n: run.ranges.map(|r| r.greatest_n),
             held_tension_range_n: run.ranges.map(|r| r.held_n),
             depends_on_small_differences: run.ranges.map(|r| r.depend_on_small_differences()),
+            resolved: run.ranges.map(|r| r.are_resolved(tolerance)),
         }
     }
 }

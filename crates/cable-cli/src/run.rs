@@ -119,7 +119,9 @@ impl RunTotals {
         if over_s > 0.0 {
             lines.push(format!("Greatest mean over {over_s} s   {}", of(held, ranges.map(|r| r.held_n))));
         }
-        if ranges.is_some_and(|r| r.depend_on_small_differences()) {
+        if ranges.is_some_and(|r| r.are_resolved(tolerance)) {
+            lines.push(format!("It is resolved: finer meshes and steps change it by less than {tolerance:.1e} of it"));
+        } else if ranges.is_some_and(|r| r.depend_on_small_differences()) {
             lines.push(
                 "It depends on small differences: the coarser runs beside it do not converge, and another mesh, step or start has another"
                     .to_owned(),
@@ -206,7 +208,8 @@ impl Outputs {
     fn update_totals(&mut self, timeline: &Timeline) {
         self.totals = RunTotals::of(timeline, !self.arguments.no_errors);
         self.inertia = timeline.inertia_effect();
-        self.run_peaks = timeline.monitor().peaks().iter().map(RunPeaksEntry::of).collect();
+        let tolerance = self.arguments.common.tolerance();
+        self.run_peaks = timeline.monitor().peaks().iter().map(|run| RunPeaksEntry::of(run, tolerance)).collect();
     }
 
     /// Looks at a step, whether it is written or not.

@@ -27,7 +27,7 @@ pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 /// Ends of a range of tensions that are no more than so many times each other are those of one
 /// tension that is known, if roughly. Less: peaks that any finer run has as well are called
 /// uncertain; more: a cable is chosen by a peak that another mesh does not have.
-pub const RESOLVED_RATIO: f64 = 1.5;
+pub const SMALL_DIFFERENCES_RATIO: f64 = 1.5;
 
 /// An instant: a whole number of ticks after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -160,12 +160,19 @@ pub struct TensionRanges {
 }
 
 impl TensionRanges {
+    /// True if twice the elements and half the step change both by no more than this part of them,
+    /// as far as the coarser runs tell.
+    #[must_use]
+    pub fn are_resolved(&self, tolerance: f64) -> bool {
+        [self.greatest_n, self.held_n].iter().all(|[from, to]| to - from <= tolerance * to)
+    }
+
     /// True if the runs beside this one part from it so far that its greatest tension depends on
     /// small differences, of mesh and step and so of how it began: the ends of a range are more
     /// than [`RESOLVED_RATIO`] times apart.
     #[must_use]
     pub fn depend_on_small_differences(&self) -> bool {
-        [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > RESOLVED_RATIO * from)
+        [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > SMALL_DIFFERENCES_RATIO * from)
     }
 }
 

@@ -109,6 +109,8 @@ fn a_greatest_tension_that_depends_on_small_differences_says_so() {
     let (swung, rubble) = (depends(swung), depends(catalog::rubble_drop()));
     assert!(!swung.0, "{swung:?}");
     assert!(rubble.0, "{rubble:?}");
+    assert!(swung.1.are_resolved(0.1) && !swung.1.are_resolved(1e-9), "{swung:?}");
+    assert!(!rubble.1.are_resolved(0.1), "{rubble:?}");
 }
 
 #[test]
