@@ -196,32 +196,24 @@ fn squeezed_against_a_wall_it_jams() {
     }
 }
 
-/// If trials of the robot's speed run out, the step ends with forces out of balance: that was
-/// not said.
+/// Where a robot presses its cable against bumps its speed is sought between one that is flat and one
+/// that is steep: 22 steps of these ended with up to 119 kN between robot and cable.
 #[test]
-fn a_step_in_which_robot_and_cable_do_not_agree_says_so() {
-    let told = |length_m: f64, ground: &[[f64; 2]], drives: &[(f64, f64)]| {
-        let mut s = start(scene(length_m, ground));
-        let mut told = Vec::new();
+fn robot_and_cable_agree_in_every_step() {
+    for (length_m, ground, drives) in [
+        (16.0, LEVEL.to_vec(), vec![(-0.5, 1.0)]),
+        (13.0, rough(), BACK_AND_FORTH.to_vec()),
+        (16.0, rough(), BACK_AND_FORTH.to_vec()),
+    ] {
+        let mut s = start(scene(length_m, &ground));
         for (speed, for_s) in drives {
-            s.command_robot(Some(*speed));
+            s.command_robot(Some(speed));
             for _ in 0..(for_s / FRAME_S).round() as usize {
                 s.step(FRAME_S).unwrap();
-                told.extend(s.warnings().filter(|w| w.to_string().contains("out of balance")).cloned());
+                let told = s.warnings().find(|w| w.to_string().contains("out of balance"));
+                assert!(told.is_none(), "{length_m} m: {told:?}");
             }
         }
-        told
-    };
-    // Nothing of it where it drives freely.
-    assert_eq!(told(16.0, &LEVEL, &[(-0.5, 1.0)]), []);
-    // On rough ground it presses its cable against bumps.
-    let rough: Vec<_> =
-        [13.0, 16.0].into_iter().flat_map(|length_m| told(length_m, &rough(), &BACK_AND_FORTH)).collect();
-    println!("{} steps", rough.len());
-    assert!(!rough.is_empty());
-    for w in rough {
-        let on_hitch = w.at_m.is_some_and(|[x, y]| x > 6.0 && x < 12.0 && y > 0.0);
-        assert!(w.kind == WarningKind::Accuracy && w.value > w.limit && w.limit > 0.0 && on_hitch, "{w:?}");
     }
 }
 

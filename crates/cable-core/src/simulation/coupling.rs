@@ -13,7 +13,7 @@
 
 use std::mem::discriminant;
 
-use super::speed_search::{NextTrial, SpeedSearch, Trial};
+use super::speed_search::{SpeedSearch, Trial};
 use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
@@ -40,7 +40,7 @@ struct CoupledStep<'a> {
 /// Outcome of a trial.
 enum TrialOutcome {
     /// The robot at the end of the step, and the force by which it is out of balance with its
-    /// cables, N, where trials ran out.
+    /// cables, N, where no speed balances them.
     Ends(Box<Vehicle>, Option<f64>),
     /// The speed to try next, m/s.
     Again(f64),
@@ -136,9 +136,8 @@ impl Simulation {
         let mut left_n = None;
         if !even && !(self.left_m() > 0.0) {
             match search.next(Trial { speed, excess_speed }) {
-                NextTrial::Speed(next) => return TrialOutcome::Again(next),
-                NextTrial::Jump => {}
-                NextTrial::RanOut => left_n = Some(excess_n),
+                Some(next) => return TrialOutcome::Again(next),
+                None => left_n = Some(excess_n),
             }
         }
         let mut vehicle = start.clone();
@@ -148,7 +147,7 @@ impl Simulation {
         TrialOutcome::Ends(Box::new(vehicle), left_n)
     }
 
-    /// Warns of a step whose trials ran out, with this force left between robot and cables, N.
+    /// Warns of a step that ends with this force left between robot and cables, N.
     fn warn_out_of_balance(&mut self, left_n: Option<f64>, hitches: &[(usize, usize)]) {
         let (Some(left_n), Some(vehicle)) = (left_n, &self.vehicle) else { return };
         let [value, limit] = vehicle.imbalance(left_n, self.pulls(hitches));
