@@ -26,7 +26,7 @@ pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verificatio
     let mut before = None;
     for bar in checked.bars() {
         check_tension(checked, found, before, &bar);
-        check_compression(checked, found, &bar);
+        check_compression(checked, found, near, &bar);
         check_length(checked, found, near, &bar);
         before = Some(bar);
     }
@@ -70,7 +70,14 @@ fn check_tension(
 }
 
 /// A flexible cable pulls along its way.
-fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, bar: &CheckedBar<'_>) {
+///
+/// What lies loose carries its weight anywhere along it: there it pushes if it does at both its ends.
+fn check_compression(
+    checked: &CheckedCable<'_>,
+    found: &mut Verification,
+    near: &Neighbours,
+    bar: &CheckedBar<'_>,
+) {
     // Nodes of one material point have no way between them.
     if bar.length <= MATERIAL_TOLERANCE * checked.cable.length_m {
         return;
@@ -81,6 +88,9 @@ fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, bar: 
     if most >= 0.0 && least >= 0.0 {
         return;
     }
+    let end = checked.forces_at_end(bar).map(|end| end.dot(&bar.way));
+    let lies = checked.touches(near, bar.index);
+    let most = if lies && larger(bar.from.force().dot(&bar.way), larger(end[0], end[1])) >= 0.0 { 0.0 } else { most };
     let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
     let (value, limit) = (larger(pushes, -least), COMPRESSION * checked.scale);
     if !(value <= limit) {
