@@ -16,7 +16,9 @@ use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2, larger};
 use crate::model::fem::newton::minimize::{ENERGY_NOISE, Workspace};
-use crate::model::fem::system::{ContactSet, Converged, Failure, Mesh, StepContext, StepInput, Unknowns, bar_energy};
+use crate::model::fem::system::{
+    ContactSet, Converged, Failure, Mesh, PlainBar, StepContext, StepInput, Unknowns, bar_energy,
+};
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
@@ -92,7 +94,7 @@ impl Workspace {
         self.mixed.begun.positions.clone_from(&unknowns.positions);
         self.mixed.begun.slides.clone_from(&unknowns.slides);
         self.goal.clone_from(&step.input.supports.target);
-        self.init_bar_iterates(step.mesh, unknowns);
+        self.init_bar_iterates(step.mesh, step.input, unknowns);
         let done = self.iterate_undamped(step, self_touch, unknowns);
         self.mixed.carried.clear();
         self.mixed.branches.clear();
@@ -125,13 +127,13 @@ impl Workspace {
         unknowns.slides.clone_from(&self.mixed.begun.slides);
     }
 
-    fn init_bar_iterates(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
+    fn init_bar_iterates(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &Unknowns) {
         self.mixed.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
-            let strain = (unknowns.positions[e + 1] - unknowns.positions[e]).norm() / l - 1.0;
-            let taut = strain >= 0.0;
-            let pull = bar_energy::stiffness(mesh, taut) * strain;
-            self.mixed.carried.push(bar_energy::BarIterate { pull, taut });
+            let p = (unknowns.positions[e + 1] - unknowns.positions[e]).norm();
+            let pull = bar_energy::stiffness(mesh, p >= *l) * (p / l - 1.0);
+            let branch = PlainBar::of(mesh, input, e).branch(p);
+            self.mixed.carried.push(bar_energy::BarIterate { pull, branch });
         }
     }
 
@@ -186,7 +188,7 @@ impl Workspace {
             if sound
                 && residual <= input.stopping.tolerance
                 && !left
-                && self.flags_hold(mesh, contacts, &unknowns.positions)
+                && self.flags_hold(mesh, input, contacts, &unknowns.positions)
             {
                 return Some(Converged { iterations, residual });
             }
@@ -257,16 +259,15 @@ impl Workspace {
         false
     }
 
-    /// True if the bars that count as stretched are those that are, and friction holds and slips
-    /// where it is taken to.
-    fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
+    /// True if the bars are on the branches that they are taken to be on, and friction holds and
+    /// slips where it is taken to.
+    fn flags_hold(&self, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.friction_contacts.iter().zip(&self.mixed.branches);
         let slip = contacts.slip;
         let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
         rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
             && self.mixed.carried.iter().enumerate().all(|(e, carried)| {
-                let strain = (x[e + 1] - x[e]).norm() / mesh.rest_length[e] - 1.0;
-                carried.taut == (strain >= 0.0) || strain.abs() <= ROUNDING
+                PlainBar::of(mesh, input, e).is_on(carried.branch, (x[e + 1] - x[e]).norm(), ROUNDING)
             })
     }
 
@@ -277,9 +278,10 @@ impl Workspace {
         for (e, carried) in self.mixed.carried.iter_mut().enumerate() {
             let d = unknowns.positions[e + 1] - unknowns.positions[e];
             let p = d.norm();
-            let (now, slope) = bar_energy::pull(mesh, input, e, carried.taut, p);
+            let bar = PlainBar::of(mesh, input, e);
+            let (now, slope) = bar.pull(carried.branch, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
-            *carried = bar_energy::BarIterate { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
+            *carried = bar_energy::BarIterate { pull: now + slope * along, branch: bar.branch(p + along) };
         }
         self.place(mesh, unknowns, part);
     }

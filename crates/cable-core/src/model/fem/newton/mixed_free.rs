@@ -20,7 +20,7 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::system::{Converged, Mesh, StepInput, Unknowns, bar_energy};
+use crate::model::fem::system::{BarBranch, Converged, Mesh, PlainBar, StepInput, Unknowns, bar_energy};
 
 /// Roundings of a coordinate that a bar's length may be off by.
 const ROUNDING: f64 = 16.0;
@@ -35,8 +35,8 @@ pub struct MixedFreeSolver {
     pull: Vec<f64>,
     /// Pull of each bar as long as it is, N.
     present: Vec<f64>,
-    /// True if each bar counts as stretched.
-    taut: Vec<bool>,
+    /// The branch of the law of each bar on which it is.
+    branch: Vec<BarBranch>,
     /// (k + c) and t of each bar.
     hold: Vec<(f64, Vec2)>,
     /// Unbalanced force on each node with the pulls carried, N.
@@ -86,7 +86,7 @@ impl MixedFreeSolver {
         let (nodes, bars) = (mesh.nodes(), mesh.rest_length.len());
         self.pull.resize(bars, 0.0);
         self.present.resize(bars, 0.0);
-        self.taut.resize(bars, true);
+        self.branch.resize(bars, BarBranch::Taut);
         self.hold.resize(bars, (0.0, Vec2::zeros()));
         self.between.resize(bars, [0.0; 3]);
         self.gradient.resize(nodes, Vec2::zeros());
@@ -125,10 +125,10 @@ impl MixedFreeSolver {
     /// The pulls with which the step begins: nearer to those it ends with than those of bars moved
     /// on each by itself.
     fn begin(&mut self, mesh: &Mesh, input: &StepInput) {
-        for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
-            let strain = (input.supports.start[e + 1] - input.supports.start[e]).norm() / mesh.rest_length[e] - 1.0;
-            *taut = strain >= 0.0;
-            *pull = bar_energy::stiffness(mesh, *taut) * strain;
+        for (e, (pull, branch)) in self.pull.iter_mut().zip(&mut self.branch).enumerate() {
+            let (p, l) = ((input.supports.start[e + 1] - input.supports.start[e]).norm(), mesh.rest_length[e]);
+            *branch = PlainBar::of(mesh, input, e).branch(p);
+            *pull = bar_energy::stiffness(mesh, p >= l) * (p / l - 1.0);
         }
     }
 
@@ -144,11 +144,9 @@ impl MixedFreeSolver {
         }
         let mut balance = EquilibriumResidual { force: 0.0, pull: 0.0 };
         for e in 0..mesh.rest_length.len() {
-            let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
+            let d = x[e + 1] - x[e];
             let p = d.norm();
-            let elastic = bar_energy::stiffness(mesh, self.taut[e]) / l;
-            let (loss, slope) = input.loss_at(e, self.taut[e] || !mesh.is_flexible(), l, p);
-            let (stiffness, now) = (elastic + slope, elastic * (p - l) + loss);
+            let (now, stiffness) = PlainBar::of(mesh, input, e).pull(self.branch[e], p);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
             let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();
@@ -237,9 +235,8 @@ impl MixedFreeSolver {
         let part = if longest > input.stopping.max_move { input.stopping.max_move / longest } else { 1.0 };
         for (e, &(stiffness, t)) in self.hold.iter().enumerate() {
             let by = t.dot(&(self.step[e + 1] - self.step[e])) * part;
-            let l = mesh.rest_length[e];
             self.pull[e] = self.present[e] + stiffness * by;
-            self.taut[e] = (x[e + 1] - x[e]).norm() + by >= l;
+            self.branch[e] = PlainBar::of(mesh, input, e).branch((x[e + 1] - x[e]).norm() + by);
         }
         for (k, x) in x.iter_mut().enumerate() {
             *x += self.step[k] * part;

@@ -29,13 +29,111 @@ pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
 }
 
+/// The way in which a bar answers a change of its length in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BarBranch {
+    /// It gives way sideways: no force.
+    Loose,
+    /// It is shorter than its material, but becomes longer: its loss alone pulls.
+    Unfolding,
+    /// It is stretched, or has bending stiffness.
+    Taut,
+}
+
 /// The values of a bar that one iteration passes to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarIterate {
     /// Its pull, N.
     pub pull: f64,
-    /// True if it counts as stretched.
-    pub taut: bool,
+    /// The branch on which it is.
+    pub branch: BarBranch,
+}
+
+/// A bar between nodes that move with the material, in a step: its pull is piecewise linear in its
+/// length, continuous, and never falls as it becomes longer.
+///
+/// Stretch pulls by EA (P/L − 1), loss by c (P − P̂)/L, and where the bar is shorter than its material
+/// with the slope of a slack bar instead. A flexible bar only pulls, its loss included: what its ends
+/// come nearer to each other is taken up sideways, by no force. With a loss that pushed, a cable that
+/// hung plumb stood as a column on the floor that it was lowered on, and pushed its riser up with 35
+/// times its weight.
+#[derive(Clone, Copy, Debug)]
+pub struct PlainBar {
+    /// Unstretched length, m.
+    length: f64,
+    /// Slope of the pull where it is stretched and where it is not, N/m.
+    slopes: [f64; 2],
+    /// Pull at its unstretched length, N.
+    at_rest_length: f64,
+    /// True if it only pulls.
+    flexible: bool,
+}
+
+impl PlainBar {
+    /// Bar `e` of a mesh.
+    #[inline]
+    #[must_use]
+    pub fn of(mesh: &Mesh, input: &StepInput, e: usize) -> Self {
+        let (length, flexible) = (mesh.rest_length[e], mesh.is_flexible());
+        let [taut, slack] = input.losses.bars.get(e).copied().unwrap_or_default();
+        let at_rest_length = if taut == 0.0 { 0.0 } else { taut / length * (length - input.losses.predicted_length[e]) };
+        Self { length, slopes: [(mesh.axial_stiffness + taut) / length, slack / length], at_rest_length, flexible }
+    }
+
+    /// The branch on which it is at a length, m.
+    #[inline]
+    #[must_use]
+    pub fn branch(&self, p: f64) -> BarBranch {
+        let from_rest = p - self.length;
+        if !self.flexible {
+            BarBranch::Taut
+        } else if from_rest >= 0.0 {
+            if self.at_rest_length + self.slopes[0] * from_rest >= 0.0 { BarBranch::Taut } else { BarBranch::Loose }
+        } else if self.at_rest_length + self.slopes[1] * from_rest > 0.0 {
+            BarBranch::Unfolding
+        } else {
+            BarBranch::Loose
+        }
+    }
+
+    /// The greatest pull, N, that a branch which does not belong to a length (m) has there by
+    /// rounding.
+    #[inline]
+    #[must_use]
+    pub fn is_on(&self, branch: BarBranch, p: f64, rounding: f64) -> bool {
+        branch == self.branch(p)
+            || (self.pull(branch, p).0 - self.pull(self.branch(p), p).0).abs() <= rounding * self.slopes[0] * self.length
+    }
+
+    /// Its pull on a branch, N, and the slope of that by its length, N/m.
+    #[inline]
+    #[must_use]
+    pub fn pull(&self, branch: BarBranch, p: f64) -> (f64, f64) {
+        let slope = match branch {
+            BarBranch::Loose => return (0.0, 0.0),
+            BarBranch::Unfolding => self.slopes[1],
+            BarBranch::Taut => self.slopes[0],
+        };
+        (self.at_rest_length + slope * (p - self.length), slope)
+    }
+
+    /// The energy of which that is the slope, J; continuous over the branches.
+    #[inline]
+    #[must_use]
+    pub fn energy(&self, branch: BarBranch, p: f64) -> f64 {
+        let [taut, slack] = self.slopes;
+        let from_rest = p - self.length;
+        let parabola = |slope: f64| from_rest * (self.at_rest_length + 0.5 * slope * from_rest);
+        match branch {
+            BarBranch::Taut => parabola(taut),
+            BarBranch::Unfolding => parabola(slack),
+            BarBranch::Loose => {
+                // Where the pull ends.
+                let slope = if self.at_rest_length > 0.0 { slack } else { taut };
+                if slope > 0.0 { -0.5 * self.at_rest_length * self.at_rest_length / slope } else { 0.0 }
+            }
+        }
+    }
 }
 
 /// Unstretched length of a bar at unknowns, m.
@@ -132,17 +230,6 @@ pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
 }
 
-/// The pull at the present length P of a bar between nodes that move with the material, and its
-/// slope by P, N and N/m.
-#[inline]
-#[must_use]
-pub fn pull(mesh: &Mesh, input: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
-    let l = mesh.rest_length[e];
-    let stiffness = stiffness(mesh, taut);
-    let (loss, slope) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
-    (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
-}
-
 /// Adds all bars; returns their energy and the size of what was summed (its rounding counted in),
 /// J. The stiffness across a bar is that of the pull `carried`, if there are such, not that of its
 /// present length.
@@ -181,17 +268,15 @@ fn add(
     carried: Option<&BarIterate>,
 ) -> (f64, f64) {
     let d = x[e + 1] - x[e];
-    let (p, l, scale) = (d.norm(), mesh.rest_length[e], input.scale[e]);
+    let (p, scale) = (d.norm(), input.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
-    let taut = carried.map_or(!(p < l), |c| c.taut);
-    let stiffness = stiffness(mesh, taut) / l;
-    let lossy = taut || !mesh.is_flexible();
-    let (loss, c) = input.loss_at(e, lossy, l, p);
-    let pull = stiffness * (p - l) + loss;
+    let bar = PlainBar::of(mesh, input, e);
+    let branch = carried.map_or_else(|| bar.branch(p), |c| c.branch);
+    let (pull, slope) = bar.pull(branch, p);
     let across = carried.map_or(pull, |c| c.pull);
     let clip = curvature == Curvature::Clipped && across < 0.0;
     let geometric = if p > 0.0 && !clip { scale * across / p } else { 0.0 };
-    let along = scale * (stiffness + c) - geometric;
+    let along = scale * slope - geometric;
     let gradient = t * (pull * scale);
     if let Some([ax, ay, bx, by]) = s.gradient.get_mut(2 * e..).and_then(|g| g.first_chunk_mut()) {
         *ax -= gradient.x;
@@ -200,7 +285,7 @@ fn add(
         *by += gradient.y;
     }
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
-    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * input.loss_energy(e, lossy, l, p));
+    let energy = scale * bar.energy(branch, p);
     // The undamped Newton does not use the energy, so its round-off is not estimated.
     let rounding = if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * x[e].norm() };
     (energy, energy + rounding)

@@ -127,33 +127,6 @@ pub struct StoppingCriteria {
 }
 
 impl StepInput {
-    /// Force of the loss of bar `e` of rest length `l` at a length `p` (m), and its slope by that,
-    /// N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack bar
-    /// from there on.
-    #[inline]
-    #[must_use]
-    pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
-        let [c, slack] = self.losses.bars.get(e).copied().unwrap_or_default();
-        let late = self.losses.predicted_length[e];
-        if taut || c == slack {
-            (c / l * (p - late), c / l)
-        } else {
-            (c / l * (l - late) + slack / l * (p - l), slack / l)
-        }
-    }
-
-    /// The energy of which that is the slope, J.
-    #[inline]
-    #[must_use]
-    pub fn loss_energy(&self, e: usize, taut: bool, l: f64, p: f64) -> f64 {
-        let [c, slack] = self.losses.bars.get(e).copied().unwrap_or_default();
-        let late = self.losses.predicted_length[e];
-        if taut || c == slack {
-            return 0.5 * (c / l) * (p - late) * (p - late);
-        }
-        (0.5 * c * (l - late) * (l - late) + c * (l - late) * (p - l) + 0.5 * slack * (p - l) * (p - l)) / l
-    }
-
     /// EA τ a of a bar with a sliding node, N.
     #[inline]
     #[must_use]

@@ -18,7 +18,7 @@ use crate::math::Vec2;
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight::{self};
-use crate::model::fem::system::{ContactPair, Mesh, Unknowns, Weight, bar_energy, bends_slope};
+use crate::model::fem::system::{ContactPair, Mesh, PlainBar, Unknowns, Weight, bar_energy, bends_slope};
 use crate::model::fem::time::loss_memory;
 use crate::scene::SupportKind;
 use crate::solution::Energy;
@@ -201,7 +201,8 @@ impl BalancedStep<'_> {
         let p = d.norm();
         let taut = !(p < l);
         let pull = bar_energy::stiffness(mesh, taut) / l * (p - l);
-        let (loss, _) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
+        let bar = PlainBar::of(mesh, input, e);
+        let loss = bar.pull(bar.branch(p), p).0 - pull;
         let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
         if loss != 0.0 {
             let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
