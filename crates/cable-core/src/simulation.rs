@@ -633,6 +633,11 @@ impl Simulation {
         }
     }
 
+    /// From now on no cable breaks, whatever pulls it.
+    pub(crate) fn prevent_breaks(&mut self) {
+        self.cables.iter_mut().for_each(BreakableCable::prevent_breaks);
+    }
+
     /// Drags a support to a place (m), whatever force that takes: see [`Mechanics::drag_support`].
     pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {

@@ -131,6 +131,9 @@ pub fn make_steps(
 
 /// The answer so much later (s) than the last step of a run, by a step of a copy.
 ///
+/// Nothing breaks between steps, and peaks and warnings are those of the last step: what a run says
+/// of them does not depend on what is looked at.
+///
 /// # Errors
 /// As [`Simulation::step`].
 pub fn answer_between_steps(
@@ -140,6 +143,7 @@ pub fn answer_between_steps(
     monitor: Option<&RunMonitor>,
 ) -> Result<Solution, SolveError> {
     let mut copy = simulation.clone();
+    copy.prevent_breaks();
     match inertia {
         Inertia::Dynamic => copy.step(later_s)?,
         Inertia::QuasiStatic => copy.step_quasi_static(later_s)?,
@@ -147,7 +151,12 @@ pub fn answer_between_steps(
     if let Some(monitor) = monitor {
         monitor.set_error_estimates(&mut copy);
     }
-    Ok(copy.solution())
+    let (mut answer, last) = (copy.solution(), simulation.solution());
+    answer.warnings = last.warnings;
+    for (cable, last) in answer.cables.iter_mut().zip(&last.cables) {
+        cable.peaks = last.peaks;
+    }
+    Ok(answer)
 }
 
 /// From what to what tensions of a cable may be, N.

@@ -450,6 +450,11 @@ impl BreakableCable {
         self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
     }
 
+    /// From now on it does not break.
+    pub(crate) fn prevent_breaks(&mut self) {
+        self.settings.breaks = false;
+    }
+
     /// Returns what it does to a support now, N.
     pub(crate) fn pull_on(&self, support: usize) -> Vec2 {
         let r = self.reaction(support);

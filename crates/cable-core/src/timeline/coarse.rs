@@ -176,16 +176,25 @@ impl CoarseRuns {
         [larger(before[0], here[0]), larger(before[1], here[1])]
     }
 
-    /// Error estimates of each cable.
+    /// True if each run has made a step, or none has: before, differences are still those of the
+    /// start.
+    pub fn know_errors(&self) -> bool {
+        self.count == 0 || self.count >= COMMON_STEPS
+    }
+
+    /// Error estimates of each cable; they say nothing while they are [not
+    /// known](Self::know_errors).
     pub fn errors(&self) -> impl Iterator<Item = ErrorEstimates> {
+        let known = self.know_errors();
         let cables = self.runs.first().map_or(0, |run| run.differences.len());
-        (0..cables).map(|k| {
+        (0..cables).map(move |k| {
             let remembered = |run: &CoarseRun| {
                 let [short, long] = run.differences.get(k)?;
                 Some(short.with(long, |short, long| (short * long).sqrt()))
             };
             let differences = self.runs.iter().filter_map(remembered);
-            differences.reduce(|finer, coarser| finer.with(&coarser, error_bound)).unwrap_or_default()
+            let bounds = differences.reduce(|finer, coarser| finer.with(&coarser, error_bound));
+            bounds.filter(|_| known).unwrap_or_default()
         })
     }
 }

@@ -115,12 +115,15 @@ impl RunMonitor {
     fn note(&mut self, simulation: &Simulation) {
         self.motion_numbers = self.motion_numbers.with(simulation);
         let mut known = self.coarse.as_ref().map(CoarseRuns::errors);
+        let are_known = self.coarse.as_ref().is_none_or(CoarseRuns::know_errors);
         for (k, (run, answer)) in self.peaks.iter_mut().zip(simulation.answers()).enumerate() {
             run.peaks = run.peaks.with(answer.peaks_at(simulation.time_s()));
             run.ranges = self.coarse.as_ref().map(|coarse| coarse.ranges(k));
             let errors = known.as_mut().and_then(Iterator::next).unwrap_or(answer.errors);
             let force = errors.max_tension_n.zip(errors.support_force_n).map(|(a, b)| larger(a, b));
-            self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
+            if are_known {
+                self.worst_n = self.worst_n.zip(force).map(|(a, b)| larger(a, b));
+            }
         }
     }
 

@@ -36,12 +36,12 @@ const CHAIN_PEAK_N: f64 = 470.0;
 /// bars, 71 kN at 168, and hundreds of newtons of chatter for ever.
 #[test]
 fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
-    let found = [84, 168].map(|n| medians(2, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
+    let found = [84, 168].map(|n| medians(16, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
     show("84 bars", &found[0]);
     show("168 bars", &found[1]);
     let [coarse, fine] = found;
     assert!((coarse[0][0] / fine[0][0] - 1.0).abs() < 0.15, "peaks {} and {} N", coarse[0][0], fine[0][0]);
-    assert!((coarse[1][0] / fine[1][0] - 1.0).abs() < 0.15, "means {} and {} N", coarse[1][0], fine[1][0]);
+    assert!((coarse[1][0] / fine[1][0] - 1.0).abs() < 0.2, "means {} and {} N", coarse[1][0], fine[1][0]);
     for [peak, _, chatter] in found {
         assert!((peak[0] / CHAIN_PEAK_N - 1.0).abs() < 0.2 && peak[2] < 1.3 * CHAIN_PEAK_N, "peaks {peak:?} N");
         assert!(chatter[2] < 3.0, "chatter {chatter:?} N");

@@ -352,8 +352,8 @@ mod tests {
     /// Landing nodes are thrown together along the floor with forces of kN: where friction was not
     /// found by branches, 14 of these steps went to and fro until the minimiser was asked. A step
     /// in which a node lands is balanced twice, as friction follows the normal forces of its own
-    /// step: 495 iterations and 17 steps of a dozen or more, below 380 and none where friction was
-    /// that of the step before.
+    /// step: 591 iterations and 28 steps of a dozen or more. (495 and 17 where slack bars resisted
+    /// as strongly as taut ones do; below 380 and none where friction was that of the step before.)
     #[test]
     fn a_landing_front_is_found_without_the_minimiser() {
         let mut d = dropped(1.0, 100);
@@ -364,7 +364,7 @@ mod tests {
             assert_eq!(cost.halved_steps, 0);
         }
         println!("{whole} iterations, {long} steps of a dozen or more");
-        assert!(long < 24 && whole < 560, "{whole} {long}");
+        assert!(long < 34 && whole < 660, "{whole} {long}");
     }
 
     /// Chance decides which steps the undamped Newton does not solve; over many drops it does not.
@@ -382,10 +382,10 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 7087 and 10, as a landing is balanced twice since friction follows the normal
-        // forces of its own step. With those of the step before 4429 and none, from another first
-        // rest 4731 and 3; and 6702 and 19 where contacts were thrown across holding.
-        assert!(whole < 7800 && long < 16, "{whole} iterations, {long} steps left to the minimiser");
+        // Measured: 14 562 and 250, since slack bars give way: where the nodes of a front are thrown
+        // together, which bars buckle is found by the minimiser. With slack bars that resisted as
+        // taut ones 7087 and 10.
+        assert!(whole < 16_000 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
     }
 
     proptest! {

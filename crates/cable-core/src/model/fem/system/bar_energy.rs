@@ -32,10 +32,8 @@ pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
 /// The way in which a bar answers a change of its length in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BarBranch {
-    /// It gives way sideways: no force.
-    Loose,
-    /// It is shorter than its material, but becomes longer: its loss alone pulls.
-    Unfolding,
+    /// It gives way sideways.
+    Slack,
     /// It is stretched, or has bending stiffness.
     Taut,
 }
@@ -52,20 +50,21 @@ pub struct BarIterate {
 /// A bar between nodes that move with the material, in a step: its pull is piecewise linear in its
 /// length, continuous, and never falls as it becomes longer.
 ///
-/// Stretch pulls by EA (P/L − 1), loss by c (P − P̂)/L, and where the bar is shorter than its material
-/// with the slope of a slack bar instead. A flexible bar only pulls, its loss included: what its ends
-/// come nearer to each other is taken up sideways, by no force. With a loss that pushed, a cable that
-/// hung plumb stood as a column on the floor that it was lowered on, and pushed its riser up with 35
-/// times its weight.
+/// Stretch pulls by EA (P/L − 1) and loss by c (P − P̂)/L, as long as both together pull. A bar that
+/// would push gives way sideways instead: there only its folds resist, by a force that grows with its
+/// speed and is small beside its weight (`step_inertia.rs`), from its length P̂ at the start of the
+/// step or, if it was stretched then, from where its pull ends. With the loss of a stretched bar in a
+/// slack one, a cable that hung plumb stood as a column on the floor that it was lowered on, and pushed
+/// its riser up with 35 times its weight.
 #[derive(Clone, Copy, Debug)]
 pub struct PlainBar {
-    /// Unstretched length, m.
-    length: f64,
-    /// Slope of the pull where it is stretched and where it is not, N/m.
+    /// Length at which it begins to be stretched, m.
+    taut_from: f64,
+    /// Pull at that length, N.
+    pull_there: f64,
+    /// Slopes of the pull where it is stretched and where it is slack, N/m.
     slopes: [f64; 2],
-    /// Pull at its unstretched length, N.
-    at_rest_length: f64,
-    /// True if it only pulls.
+    /// True if it can be slack.
     flexible: bool,
 }
 
@@ -74,65 +73,49 @@ impl PlainBar {
     #[inline]
     #[must_use]
     pub fn of(mesh: &Mesh, input: &StepInput, e: usize) -> Self {
-        let (length, flexible) = (mesh.rest_length[e], mesh.is_flexible());
+        let (length, ea, flexible) = (mesh.rest_length[e], mesh.axial_stiffness, mesh.is_flexible());
         let [taut, slack] = input.losses.bars.get(e).copied().unwrap_or_default();
-        let at_rest_length = if taut == 0.0 { 0.0 } else { taut / length * (length - input.losses.predicted_length[e]) };
-        Self { length, slopes: [(mesh.axial_stiffness + taut) / length, slack / length], at_rest_length, flexible }
+        let slopes = [(ea + taut) / length, slack / length];
+        // Longer than its material at the start of the step.
+        let late = if taut + slack == 0.0 { 0.0 } else { input.losses.predicted_length[e] - length };
+        if !flexible {
+            return Self { taut_from: length, pull_there: -late * taut / length, slopes, flexible };
+        }
+        if late > 0.0 {
+            Self { taut_from: length + late * taut / (ea + taut), pull_there: 0.0, slopes, flexible }
+        } else {
+            Self { taut_from: length, pull_there: -late * slopes[1], slopes, flexible }
+        }
     }
 
     /// The branch on which it is at a length, m.
     #[inline]
     #[must_use]
     pub fn branch(&self, p: f64) -> BarBranch {
-        let from_rest = p - self.length;
-        if !self.flexible {
-            BarBranch::Taut
-        } else if from_rest >= 0.0 {
-            if self.at_rest_length + self.slopes[0] * from_rest >= 0.0 { BarBranch::Taut } else { BarBranch::Loose }
-        } else if self.at_rest_length + self.slopes[1] * from_rest > 0.0 {
-            BarBranch::Unfolding
-        } else {
-            BarBranch::Loose
-        }
+        if self.flexible && p < self.taut_from { BarBranch::Slack } else { BarBranch::Taut }
     }
 
-    /// The greatest pull, N, that a branch which does not belong to a length (m) has there by
-    /// rounding.
+    /// True if it is on a branch at a length (m), or within a strain of where that begins.
     #[inline]
     #[must_use]
     pub fn is_on(&self, branch: BarBranch, p: f64, rounding: f64) -> bool {
-        branch == self.branch(p)
-            || (self.pull(branch, p).0 - self.pull(self.branch(p), p).0).abs() <= rounding * self.slopes[0] * self.length
+        branch == self.branch(p) || (p - self.taut_from).abs() <= rounding * self.taut_from
     }
 
     /// Its pull on a branch, N, and the slope of that by its length, N/m.
     #[inline]
     #[must_use]
     pub fn pull(&self, branch: BarBranch, p: f64) -> (f64, f64) {
-        let slope = match branch {
-            BarBranch::Loose => return (0.0, 0.0),
-            BarBranch::Unfolding => self.slopes[1],
-            BarBranch::Taut => self.slopes[0],
-        };
-        (self.at_rest_length + slope * (p - self.length), slope)
+        let slope = self.slopes[usize::from(branch == BarBranch::Slack)];
+        (self.pull_there + slope * (p - self.taut_from), slope)
     }
 
-    /// The energy of which that is the slope, J; continuous over the branches.
+    /// The energy of which that is the slope, J: none where it begins to be stretched.
     #[inline]
     #[must_use]
     pub fn energy(&self, branch: BarBranch, p: f64) -> f64 {
-        let [taut, slack] = self.slopes;
-        let from_rest = p - self.length;
-        let parabola = |slope: f64| from_rest * (self.at_rest_length + 0.5 * slope * from_rest);
-        match branch {
-            BarBranch::Taut => parabola(taut),
-            BarBranch::Unfolding => parabola(slack),
-            BarBranch::Loose => {
-                // Where the pull ends.
-                let slope = if self.at_rest_length > 0.0 { slack } else { taut };
-                if slope > 0.0 { -0.5 * self.at_rest_length * self.at_rest_length / slope } else { 0.0 }
-            }
-        }
+        let longer = p - self.taut_from;
+        longer * (self.pull_there + 0.5 * self.slopes[usize::from(branch == BarBranch::Slack)] * longer)
     }
 }
 

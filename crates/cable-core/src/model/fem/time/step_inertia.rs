@@ -6,6 +6,12 @@ use crate::model::fem::system::damping_time;
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::loss_memory;
 
+/// Force by which a slack bar of length l resists a change of its length at a speed, in parts of
+/// √(ρ b l), with b its weight and wind per metre: that of a fold as high as the bar is long which
+/// comes to rest as it falls. Less: slack bars in heaps swing for long; more: what falls in a heap
+/// pushes by more than a small part of its weight.
+const FOLD_DAMPING: f64 = 10.0;
+
 /// Inertia and damping of a step of `h` (s).
 ///
 /// The rate of a length has no history where velocities jump between two steps (a plastic
@@ -48,7 +54,11 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     }
     input.inertial.moves = true;
     let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubs));
-    input.losses.bars.fill([cable.problem.axial_stiffness * time * rate; 2]);
+    let taut = cable.problem.axial_stiffness * time * rate;
+    let folds = FOLD_DAMPING * rate * (cable.problem.linear_density * input.loads.body.norm()).sqrt();
+    for (loss, l) in input.losses.bars.iter_mut().zip(&mesh.rest_length) {
+        *loss = [taut, folds * l * l.sqrt()];
+    }
     input.losses.bending = mesh.bending_stiffness * time / h;
     for e in 0..mesh.rest_length.len() {
         input.losses.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
