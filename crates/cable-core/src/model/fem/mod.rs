@@ -8,7 +8,7 @@
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
-//! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
+//! | `newton` | one step: the choice of its solver, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
