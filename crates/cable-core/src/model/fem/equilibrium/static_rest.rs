@@ -5,11 +5,11 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::relaxation::moved_away;
+use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, bow, depenetrate};
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way, put_outline};
 use crate::model::fem::results;
 use crate::model::fem::state::{CableState, prepare_input};
 use crate::model::fem::system::{Converged, Failure, FailureCause, load_scale, tolerance};
-use crate::model::fem::transfer::{PUSHED_OUT_REACHES, bow, depenetrate};
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
