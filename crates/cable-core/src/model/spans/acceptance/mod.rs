@@ -5,12 +5,9 @@
 //! | `equilibrium.rs` | spans by quadrature, contact and global balance, friction cone |
 //! | `clearance.rs` | proof that nothing is inside an obstacle, by halving bounding triangles |
 //! | `tunnelling.rs` | did a step pass the cable through a corner? shapes before and after |
-//! | `tension_loss.rs` | did a step fail because the cable lost its tension, and where? |
 
 pub(in crate::model::spans) mod clearance;
 pub(in crate::model::spans) mod equilibrium;
-pub(in crate::model::spans) mod tension_loss;
 pub(in crate::model::spans) mod tunnelling;
 
-pub(in crate::model::spans) use tension_loss::find;
 pub(in crate::model::spans) use tunnelling::{Side, tangent};
