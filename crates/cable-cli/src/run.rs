@@ -21,14 +21,14 @@ use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::CommandResult;
-use crate::answer::{Figures, NoAnswer, RunPeaksEntry, answer};
+use crate::answer_json::{Figures, NoAnswer, RunPeaksEntry, answer};
+use crate::answer_text::answer_text;
 use crate::args::RunArguments;
 use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::{Printer, Progress};
 use crate::signals::Signals;
 use crate::summary::neglected_at_first_rest;
-use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
 const MAX_OUTPUTS: f64 = 1e7;
@@ -382,7 +382,7 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
-        printer.line(table(&last, &figures).trim_end())?;
+        printer.line(answer_text(&last, &figures).trim_end())?;
         for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
             printer.line(&line)?;
         }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use cable_core::summary::{CablePlace, CableSummary, EndForce, EndStiffness, NeglectedBending, TouchKind};
 
-use crate::answer::Figures;
+use crate::answer_json::Figures;
 
 /// Appends a block a cable. Writing to a `String` cannot fail, so its results are not looked at.
 pub fn write(t: &mut String, figures: &Figures) {
