@@ -7,6 +7,7 @@
 
 mod coarse;
 mod monitor;
+mod motion_numbers;
 mod without_inertia;
 
 pub use self::monitor::RunMonitor;
