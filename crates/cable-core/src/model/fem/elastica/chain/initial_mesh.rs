@@ -2,7 +2,7 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
-use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
+use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
 use crate::scene::SupportKind;
