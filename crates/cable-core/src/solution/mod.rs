@@ -10,6 +10,7 @@
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `inertia_effect.rs` | [`InertiaEffect`]: how fast a motion is, and what it would be without inertia |
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
+//! | `node_motion.rs` | displacements and accelerations of the nodes, from earlier ones |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
 mod energy_account;
@@ -17,6 +18,7 @@ pub mod error_estimates;
 mod inertia_effect;
 mod model_reason;
 mod next_cheaper;
+pub(crate) mod node_motion;
 pub mod robot_report;
 mod shared_nodes;
 mod warning;
