@@ -45,7 +45,7 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
-use crate::model::catenary::slack_without_weight;
+use crate::model::auxiliary_weight::slack_without_weight;
 use crate::model::gauge::TensionGauge;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
