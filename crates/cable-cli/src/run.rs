@@ -17,7 +17,7 @@ use cable_core::solution::{
     EnergyAccount, InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
 };
 use cable_core::summary::{neglected_bending, scene_with_bending, summaries};
-use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
+use cable_core::timeline::{Instant as Moment, Refinement, RunPeaks, Timeline, refine_until_accurate};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::CommandResult;
@@ -401,37 +401,19 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     Ok(())
 }
 
-/// A run without outputs for every time it is to be finer, until errors are as asked: the
-/// simulation to begin with, settled, and its step.
-fn refine_until_accurate(
-    mut simulation: Simulation,
-    inertia: Inertia,
-    arguments: &RunArguments,
-) -> Result<(Simulation, Option<f64>), SolveError> {
-    let (mut step, mut before) = (arguments.step, f64::INFINITY);
-    for _ in 0..arguments.refinements() {
-        let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
-        timeline.at(Moment::nearest(arguments.duration_s), |_| ())?;
-        let Some(error) = timeline.monitor().relative_error() else { break };
-        // Where a finer run is no nearer, paths are chaotic: still finer ones are not either.
-        if error <= arguments.common.tolerance() || error > before {
-            break;
-        }
-        before = error;
-        let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
-        finer.settle()?;
-        step = Some(0.5 * timeline.step_s());
-        simulation = finer;
-    }
-    Ok((simulation, step))
-}
-
 /// Output k lies at k·every, the last one exactly at the end.
 fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> CommandResult {
     if let Err(e) = simulation.settle() {
         return Err(end_with_error(outputs, &simulation, e));
     }
-    let (simulation, step) = match refine_until_accurate(simulation.clone(), inertia, &outputs.arguments) {
+    let arguments = &outputs.arguments;
+    let asked = Refinement {
+        duration_s: arguments.duration_s,
+        step_s: arguments.step,
+        tolerance: arguments.common.tolerance(),
+        max_halvings: arguments.refinements(),
+    };
+    let (simulation, step) = match refine_until_accurate(simulation.clone(), inertia, &asked) {
         Ok(found) => found,
         Err(e) => return Err(end_with_error(outputs, &simulation, e)),
     };
