@@ -10,7 +10,7 @@
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: the choice of its solver, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
-//! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
+//! | `mesh`, `remesh` | nodes, bars, sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
 //! | `first_shape` | the first shape: along the route, clear of obstacles |
 //! | `transfer` | states and answers of other meshes and models |

@@ -2,7 +2,7 @@
 
 use crate::contact::Gap;
 use crate::math::Vec2;
-use crate::model::fem::system::Mesh;
+use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
 /// Passes of pushing the first shape out of obstacles. Ten are enough for routes drawn within a

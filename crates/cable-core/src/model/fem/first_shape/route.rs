@@ -2,7 +2,7 @@
 //! way.
 
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::system::Mesh;
+use crate::model::fem::mesh::Mesh;
 use crate::numerics::bisect;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;

@@ -20,7 +20,8 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::system::{Converged, Mesh, StepInput, Unknowns, bar_energy};
+use crate::model::fem::mesh::Mesh;
+use crate::model::fem::system::{Converged, StepInput, Unknowns, bar_energy};
 
 /// Roundings of a coordinate that a bar's length may be off by.
 const ROUNDING: f64 = 16.0;
