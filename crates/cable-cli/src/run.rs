@@ -9,6 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
+use cable_core::analysis::{neglected_bending, scene_with_bending};
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
@@ -16,7 +17,7 @@ use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{
     EnergyAccount, InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
 };
-use cable_core::summary::{neglected_bending, scene_with_bending, summaries};
+use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, Refinement, RunPeaks, Timeline, refine_until_accurate};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 

@@ -2,7 +2,8 @@
 
 use std::time::Instant;
 
-use cable_core::summary::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending, summaries};
+use cable_core::analysis::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending};
+use cable_core::summary::summaries;
 use cable_core::{Scene, Solution};
 
 use crate::CommandResult;

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use cable_core::summary::{CablePlace, CableSummary, EndForce, EndStiffness, NeglectedBending, TouchKind};
+use cable_core::analysis::{EndStiffness, NeglectedBending};
+use cable_core::summary::{CablePlace, CableSummary, EndForce, TouchKind};
 
 use crate::answer_json::Figures;
 
