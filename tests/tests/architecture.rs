@@ -33,6 +33,32 @@ fn architecture_names_only_paths_that_exist() {
     assert!(missing.is_empty(), "ARCHITECTURE.md names what is not there: {missing:?}");
 }
 
+/// A name that several files have leads nowhere. A name without a folder is that of one file below
+/// the path that its row begins with.
+#[test]
+fn a_file_named_in_architecture_is_exactly_one() {
+    let from = ["", "crates/cable-core/src", "crates/cable-viewer/src"].map(|f| root().join(f));
+    // Every folder has the one, every model the other.
+    let general = ["mod.rs", "settings.rs"];
+    let mut wrong = Vec::new();
+    for line in read("ARCHITECTURE.md").lines() {
+        let row = line.strip_prefix("| `").and_then(|rest| rest.split('`').next()).unwrap_or("crates");
+        let folder = root().join(row.trim_end_matches(".rs"));
+        let below = if folder.is_dir() { files_below(&folder) } else { Vec::new() };
+        let words = line.split('`').skip(1).step_by(2).filter(|w| w.ends_with(".rs") && !general.contains(w));
+        for word in words {
+            let found = match word.contains('/') {
+                true => from.iter().filter(|f| f.join(word).exists()).count(),
+                false => below.iter().filter(|f| f.ends_with(word)).count(),
+            };
+            if found != 1 {
+                wrong.push(format!("`{word}` of `{row}`: {found} files"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "ARCHITECTURE.md names files that are not exactly one: {wrong:#?}");
+}
+
 /// The files below a folder.
 fn files_below(folder: &Path) -> Vec<PathBuf> {
     let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);

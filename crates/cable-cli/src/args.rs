@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use cable_core::analysis::Bending;
 use cable_core::model::mass_spring::Stepping;
 use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
 use cable_core::scene::FrictionMobilised;
-use cable_core::summary::Bending;
 use cable_core::{Model, Settings};
 use clap::{Args, Parser, Subcommand};
 

@@ -3,7 +3,8 @@
 //! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; 130 and
 //! 143 where SIGINT or SIGTERM ended a run.
 
-mod answer;
+mod answer_json;
+mod answer_text;
 mod args;
 mod check;
 mod failure;
@@ -15,7 +16,6 @@ mod schema;
 mod signals;
 mod solve;
 mod summary;
-mod table;
 mod waiting;
 
 use std::process::ExitCode;

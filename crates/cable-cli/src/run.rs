@@ -9,6 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::time::{Duration, Instant};
 
+use cable_core::analysis::{neglected_bending, scene_with_bending};
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
@@ -16,19 +17,19 @@ use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{
     EnergyAccount, InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,
 };
-use cable_core::summary::{neglected_bending, scene_with_bending, summaries};
-use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
+use cable_core::summary::summaries;
+use cable_core::timeline::{Instant as Moment, Refinement, RunPeaks, Timeline, refine_until_accurate};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::CommandResult;
-use crate::answer::{Figures, NoAnswer, RunPeaksEntry, answer};
+use crate::answer_json::{Figures, NoAnswer, RunPeaksEntry, answer};
+use crate::answer_text::answer_text;
 use crate::args::RunArguments;
 use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::{Printer, Progress};
 use crate::signals::Signals;
 use crate::summary::neglected_at_first_rest;
-use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
 const MAX_OUTPUTS: f64 = 1e7;
@@ -385,7 +386,7 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
-        printer.line(table(&last, &figures).trim_end())?;
+        printer.line(answer_text(&last, &figures).trim_end())?;
         for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
             printer.line(&line)?;
         }
@@ -404,37 +405,19 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     Ok(())
 }
 
-/// A run without outputs for every time it is to be finer, until errors are as asked: the
-/// simulation to begin with, settled, and its step.
-fn refine_until_accurate(
-    mut simulation: Simulation,
-    inertia: Inertia,
-    arguments: &RunArguments,
-) -> Result<(Simulation, Option<f64>), SolveError> {
-    let (mut step, mut before) = (arguments.step, f64::INFINITY);
-    for _ in 0..arguments.refinements() {
-        let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
-        timeline.at(Moment::nearest(arguments.duration_s), |_| ())?;
-        let Some(error) = timeline.monitor().relative_error() else { break };
-        // Where a finer run is no nearer, paths are chaotic: still finer ones are not either.
-        if error <= arguments.common.tolerance() || error > before {
-            break;
-        }
-        before = error;
-        let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
-        finer.settle()?;
-        step = Some(0.5 * timeline.step_s());
-        simulation = finer;
-    }
-    Ok((simulation, step))
-}
-
 /// Output k lies at k·every, the last one exactly at the end.
 fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> CommandResult {
     if let Err(e) = simulation.settle() {
         return Err(end_with_error(outputs, &simulation, e));
     }
-    let (simulation, step) = match refine_until_accurate(simulation.clone(), inertia, &outputs.arguments) {
+    let arguments = &outputs.arguments;
+    let asked = Refinement {
+        duration_s: arguments.duration_s,
+        step_s: arguments.step,
+        tolerance: arguments.common.tolerance(),
+        max_halvings: arguments.refinements(),
+    };
+    let (simulation, step) = match refine_until_accurate(simulation.clone(), inertia, &asked) {
         Ok(found) => found,
         Err(e) => return Err(end_with_error(outputs, &simulation, e)),
     };

@@ -2,16 +2,17 @@
 
 use std::time::Instant;
 
-use cable_core::summary::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending, summaries};
+use cable_core::analysis::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending};
+use cable_core::summary::summaries;
 use cable_core::{Scene, Solution};
 
 use crate::CommandResult;
-use crate::answer::{ComparedEntry, Figures, NoAnswer, answer};
+use crate::answer_json::{ComparedEntry, Figures, NoAnswer, answer};
+use crate::answer_text::answer_text;
 use crate::args::{Common, SolveArguments};
 use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::Printer;
-use crate::table::table;
 use crate::waiting::WaitingNotice;
 
 /// Finds where everything rests.
@@ -37,7 +38,7 @@ pub fn solve(arguments: &SolveArguments) -> CommandResult {
             if a.json {
                 out.json(&printable)?;
             } else {
-                out.line(table(&solution, &figures).trim_end())?;
+                out.line(answer_text(&solution, &figures).trim_end())?;
             }
             out.flush()
         }

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use cable_core::summary::{CablePlace, CableSummary, EndForce, EndStiffness, NeglectedBending, TouchKind};
+use cable_core::analysis::{EndStiffness, NeglectedBending};
+use cable_core::summary::{CablePlace, CableSummary, EndForce, TouchKind};
 
-use crate::answer::Figures;
+use crate::answer_json::Figures;
 
 /// Appends a block a cable. Writing to a `String` cannot fail, so its results are not looked at.
 pub fn write(t: &mut String, figures: &Figures) {

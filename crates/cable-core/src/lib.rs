@@ -23,7 +23,7 @@
 //! Dependencies between the modules point one way, as a test checks; those of one step do not know
 //! each other:
 //! `math, numerics, model_id, units → energy, verification → error → catenary, scene, solution
-//! → contact, kinematics, robot → problem, state → model, record, verify → breakage, files
+//! → contact, robot → problem, state → model, record, verify → breakage, files
 //! → warnings, wording → any_error → simulation → analysis, conformance, summary, timeline`.
 
 pub mod analysis;
@@ -35,7 +35,6 @@ pub mod contact;
 mod energy;
 pub mod error;
 pub mod files;
-mod kinematics;
 pub mod math;
 pub mod model;
 mod model_id;

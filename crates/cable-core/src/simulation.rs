@@ -21,7 +21,6 @@ use std::sync::Arc;
 use crate::any_error::Error;
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
-use crate::kinematics;
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
@@ -31,7 +30,7 @@ use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
     CableSolution, Cost, Energy, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node, SharedNodes, Solution,
-    TensionPeaks, Warning, WarningCause, WarningKind,
+    TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -265,7 +264,7 @@ impl Simulation {
             RunPhase::AtRest => self.initial_nodes = self.answers.iter().map(|a| a.nodes.clone()).collect(),
             RunPhase::InMotion => {
                 for (answer, first) in self.answers.iter_mut().zip(&self.initial_nodes) {
-                    kinematics::displace(&mut answer.nodes, first);
+                    node_motion::displace(&mut answer.nodes, first);
                 }
             }
         }
@@ -475,7 +474,7 @@ impl Simulation {
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
-            kinematics::accelerate(&mut answer.nodes, before, last_s);
+            node_motion::accelerate(&mut answer.nodes, before, last_s);
         }
         Ok(())
     }

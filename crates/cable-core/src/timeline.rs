@@ -7,9 +7,12 @@
 
 mod coarse;
 mod monitor;
+mod motion_numbers;
+mod refinement;
 mod without_inertia;
 
 pub use self::monitor::RunMonitor;
+pub use self::refinement::{Refinement, refine_until_accurate};
 
 use crate::error::SolveError;
 use crate::model::Inertia;

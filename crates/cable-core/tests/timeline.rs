@@ -3,11 +3,12 @@
 
 use cable_core::math::Vec2;
 use cable_core::model::Inertia;
+use cable_core::model::auto::Question;
 use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
 use cable_core::solution::TensionPeaks;
 use cable_core::solution::WarningKind;
 use cable_core::state::State;
-use cable_core::timeline::{Instant, RunMonitor, Timeline};
+use cable_core::timeline::{Instant, Refinement, RunMonitor, Timeline, refine_until_accurate};
 use cable_core::{Model, Settings, Simulation, SolveError};
 
 /// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the
@@ -225,4 +226,24 @@ fn steps_of_more_than_a_third_of_a_second_have_errors_too() {
     }
     let longer = Settings { inner_step_s: Some(1.5), ..Settings::default() };
     assert!(Simulation::with_settings(scene, Model::Fem, longer).is_err());
+}
+
+/// A cable drawn over the floor: errors are above a hundredth, and below it on elements and steps
+/// of a half or a quarter.
+#[test]
+fn a_run_is_refined_until_its_errors_are_as_asked() {
+    let run = |max_halvings| {
+        let settings = Settings { tolerance: 0.01, ..Settings::default() };
+        let question = Question::History(Inertia::Dynamic);
+        let mut sim = Simulation::for_question(catalog::floor_drag(), Model::Auto, settings, question).unwrap();
+        sim.settle().unwrap();
+        let asked = Refinement { duration_s: 1.0, step_s: None, tolerance: 0.01, max_halvings };
+        let (sim, step_s) = refine_until_accurate(sim, Inertia::Dynamic, &asked).unwrap();
+        let mut timeline = Timeline::new(sim, Inertia::Dynamic, step_s).unwrap().with_errors();
+        timeline.at(Instant::nearest(1.0), |_| ()).unwrap();
+        (timeline.monitor().relative_error().expect("an error"), timeline.step_s())
+    };
+    let ((coarse, long), (fine, short)) = (run(0), run(2));
+    assert!(coarse > 0.01 && fine <= 0.01, "{coarse} of the run, {fine} of the finer one");
+    assert!((long - 1.0 / 240.0).abs() < 1e-9 && short < 0.6 * long, "steps of {long} s and {short} s");
 }

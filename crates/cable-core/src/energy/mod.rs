@@ -1,9 +1,8 @@
-//! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m): `axial.rs`
-//! and `bending.rs`.
+//! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m).
 //!
 //! | room | content |
 //! |---|---|
-//! | `axial.rs` | stretching of a straight bar: tension, material and geometric stiffness |
+//! | `axial.rs` | pull of a straight bar; its energy in `axial_tests.rs` |
 //! | `bending.rs` | turn between two bars or out of a clamp: energy, gradient, Hessian |
 //!
 //! Every energy is a function of the positions of `N` neighbouring nodes. The force on a node is
@@ -11,6 +10,8 @@
 //! random and degenerate input.
 
 pub mod axial;
+#[cfg(test)]
+mod axial_tests;
 pub mod bending;
 
 use crate::math::{Mat2, Vec2};

@@ -8,7 +8,7 @@
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs` | the choice of a model |
 //! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
-//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `arc_nodes.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
@@ -17,6 +17,7 @@
 
 mod arc_nodes;
 pub mod auto;
+mod auxiliary_weight;
 pub mod catenary;
 pub mod fem;
 pub mod gauge;

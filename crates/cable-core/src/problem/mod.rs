@@ -12,11 +12,13 @@
 //! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
 //! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
+//! | `answer_energy.rs` | the energy of an answer, from its nodes and the numbers of the cable |
 //!
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor
 //! `thermal_stretch` on unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and
 //! wind are per metre of arc length.
 
+mod answer_energy;
 mod definition;
 mod describe_place;
 mod from_scene;

@@ -3,7 +3,6 @@
 //! | room | content |
 //! |---|---|
 //! | `history.rs` | tensions and reactions over time, in memory |
-//! | `energy.rs` | the energy of a cable, from its nodes |
 //! | `manifest.rs` | `run.toml`: what was asked, how far the run came, which files are its own |
 //! | `run_tables.rs` | the three tables of a run, read together |
 //! | `columns.rs`, `choice.rs` | names of the tables' columns; which nodes and figures are written |
@@ -31,7 +30,6 @@
 mod choice;
 mod columns;
 mod csv_records;
-mod energy;
 mod fingerprint;
 mod history;
 mod manifest;

@@ -3,6 +3,7 @@
 //! | room | data |
 //! |---|---|
 //! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
+//! | `energy.rs` | [`Energy`]: of motion, height, stretch and bending |
 //! | `energy_account.rs` | [`EnergyAccount`]: where a cable's energy came from and went to |
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
@@ -10,13 +11,16 @@
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `inertia_effect.rs` | [`InertiaEffect`]: how fast a motion is, and what it would be without inertia |
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
+//! | `node_motion.rs` | displacements and accelerations of the nodes, from earlier ones |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
+mod energy;
 mod energy_account;
 pub mod error_estimates;
 mod inertia_effect;
 mod model_reason;
 mod next_cheaper;
+pub(crate) mod node_motion;
 pub mod robot_report;
 mod shared_nodes;
 mod warning;
@@ -27,6 +31,7 @@ use crate::math::{Vec2, larger};
 use crate::model_id::Model;
 use crate::verification::Verification;
 
+pub use self::energy::Energy;
 pub use self::energy_account::EnergyAccount;
 pub use self::error_estimates::ErrorEstimates;
 pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
@@ -64,19 +69,6 @@ pub struct Solution {
     /// The robot, where the scene has one that can move.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<RobotReport>,
-}
-
-/// Energy in its forms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energy {
-    /// Of motion, J.
-    pub kinetic_j: f64,
-    /// Of height above y = 0, J.
-    pub gravity_j: f64,
-    /// Of stretch, J.
-    pub stretch_j: f64,
-    /// Of bending, J.
-    pub bending_j: f64,
 }
 
 /// The answer for one cable.

@@ -8,20 +8,14 @@
 //! | `places.rs` | tensions, depths and touchdowns with their places |
 //! | `shape.rs` | sag, heights, lengths, touchdowns |
 //! | `balance.rs` | the sum of all forces on a cable |
-//! | `stiffness.rs` | change of force per metre that an end is moved |
-//! | `neglected_bending.rs` | what neglected bending stiffness would change |
-//! | `settings_compared.rs` | what other models and meshes would answer |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command
 //! line, JSON and window only write it down. Accuracy is that of the answer's nodes: of a free span
 //! they leave its line by 1e-5 of its length at most.
 
 mod balance;
-mod neglected_bending;
 mod places;
-mod settings_compared;
 mod shape;
-pub mod stiffness;
 #[cfg(test)]
 mod tests;
 
@@ -32,11 +26,14 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::ForceBalance;
-pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, scene_with_bending, settle_with_bending};
 pub use places::{CablePlace, Sag, TensionAt, TouchKind, Touchdown};
-pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
 pub use shape::{sag, stretched_length_m};
-pub use stiffness::{EndStiffness, end_stiffness};
+
+// Users of the library know these analyses by this path.
+pub use crate::analysis::{
+    Bending, COMPARED_ELEMENTS, Compared, EndStiffness, NeglectedBending, Setting, answer_with, end_stiffness,
+    neglected_bending, scene_with_bending, settle_with_bending, stiffness,
+};
 
 /// The figures of one cable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,6 +4,7 @@ use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
+use crate::model::auxiliary_weight::auxiliary_weight;
 use crate::model::catenary::settings::CatenarySettings;
 use crate::problem::wheel_passage::facing;
 use crate::problem::{Problem, SupportPoint};
@@ -43,23 +44,6 @@ pub(super) struct AnchorLayout {
     /// Dead force on a dangling start and end, N.
     pub end_force: [Vec2; 2],
     pub settings: CatenarySettings,
-}
-
-/// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones
-/// have no direction that rounding leaves alone. Larger: it shows in the ninth digit.
-const HINT_OF_LOADS: f64 = 1e-15;
-/// The same in parts of EA where nothing is loaded: far below the strain that rounding hides.
-const HINT_OF_STIFFNESS: f64 = 1e-18;
-/// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3.
-/// Smaller: a trace of tension is reported where there is none. Larger: tensions that loads make
-/// are reported as none.
-const HINT_TENSION_FACTOR: f64 = 1e4;
-
-/// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up
-/// to which it alone may be the cause, N.
-pub(in crate::model) fn auxiliary_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
-    let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
-    (Vec2::new(0.0, -whole / p.length), HINT_TENSION_FACTOR * whole)
 }
 
 /// Returns where a support is now: by hand, by its motion, or not at all.

@@ -3,7 +3,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `layout.rs` | supports, wheels and loads at an instant; auxiliary weight of a weightless cable |
+//! | `layout.rs` | supports, wheels and loads at an instant |
 //! | `first_guess.rs` | straight ways from wheel to wheel, material spread evenly along them |
 //! | `slide.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
 //! | `wheel.rs` | tension and material round a wheel, with weight and friction on the arc |
@@ -19,7 +19,7 @@
 
 mod equilibrium;
 mod first_guess;
-pub(super) mod layout;
+mod layout;
 mod multiple_equilibria;
 pub(super) mod report;
 pub mod settings;
@@ -40,6 +40,7 @@ use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
+use crate::model::auxiliary_weight::slack_without_weight;
 use crate::problem::Problem;
 use crate::solution::{
     CableSolution, Cost, Histories, Node, SharedNodes, ShownEquilibrium, SupportReaction, Warning, WarningCause,
@@ -267,12 +268,6 @@ impl CatenaryModel {
     fn has_friction(&self) -> bool {
         self.problem.supports.iter().any(|s| s.friction > 0.0)
     }
-}
-
-/// Returns what there is to say of a weightless cable that is slack.
-pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<Warning> {
-    let slack = nodes.iter().find(|n| n.tension_n == 0.0)?;
-    Some(Warning::new(WarningCause::Weightless, &problem.cable.name, slack.arc_length_m, [0.0; 2]))
 }
 
 /// The way the cable is laid, its material spread evenly along it.

@@ -8,6 +8,7 @@ use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
 use crate::model::arc_nodes;
+use crate::model::auxiliary_weight::remove_auxiliary_weight;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
@@ -159,21 +160,6 @@ pub(super) fn report(p: &Problem, layout: &AnchorLayout, e: &Equilibrium) -> (Ve
         remove_auxiliary_weight(&mut nodes.out, &mut reactions, layout.hint);
     }
     (nodes.out, reactions)
-}
-
-/// Sets the tension to 0 where only the auxiliary weight pulls: the cable is slack there.
-pub(in crate::model) fn remove_auxiliary_weight(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
-    for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
-        (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);
-    }
-    for r in reactions {
-        let tensions = [&mut r.tension_before_n, &mut r.tension_after_n].into_iter().flatten();
-        for force in [&mut r.reaction_x_n, &mut r.reaction_y_n].into_iter().chain(tensions) {
-            if force.abs() <= hint {
-                *force = 0.0;
-            }
-        }
-    }
 }
 
 fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibrium, k: usize) {

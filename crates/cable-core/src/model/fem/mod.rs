@@ -8,11 +8,12 @@
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
-//! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
+//! | `newton` | one step: the choice of its solver, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
-//! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
+//! | `mesh`, `remesh` | nodes, bars, sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
-//! | `transfer` | the first state along the route; states and answers of other models |
+//! | `first_shape` | the first shape: along the route, clear of obstacles |
+//! | `transfer` | states and answers of other meshes and models |
 //! | `results`, `mesh_error` | the answer of a state, and its errors |
 //! | `settings` | the tuned constants |
 //!
@@ -21,6 +22,7 @@
 mod dynamics;
 mod elastica;
 mod equilibrium;
+mod first_shape;
 mod free;
 mod mesh;
 mod mesh_error;
@@ -60,7 +62,7 @@ use elastica::Elastica;
 enum SpansStart {
     /// The mesh rests in it, too; with the warnings about it.
     Accepted(Vec<Warning>),
-    /// The mesh does not rest in it and relaxes from its own initial guess.
+    /// The mesh does not rest in it and relaxes from its own first shape.
     Rejected,
     /// `spans` has no solution, or was not asked.
     Unknown,

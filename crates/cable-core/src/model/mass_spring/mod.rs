@@ -8,7 +8,7 @@
 //! | `mesh` | nodes, springs and pulleys; nodes that are added and removed beside pulleys |
 //! | `forces` | springs, bending, weight, wind and loads; reactions of supports |
 //! | `contact_memory` | the contacts of the last sub-step, and the anchors of friction |
-//! | `integrator` | the choice of the integrator of dynamic steps: explicit, or a preview |
+//! | `preview_choice` | the choice of a dynamic step: explicit, or a preview |
 //! | `dynamics` | one explicit sub-step: supports, sliding, impacts, momentum, limits, rollback |
 //! | `xpbd` | the preview's sub-steps of compliant constraints |
 //! | `equilibrium` | equilibria, steps without inertia, and estimates of their errors |
@@ -52,8 +52,8 @@ mod corner_error;
 mod dynamics;
 mod equilibrium;
 mod forces;
-mod integrator;
 mod mesh;
+mod preview_choice;
 mod results;
 pub mod settings;
 mod xpbd;
@@ -79,7 +79,7 @@ use crate::state::State;
 use contact_memory::ContactMemory;
 use dynamics::{Clock, buried_nodes, hands};
 use forces::{nodal, tension};
-use integrator::is_preview;
+use preview_choice::is_preview;
 use settings::Tuning;
 
 /// The model's mechanics of one cable.

@@ -6,12 +6,12 @@
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
-use crate::model::spans::acceptance::{clearance, equilibrium, tension_loss, tunnelling};
+use crate::model::spans::acceptance::{clearance, equilibrium, tunnelling};
 use crate::model::spans::boundary::{Loose, Mode};
 use crate::model::spans::changes;
 use crate::model::spans::contact::{point_load, slack_pocket};
 use crate::model::spans::newton::{Converged, Workspace, predict_slip};
-use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure};
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure, tension_loss};
 use crate::model::spans::section_layout::{SectionLayout, place_ends};
 use crate::model::spans::slack::{self, LooseShapes};
 

@@ -45,14 +45,14 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
-use crate::model::catenary::slack_without_weight;
+use crate::model::auxiliary_weight::slack_without_weight;
 use crate::model::gauge::TensionGauge;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Reversal;
-use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -189,7 +189,7 @@ impl SpansModel {
     fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
         if let Some(cable_equilibrium) = stopped.or(self.cable_equilibrium.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
-                acceptance::find(&cable_equilibrium.sections, &cable_equilibrium.context, &failure)
+                tension_loss::find(&cable_equilibrium.sections, &cable_equilibrium.context, &failure)
         {
             let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };

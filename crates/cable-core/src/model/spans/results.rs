@@ -3,7 +3,8 @@
 use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point, remove_auxiliary_weight};
+use crate::model::auxiliary_weight::remove_auxiliary_weight;
+use crate::model::catenary::report::{Nodes, Point};
 use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode, SegmentCursor, TensionProfile};
 use crate::model::spans::contact::{load_balance, slack_pocket};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, Contact, EndCondition, SolveContext};
@@ -287,7 +288,7 @@ fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<
 
 /// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
 /// both ends leave over.
-fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
+pub(in crate::model::spans) fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
     let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.place[side]).tangent * c.ends.tension[side]);
     before - after - contact_path.law.load * (c.ends.material[1] - c.ends.material[0])
 }
@@ -323,43 +324,6 @@ pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) ->
         greatest = section.contacts.iter().flat_map(|c| c.ends.tension).chain(of_loose).fold(greatest, larger);
     }
     [start, last, greatest]
-}
-
-/// The sum of all forces on the cable as they are reported, and their size, N: supports and
-/// contacts hold weight and loads.
-pub(in crate::model::spans) fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (Vec2, f64) {
-    let (p, context) = (&layout.problem, &cable_equilibrium.context);
-    let mut sum = context.law.load * p.length;
-    let mut size = sum.norm();
-    for load in &context.loads {
-        sum += load.force;
-        size += load.force.norm();
-    }
-    let mut add = |force: Vec2| {
-        sum += force;
-        size += force.norm();
-    };
-    for (section, part) in cable_equilibrium.sections.iter().zip(&layout.sections) {
-        for side in 0..2 {
-            if part.supports[side].is_some() {
-                add(end_force(cable_equilibrium, section, side) * if side == 0 { -1.0 } else { 1.0 });
-            }
-        }
-        if let Some(loose) = &section.loose {
-            add(loose.held(context));
-        }
-        for (j, c) in section.contacts.iter().enumerate() {
-            add(match (c.wheel, c.is_load()) {
-                (Some(_), _) => -wheel_force(context, section, j).0,
-                (None, true) => -load_balance(section, context, j).sum,
-                (None, false) => held_by(&context.contact_path(c), c),
-            });
-            if let (Some([from, to]), None) = (loose(section, j), c.wheel) {
-                add(-context.load_between(from, to));
-            }
-        }
-    }
-    (sum, size)
 }
 
 /// The contact of the load that is contact j.
@@ -449,7 +413,11 @@ fn parts(c: &Contact, friction: f64, stretches: &[ContactStretch]) -> Vec<Contac
 }
 
 /// Force of the cable at an end of a section (pulling along growing arc length), N.
-fn end_force(cable_equilibrium: &CableEquilibrium, section: &CableSection, side: usize) -> Vec2 {
+pub(in crate::model::spans) fn end_force(
+    cable_equilibrium: &CableEquilibrium,
+    section: &CableSection,
+    side: usize,
+) -> Vec2 {
     let context = &cable_equilibrium.context;
     if let Some(loose) = &section.loose {
         return loose.end_force(context, side);
@@ -517,7 +485,11 @@ fn wheel(r: &mut SupportReaction, cable_equilibrium: &CableEquilibrium, section:
 
 /// The force of the cable on the wheel that is contact j, and the forces in the cable before and
 /// after it, N.
-fn wheel_force(context: &SolveContext, section: &CableSection, j: usize) -> (Vec2, [Vec2; 2]) {
+pub(in crate::model::spans) fn wheel_force(
+    context: &SolveContext,
+    section: &CableSection,
+    j: usize,
+) -> (Vec2, [Vec2; 2]) {
     let [before, after] = [0, 1].map(|side| section.force_at_contact(context, j, side).unwrap_or_default());
     let [from, to] = section.contacts[j].ends.material;
     (after - before + context.load_between(from, to), [before, after])

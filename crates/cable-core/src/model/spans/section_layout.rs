@@ -6,7 +6,7 @@ use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
-use crate::model::catenary::layout::auxiliary_weight;
+use crate::model::auxiliary_weight::auxiliary_weight;
 use crate::model::spans::boundary::{CableLaw, Curve, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::section::{BoundaryConditions, CableSection, EndCondition, Failure, SolveContext};
 use crate::model::spans::settings::SpansSettings;

@@ -26,7 +26,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `flexible_answer` | an answer read at any arc length |
+//! | `reference_curve` | an answer read at any arc length |
 //! | `guess/` | the first guess of an elastica, from an answer |
 //! | `boundary_value` | pieces, joints, their equations, Newton's method |
 //! | `active_set` | the contacts, each a point or a stretch |
@@ -41,8 +41,8 @@ mod answer;
 mod boundary_value;
 pub(in crate::model::fem) mod buckled_equilibria;
 mod chain;
-mod flexible_answer;
 mod guess;
+mod reference_curve;
 mod refinement;
 mod stiffening;
 

@@ -1,61 +1,11 @@
-//! This module finds equilibria in contact, and takes quasi-static steps.
+//! This module takes quasi-static steps: a step without inertia ends where the cable balances.
 
-use crate::error::{NoEquilibrium, SolveError, Unsupported};
-use crate::math::{Vec2, larger};
+use crate::math::Vec2;
+use crate::model::Inertia;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::equilibrium::relaxation::moved_away;
-use crate::model::fem::obstacle::{IntersectionCheck, prepare_way, put_outline};
+use crate::model::fem::obstacle::{IntersectionCheck, prepare_way};
 use crate::model::fem::remesh::remesh;
-use crate::model::fem::results;
-use crate::model::fem::state::{CableState, prepare_input};
-use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns, load_scale, tolerance};
-use crate::model::fem::transfer::{PUSHED_OUT_REACHES, bow, depenetrate};
-use crate::model::{Inertia, Model, StepReport};
-use crate::state::State;
-
-/// Roundings of a coordinate that the lengths of the bars beside a node may be off by together.
-/// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
-/// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
-const LENGTH_ROUNDINGS: f64 = 2.0;
-
-/// Depth of the centre line's touching distance, in radii of the cable, from which it is said to
-/// run through an obstacle: one that touches it has a depth of 0. Smaller: cables that press on an
-/// obstacle are said to run through it; larger: none that a corner cuts off is. A choice, tuned on
-/// no campaign.
-const MAX_DEPTH_RADII: f64 = 0.9;
-
-/// Returns why a cable that nothing but friction holds does not rest where it was brought: the
-/// forces that each node alone may leave unbalanced add up.
-pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
-    if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.self_contacts.shape.is_on() {
-        return None;
-    }
-    let left = results::forces::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
-    let scale = load_scale(&cable.problem).1;
-    (left > cable.mesh.tuning.equilibrium.unheld_load_fraction * scale)
-        .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
-}
-
-/// The obstacle through which a cable at `x` runs that found no rest: it cannot get out of there.
-fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
-    let (mesh, world) = (&cable.mesh, &cable.problem.world);
-    if x.len() != mesh.nodes() {
-        return None;
-    }
-    // The centre line is in the obstacle itself, or nearly: a cable that touches it is outside.
-    let least = -MAX_DEPTH_RADII * cable.problem.radius;
-    let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
-    let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
-    let [a, b] = mesh.straight(e, x);
-    let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-    let obstacle = world.obstacle_name(gap.obstacle).to_owned();
-    Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
-}
-
-/// True if two bars of a cable at positions `x` (m) cross.
-fn crosses_itself(x: &[Vec2]) -> bool {
-    !crate::contact::self_crossings::crossings(x, |_| true).is_empty()
-}
+use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
 impl Dynamics {
     /// A step without inertia to the time `to` (s); friction remembers.
@@ -124,62 +74,6 @@ impl Dynamics {
         Ok(total)
     }
 
-    /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
-    /// round-off. It starts from the present shape, and changes nothing where it does not converge.
-    pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = self.rollback.with_saved();
-        let (exact, to) = (self.cable.input.stopping.tolerance, self.cable.motion.time);
-        let rounding = self.rounding_of_bars();
-        let mut all = found;
-        let tuning = self.cable.mesh.tuning.equilibrium;
-        for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
-            self.rollback.save(&self.cable);
-            prepare_way(&mut self.cable, [to, to], Some(dragged));
-            self.cable.input.stopping.max_noise = exact;
-            (self.cable.input.stopping.tolerance, self.cable.input.stopping.max_iterations) =
-                (larger(part * exact, rounding), iterations);
-            let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let Ok(done) = self.solver.solve_with_lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
-                self.rollback.restore(&mut self.cable);
-                break;
-            };
-            all = Converged { iterations: all.iterations + done.iterations, ..done };
-            // With the bars it balances on: new ones would have to be brought to rest again.
-            self.accept_unknowns(&unknowns, to);
-        }
-        self.cable.input.stopping.tolerance = exact;
-        self.rollback = kept;
-        all
-    }
-
-    /// Force that the rounding of coordinates makes at a node of even bars, N: it grows with the
-    /// number of bars.
-    fn rounding_of_bars(&self) -> f64 {
-        let (cable, problem) = (&self.cable, &self.cable.problem);
-        let farthest = cable.motion.positions.iter().map(|x| x.norm()).fold(0.0, larger);
-        LENGTH_ROUNDINGS * f64::EPSILON * farthest * problem.axial_stiffness / cable.even()
-    }
-
-    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the
-    /// second order in their length, without which a run would begin with a jerk. Where they find
-    /// no rest they stay as they were laid.
-    pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
-        if !self.rested {
-            return;
-        }
-        self.rollback.save(&self.cable);
-        let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-        let laid = self.cable.motion.positions.clone();
-        let found = self.quasi_static_step(self.cable.motion.time, dragged).is_ok();
-        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
-        if !(found
-            && laid.len() == self.cable.motion.positions.len()
-            && laid.iter().zip(&self.cable.motion.positions).all(near))
-        {
-            self.rollback.restore(&mut self.cable);
-        }
-    }
-
     /// Takes unknowns as the state at rest at the time `to`; returns whether what the cable runs
     /// over changed.
     pub(super) fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
@@ -188,7 +82,7 @@ impl Dynamics {
     }
 
     /// The same, corners as they are.
-    fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
+    pub(super) fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
         self.cable.commit_contacts(unknowns);
         self.cable.contacts.outline_motion = None;
         self.cable.motion.positions.clone_from(&unknowns.positions);
@@ -198,155 +92,5 @@ impl Dynamics {
         self.cable.mesh.slide(&unknowns.slides);
         self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
-    }
-
-    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support
-    /// positions, m.
-    ///
-    /// # Errors
-    /// A typed reason when there is none, or none was found.
-    pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        self.cable.refuse()?;
-        self.time_control.sleep.wake();
-        self.cable.answers.held_back.clear();
-        self.rollback.save(&self.cable);
-        self.cable.motion.followers.fill(None);
-        self.cable.motion.hands.fill(None);
-        if !self.rested && put_outline(&mut self.cable) {
-            let mut x = std::mem::take(&mut self.cable.motion.positions);
-            depenetrate(
-                &self.cable.problem,
-                &self.cable.mesh,
-                &mut x,
-                PUSHED_OUT_REACHES * self.cable.contacts.barrier.reach,
-            );
-            self.cable.motion.positions = x;
-            self.forget_history();
-        }
-        match self.find_equilibrium(dragged)? {
-            Ok(done) => {
-                self.rested = true;
-                let done = self.polish(done, dragged);
-                Ok(self.report(done, 0, 0.0))
-            }
-            Err(f) => {
-                let at_m = self.cable.motion.positions.get(f.node).copied().unwrap_or_default();
-                let sought = self.cable.motion.positions.clone();
-                self.rollback.restore(&mut self.cable);
-                if moved_away(self.cable.problem.length, &self.cable.motion.positions, &sought).is_some() {
-                    return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
-                }
-                if f.cause == FailureCause::WorkSpent {
-                    let (model, segments) = (Model::Fem, self.cable.mesh.rest_length.len());
-                    let iterations = self.cable.mesh.tuning.equilibrium.max_work / self.cable.mesh.nodes().max(1);
-                    let (residual_n, place) = (f.residual, self.cable.place(f.node));
-                    return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
-                }
-                if let Some(why) = obstacle_run_through(&self.cable, &sought) {
-                    return Err(SolveError::NoRestingPlace { why });
-                }
-                let arc_length = self.cable.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
-                let place = self.cable.problem.place(arc_length, at_m, self.cable.motion.time);
-                Err(SolveError::NotConverged {
-                    model: Model::Fem,
-                    iterations: self.cable.mesh.tuning.equilibrium.max_relaxation_steps,
-                    residual_n: f.residual,
-                    place,
-                })
-            }
-        }
-    }
-
-    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
-    /// coming near to anything. The way down with contact takes as many rounds as a cable that
-    /// hangs has bars.
-    pub(in crate::model::fem) fn start_from_shape(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
-        let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.self_contacts.shape.is_on();
-        let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
-        if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
-            return;
-        }
-        let Some(to) = self.cable.mesh.arc_length.iter().map(|&s| shape.position_at(s)).collect::<Option<Vec<Vec2>>>()
-        else {
-            return;
-        };
-        let (x, geometry) = (&self.cable.motion.positions, self.cable.problem.world.geometry());
-        let clear = (0..self.cable.mesh.rest_length.len()).all(|e| {
-            let [[a, b], [c, d]] = [self.cable.mesh.straight(e, x), self.cable.mesh.straight(e, &to)];
-            geometry
-                .parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), self.cable.contacts.barrier.reach)
-                .next()
-                .is_none()
-        });
-        if !clear {
-            return;
-        }
-        self.cable.motion.positions = to;
-        self.forget_history();
-        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
-        // that little force is left over.
-        let now = self.cable.motion.time;
-        prepare_input(&mut self.cable, now, Some(dragged));
-        self.cable.input.stopping.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
-        let exact = self.cable.input.stopping.tolerance;
-        self.cable.input.stopping.tolerance = tolerance(&self.cable.problem, 0.0);
-        let mut unknowns = self.solver.present_unknowns(&self.cable);
-        if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
-            self.cable.motion.positions.clone_from(&unknowns.positions);
-            self.forget_history();
-        }
-        self.solver.unknowns = unknowns;
-        self.cable.input.stopping.tolerance = exact;
-    }
-
-    /// Finds the equilibrium. One in which the cable does not touch itself is sought first as if it
-    /// could pass itself: its first shape may cross itself.
-    fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
-        let time = self.cable.motion.time;
-        let shape = self.cable.contacts.self_contacts.shape;
-        if !shape.is_on() {
-            return Ok(self.relax(time, dragged));
-        }
-        if !self.rested {
-            self.cable.contacts.self_contacts.shape.diameter = 0.0;
-            let found = self.relax(time, dragged);
-            self.cable.contacts.self_contacts.shape = shape;
-            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.positions) {
-                return Ok(found);
-            }
-            self.rollback.restore(&mut self.cable);
-            self.rollback.save(&self.cable);
-            self.start_on_an_arc();
-        }
-        let overlap =
-            self.cable.contacts.self_contacts.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
-        if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
-            let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
-            let feature = Unsupported::SelfContactAtStart { arc_length_m };
-            return Err(SolveError::Unsupported { model: Model::Fem, feature });
-        }
-        Ok(self.relax(time, dragged))
-    }
-
-    /// A cable with much to spare for which no route is drawn begins on an arc, where it does not
-    /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
-    fn start_on_an_arc(&mut self) {
-        let cable = &mut self.cable;
-        let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        if !cable.problem.cable.route_m.is_empty()
-            || cable.problem.length < cable.mesh.tuning.start.arc_length_ratio * way
-        {
-            return;
-        }
-        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.positions) else { return };
-        let straight = std::mem::replace(&mut cable.motion.positions, arc);
-        for k in (0..straight.len()).filter(|&k| cable.mesh.held[k]) {
-            cable.motion.positions[k] = straight[k];
-        }
-        if IntersectionCheck::of(cable).cuts_nothing() {
-            cable.forget_history();
-        } else {
-            cable.motion.positions = straight;
-        }
     }
 }

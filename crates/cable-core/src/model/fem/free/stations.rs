@@ -6,7 +6,7 @@
 //! fractions in between.
 
 use crate::math::Vec2;
-use crate::model::fem::system::bars_between;
+use crate::model::fem::mesh::bars_between;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 

@@ -2,7 +2,8 @@
 
 use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::{Vec2, cross, larger};
-use crate::model::fem::system::{ContactPair, Coupling, Mesh, System, couple};
+use crate::model::fem::mesh::Mesh;
+use crate::model::fem::system::{ContactPair, Coupling, System, couple};
 
 /// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]

@@ -14,13 +14,13 @@ use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
-use crate::model::fem::mesh::SlidingNode;
+use crate::model::fem::mesh::{Mesh, SlidingNode};
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::newton::mixed_iterate::MixedIterate;
 use crate::model::fem::system::contact::self_contact;
 use crate::model::fem::system::{
-    ContactPair, Converged, Coupling, Failure, FailureCause, Mesh, SelfContactLaws, StepContext, StepInput, System,
-    Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, add_barrier, add_floor, add_friction, bar_energy, node_scale,
+    ContactPair, Converged, Coupling, Failure, FailureCause, SelfContactLaws, StepContext, StepInput, System, Unknowns,
+    WORK_MAGNITUDE_FRACTION, WorkBudget, add_barrier, add_floor, add_friction, bar_energy, node_scale,
 };
 
 /// Energies are trusted to this part of the sum of their magnitudes.

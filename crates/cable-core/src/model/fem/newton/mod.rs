@@ -1,8 +1,9 @@
-//! These modules solve one step: its initial guess, three Newton iterations, what bounds them, and
-//! their memory.
+//! These modules solve one step: the choice of the solver, three Newton iterations, the bounds of
+//! these, and their memory.
 //!
 //! | room | content |
 //! |---|---|
+//! | `step_solver.rs` | choice of free or contact solver; rounds until friction and forces agree |
 //! | `minimize.rs` | minimiser of the step energy: banded Newton, line search, no crossing |
 //! | `mixed_contact.rs` | Newton's method in contact with bar pulls as unknowns, no line search |
 //! | `mixed_iterate.rs` | pulls and friction branches that the iteration in contact carries |
@@ -20,6 +21,7 @@ pub(in crate::model::fem) mod mixed_free;
 pub(in crate::model::fem) mod mixed_iterate;
 pub(in crate::model::fem) mod solver_memory;
 pub(in crate::model::fem) mod step_bound;
+pub(in crate::model::fem) mod step_solver;
 
 pub(in crate::model::fem) use minimize::Workspace;
 pub(in crate::model::fem) use mixed_free::MixedFreeSolver;

@@ -9,9 +9,9 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Model;
-use crate::model::fem::mesh::{SlideOver, SlidingNode, TangentPath, round_of};
+use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNode, TangentPath, round_of};
 use crate::model::fem::state::CableState;
-use crate::model::fem::system::{Mesh, StepContext};
+use crate::model::fem::system::StepContext;
 use crate::problem::Problem;
 
 /// A cable among its obstacles, at given positions.

@@ -24,8 +24,9 @@ use crate::contact::self_contact_pairs::SortedNodes;
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::{CableState, Meshing, MovingOutline, prepare_step, stopped_by_obstacles};
-use crate::model::fem::system::{ContactPair, Mesh, OutlineMotion, StepContext};
+use crate::model::fem::system::{ContactPair, OutlineMotion, StepContext};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 

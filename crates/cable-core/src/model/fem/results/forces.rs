@@ -4,8 +4,9 @@
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger, perp};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::CableState;
-use crate::model::fem::system::{ContactPair, Mesh, Weight, bar_weight};
+use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 use crate::model::fem::time::loss_memory;
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than

@@ -2,7 +2,7 @@
 //! to one side as a motion begins.
 
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::system::Mesh;
+use crate::model::fem::mesh::Mesh;
 
 /// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
 /// later than it would; more: its bars are stretched by half of the square of it.

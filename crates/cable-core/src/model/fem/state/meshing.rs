@@ -1,6 +1,7 @@
 //! The division of a cable into bars, and the nodes of its supports and loads.
 
-use crate::model::fem::system::{ContactPair, Mesh};
+use crate::model::fem::mesh::Mesh;
+use crate::model::fem::system::ContactPair;
 use crate::problem::Series;
 
 /// The division of the cable into bars, and the nodes of supports and loads.

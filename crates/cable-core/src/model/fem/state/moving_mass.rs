@@ -1,12 +1,11 @@
 //! The momentum of a cable, and what a change of its mesh does to that.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::SlideOver;
+use crate::model::fem::mesh::{Mesh, SlideOver};
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::momentum_account::{CONTACTS, SUPPORTS, kind_of};
 use crate::model::fem::state::motion::NodalMotion;
-use crate::model::fem::system::Mesh;
 use crate::problem::Problem;
 
 /// The masses of a cable and how they move.

@@ -1,11 +1,11 @@
 //! The setup of a step collects forces, targets of supports, and wheels at an instant.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::SlideOver;
+use crate::model::fem::mesh::{Clamp, SlideOver};
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::support_stop::{no_farther_than, stopped_by_obstacles};
+use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::contact::floor_friction;
-use crate::model::fem::system::{Clamp, bar_weight};
 use crate::model::smoothed_target::MAX_SPEED;
 use crate::scene::SupportKind;
 

@@ -1,7 +1,7 @@
 //! A support that is driven against an obstacle stops in front of it.
 
 use crate::math::Vec2;
-use crate::model::fem::system::Mesh;
+use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
 /// Rounding of a gap, m.

@@ -9,7 +9,7 @@ use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::BandMatrix;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::mesh::Mesh;
 
 /// True if the turn at an inner node bends the cable: not where it or a neighbour slides over
 /// something.
@@ -203,8 +203,7 @@ mod tests {
 
     use super::*;
     use crate::linalg::BandFactor;
-    use crate::model::fem::system::mass::Spread;
-    use crate::model::fem::system::mesh::Clamp;
+    use crate::model::fem::mesh::{Clamp, Spread};
 
     fn mesh(bending_stiffness: f64) -> Mesh {
         Mesh {

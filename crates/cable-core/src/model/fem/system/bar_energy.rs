@@ -14,9 +14,9 @@
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_weight::Weight;
-use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, WORK_MAGNITUDE_FRACTION};
 
 /// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way

@@ -18,8 +18,7 @@
 //! to and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
-use crate::model::fem::mesh::TangentPath;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::mesh::{Mesh, TangentPath};
 
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]

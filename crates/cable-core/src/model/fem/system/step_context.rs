@@ -2,12 +2,11 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::SlidingNodeLoad;
+use crate::model::fem::mesh::{Mesh, SlidingNodeLoad};
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::contact::floor_friction;
-use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::StepInput;
 use crate::problem::Problem;
 

@@ -2,7 +2,7 @@
 
 pub use crate::error::FailureCause;
 use crate::math::Vec2;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
 /// Part of force times coordinate that counts as magnitude: times the noise of an energy four

@@ -8,7 +8,6 @@
 //! | `sliding_tensions.rs` | tensions between which friction acted at sliding nodes |
 //! | `time_control.rs` | data of the time control: step size, sleep, tolerance, end of the advance |
 //! | `step_size.rs` | step length from the observed frequency and from how hard steps are to solve |
-//! | `step_solver.rs` | choice of free or contact solver; rounds until friction and forces agree |
 //! | `hands.rs` | hands that drag supports, by a spring or directly, and their warnings |
 //! | `plastic_impact.rs` | inelastic contacts: normal speed of an impact removed after the step |
 //! | `loss_memory.rs` | state of the relaxation branches of material loss, from step to step |
@@ -27,7 +26,6 @@ pub(in crate::model::fem) mod sliding_tensions;
 pub(in crate::model::fem) mod step_impulses;
 pub(in crate::model::fem) mod step_inertia;
 pub(in crate::model::fem) mod step_size;
-pub(in crate::model::fem) mod step_solver;
 pub(in crate::model::fem) mod step_work;
 pub(in crate::model::fem) mod time_control;
 

@@ -1,9 +1,10 @@
 //! A step that fails returns to the checkpoint before it.
 
 use crate::math::Vec2;
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::obstacle::place_outline;
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
-use crate::model::fem::system::{ContactSet, Mesh};
+use crate::model::fem::system::ContactSet;
 
 /// A state to go back to.
 #[derive(Clone, Debug)]

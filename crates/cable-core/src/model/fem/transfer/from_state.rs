@@ -1,39 +1,11 @@
-//! This module continues from a state of another mesh or model, and threads the cable through its
-//! pulleys.
-
-use std::sync::Arc;
+//! This module continues from a state of another mesh or model.
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::free::{Restraint, StationLayout};
-use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::{even_out, insert, remove};
-use crate::model::fem::state::{CableState, renew_input};
-use crate::problem::wheel_passage::facing;
-use crate::scene::PulleySide;
-use crate::state::State;
+use crate::model::fem::state::CableState;
 
-/// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where
-/// the layout lays it.
-pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Option<&State>) {
-    let problem = Arc::clone(&cable.problem);
-    let layout = StationLayout::new(&problem, cable.motion.time, &[], &[]);
-    for station in &layout.stations {
-        let (Restraint::Pulley(wheel), Some(support)) = (station.restraint, station.support) else { continue };
-        let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(station.arc_length);
-        let k = cable.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, cable.mesh.nodes() - 1);
-        let room = 0.05 * problem.length / cable.meshing.even_bars as f64;
-        let (low, high) = (cable.mesh.arc_length[k - 1] + room, cable.mesh.arc_length[k] - room);
-        let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
-        let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
-        let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
-        let sense = -facing(wheel.side, passing);
-        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense };
-        insert(cable, k, at, Some(SlidingNode::new(end, wheel.friction, SlideOver::Pulley(support))));
-    }
-    even_out(cable);
-    renew_input(cable);
-}
+use crate::state::State;
 
 /// Bars that cut off by more than the cable's radius what the state leads round get a node
 /// where the state is farthest from them: from there inside nothing tells on which side of a

@@ -1,19 +1,12 @@
-//! These modules begin with a cable along its route, or continue from the state or the answer of
-//! another mesh or model.
+//! These modules continue from the state or the answer of another mesh or model.
 //!
 //! | room | content |
 //! |---|---|
-//! | `along_route.rs` | first state: laid along its route, at rest, clear of obstacles |
-//! | `from_state.rs` | state of another mesh or model taken over; cable threaded through pulleys |
+//! | `from_state.rs` | state of another mesh or model taken over |
 //! | `from_solution.rs` | answer taken over with its tensions: sliding nodes, stretch, friction anchors |
-//! | `initial_guess.rs` | material spread along a route over obstacles; nodes pushed out of obstacles |
 
-pub(in crate::model::fem) mod along_route;
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
-pub mod initial_guess;
-
-pub(in crate::model::fem) use initial_guess::{PUSHED_OUT_REACHES, bow, depenetrate, leaning_way, push_chain_out};
 
 use std::sync::Arc;
 
@@ -21,18 +14,18 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, cable_along_route, depenetrate, thread_pulleys};
 use crate::model::fem::newton::{MixedFreeSolver, NodalWays, SolverMemory, WorkspaceMemory};
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::renew_input;
 use crate::model::fem::system::{Unknowns, WorkBudget};
 use crate::model::fem::time::{HandDrive, Rollback, Sleep, StepSizeController, TimeControl};
-use crate::model::fem::transfer::along_route::cable_along_route;
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
-use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes, thread_pulleys};
+use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;

@@ -22,8 +22,8 @@ use crate::model::mass_spring::dynamics::{
     ChainState, HandSettings, RunawayGuard, SupportDrives, floor_friction, hands, impacts,
 };
 use crate::model::mass_spring::forces::{nodal, pulley, tension};
-use crate::model::mass_spring::integrator::FRAME_S;
 use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
+use crate::model::mass_spring::preview_choice::FRAME_S;
 use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningCause};

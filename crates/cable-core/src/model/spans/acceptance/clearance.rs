@@ -1,5 +1,5 @@
 //! This check asks that no answer is inside anything; it shares nothing with the search for
-//! contacts (`penetration`).
+//! contacts (`changes/obstacle_search.rs`).
 //!
 //! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with
 //! its ends a, b and its tangents there it lies in the triangle of a, b and the point where the

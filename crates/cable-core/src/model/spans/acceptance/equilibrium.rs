@@ -5,8 +5,8 @@
 use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
 use crate::model::spans::boundary::{ContactPath, SlideResult};
-use crate::model::spans::contact::{point_load, slack_pocket};
-use crate::model::spans::results;
+use crate::model::spans::contact::{load_balance, point_load, slack_pocket};
+use crate::model::spans::results::{end_force, held_by, loose, wheel_force};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Contact, EndCondition, Failure, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 
@@ -66,13 +66,50 @@ pub(in crate::model::spans) fn balanced(
     layout: &SectionLayout,
     cable_equilibrium: &CableEquilibrium,
 ) -> Result<(), Failure> {
-    let (left, size) = results::unbalanced(layout, cable_equilibrium);
+    let (left, size) = unbalanced(layout, cable_equilibrium);
     if left.norm() <= BALANCE_TOLERANCE * size {
         return Ok(());
     }
     let section = cable_equilibrium.sections.first();
     let at = section.and_then(|s| s.span_ends(&cable_equilibrium.context, 0)[0]).unwrap_or_default();
     Err(Failure::Unsound { what: EquilibriumFault::Unbalanced, s: 0.0, at })
+}
+
+/// The sum of all forces on the cable as they are reported, and their size, N: supports and
+/// contacts hold weight and loads.
+fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (Vec2, f64) {
+    let (p, context) = (&layout.problem, &cable_equilibrium.context);
+    let mut sum = context.law.load * p.length;
+    let mut size = sum.norm();
+    for load in &context.loads {
+        sum += load.force;
+        size += load.force.norm();
+    }
+    let mut add = |force: Vec2| {
+        sum += force;
+        size += force.norm();
+    };
+    for (section, part) in cable_equilibrium.sections.iter().zip(&layout.sections) {
+        for side in 0..2 {
+            if part.supports[side].is_some() {
+                add(end_force(cable_equilibrium, section, side) * if side == 0 { -1.0 } else { 1.0 });
+            }
+        }
+        if let Some(loose) = &section.loose {
+            add(loose.held(context));
+        }
+        for (j, c) in section.contacts.iter().enumerate() {
+            add(match (c.wheel, c.is_load()) {
+                (Some(_), _) => -wheel_force(context, section, j).0,
+                (None, true) => -load_balance(section, context, j).sum,
+                (None, false) => held_by(&context.contact_path(c), c),
+            });
+            if let (Some([from, to]), None) = (loose(section, j), c.wheel) {
+                add(-context.load_between(from, to));
+            }
+        }
+    }
+    (sum, size)
 }
 
 /// The span closes.

@@ -1,19 +1,13 @@
-//! These modules check an answer without the solver: equilibrium, clearance, penetration and
-//! tunnelling.
+//! These modules check an answer without the solver: equilibrium, clearance and tunnelling.
 //!
 //! | room | content |
 //! |---|---|
 //! | `equilibrium.rs` | spans by quadrature, contact and global balance, friction cone |
 //! | `clearance.rs` | proof that nothing is inside an obstacle, by halving bounding triangles |
 //! | `tunnelling.rs` | did a step pass the cable through a corner? shapes before and after |
-//! | `tension_loss.rs` | did a step fail because the cable lost its tension, and where? |
-//! | `penetration.rs` | where a free span runs deepest into an obstacle |
 
 pub(in crate::model::spans) mod clearance;
 pub(in crate::model::spans) mod equilibrium;
-pub(in crate::model::spans) mod penetration;
-pub(in crate::model::spans) mod tension_loss;
 pub(in crate::model::spans) mod tunnelling;
 
-pub(in crate::model::spans) use penetration::Penetration;
-pub(in crate::model::spans) use tension_loss::find;
+pub(in crate::model::spans) use tunnelling::{Side, tangent};

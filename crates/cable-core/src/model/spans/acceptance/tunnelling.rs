@@ -2,12 +2,25 @@
 //! (`contact/swept_corners.rs`), and decides when that is not necessary.
 
 use crate::contact::swept_corners::ImpassableCorner;
-use crate::math::{Vec2, cross, larger, smaller};
-use crate::model::spans::acceptance::penetration;
+use crate::math::{Vec2, cross, larger, perp, smaller};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
+
+/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding
+/// says which side of the tangent it is on. Larger: steep spans are looked at more closely than
+/// they must be.
+const HANGING_ANGLE: f64 = 1e-6;
+
+/// A line with the side of it (a unit vector) on which the cable is.
+pub(in crate::model::spans) type Side = (Vec2, Vec2);
+
+/// The tangent of a cable at a point where its force is known.
+pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
+    let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
+    (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
+}
 
 /// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
 /// every corner lies on the same side of each span before and after. A span is convex: above its
@@ -50,7 +63,7 @@ struct SpanBound {
     low: f64,
     high: f64,
     ends: [Vec2; 2],
-    tangents: [Option<(Vec2, Vec2)>; 2],
+    tangents: [Option<Side>; 2],
 }
 
 impl SpanBound {
@@ -61,7 +74,7 @@ impl SpanBound {
         if context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
             return None;
         }
-        let side = |at: Vec2, s: f64| penetration::tangent(at, section.force(context, k, s), context.law.load);
+        let side = |at: Vec2, s: f64| tangent(at, section.force(context, k, s), context.law.load);
         let (low, high) = (smaller(a.x, b.x), larger(a.x, b.x));
         Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
     }

@@ -3,10 +3,11 @@
 use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
-use crate::model::spans::acceptance::{Penetration, penetration, tunnelling};
+use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, TensionProfile};
 use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::changes::load_landing;
+use crate::model::spans::changes::obstacle_search::{Penetration, deepest};
 use crate::model::spans::contact::release_below;
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
@@ -43,7 +44,7 @@ pub(super) fn touch_obstacles(
             any = true;
             continue;
         }
-        if let Some(hit) = penetration::deepest(section, context, world, k, deep) {
+        if let Some(hit) = deepest(section, context, world, k, deep) {
             lay_down_span(section, context, k, &hit, purpose)?;
             any = true;
         }

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `release` | a contact that would have to pull is removed, or one that has vanished |
 //! | `merge` | two neighbouring contacts of one chain become one |
+//! | `obstacle_search` | nothing: the point at which a free span runs deepest into an obstacle |
 //! | `landing` | a span that runs into an obstacle is laid down on it |
 //! | `load_landing` | where a load or a cable end runs into an obstacle |
 //! | `cycle` | nothing: contacts that come back to where they were |
@@ -17,6 +18,7 @@ mod edges;
 mod landing;
 pub(in crate::model::spans) mod load_landing;
 mod merge;
+mod obstacle_search;
 mod release;
 
 use crate::contact::World;

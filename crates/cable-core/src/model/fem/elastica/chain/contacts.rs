@@ -4,7 +4,7 @@ use crate::contact::Gap;
 use crate::contact::pairs::Pair;
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::Chain;
-use crate::model::fem::elastica::flexible_answer::mobilised_friction;
+use crate::model::fem::elastica::reference_curve::mobilised_friction;
 
 /// Part of the cable's radius by which it may be in an obstacle on its way.
 const OVERLAP_LIMIT: f64 = 0.5;

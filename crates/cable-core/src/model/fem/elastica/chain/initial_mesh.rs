@@ -2,9 +2,9 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
-use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
+use crate::model::fem::elastica::reference_curve::ReferenceCurve;
+use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
-use crate::model::fem::transfer::push_chain_out;
 use crate::scene::SupportKind;
 
 /// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's

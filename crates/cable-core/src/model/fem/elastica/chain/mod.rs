@@ -28,8 +28,8 @@ mod solution;
 
 use crate::energy::bending::turn;
 use crate::math::Vec2;
-use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
-use crate::model::fem::transfer::leaning_way;
+use crate::model::fem::elastica::reference_curve::ReferenceCurve;
+use crate::model::fem::first_shape::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
 pub(super) use contacts::ChainContact;

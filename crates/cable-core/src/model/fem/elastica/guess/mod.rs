@@ -18,7 +18,7 @@ mod pieces;
 use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Elastica, End, Joint};
 use crate::model::fem::elastica::chain::{Chain, ChainContact};
-use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
+use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::place as support_place;
 use crate::problem::Problem;
 use crate::scene::SupportKind;

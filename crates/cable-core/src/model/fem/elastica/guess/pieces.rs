@@ -2,8 +2,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Elastica, Joint, Piece};
-use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
+use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::places;
 
 /// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts

@@ -3,10 +3,10 @@
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::contact::contact_set::ContactSet;
-use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.

@@ -4,8 +4,8 @@
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::Vec2;
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;
 
 /// The search for contacts, with the obstacles that each bar can come near to in this step.

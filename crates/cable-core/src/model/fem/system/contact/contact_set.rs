@@ -4,6 +4,7 @@
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::settings::ContactTuning;
 use crate::model::fem::system::contact::barrier_stiffness;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
@@ -12,7 +13,6 @@ use crate::model::fem::system::contact::friction_contact::{FrictionContact, of_n
 use crate::model::fem::system::contact::friction_memory::FrictionMemory;
 use crate::model::fem::system::contact::outline_motion::OutlineMotion;
 use crate::model::fem::system::contact::self_contact::SelfContacts;
-use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;
 
 /// All contacts of a mesh with their history.

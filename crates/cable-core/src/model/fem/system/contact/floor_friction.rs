@@ -12,8 +12,7 @@
 //! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::mean_factor;
-use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::mesh::{Mesh, mean_factor};
 use crate::problem::Problem;
 
 /// Iterations for the rate at which tension grows over a round: Newton's method on a function that

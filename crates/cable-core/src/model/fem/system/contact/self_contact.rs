@@ -8,8 +8,8 @@ use crate::contact::friction;
 use crate::contact::self_contact_pairs::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::mesh::Mesh;
 
 /// Friction of one contact of the cable with itself during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]

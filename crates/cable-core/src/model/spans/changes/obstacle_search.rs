@@ -9,6 +9,7 @@ use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
+use crate::model::spans::acceptance::{Side, tangent};
 use crate::model::spans::section::{CableSection, SolveContext};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
@@ -19,14 +20,9 @@ const MAX_HALVINGS: usize = 60;
 /// Roots are found to this part of the catenary.
 const ROOT: f64 = 1e-12;
 
-/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding
-/// says which side of the tangent it is on. Larger: steep spans are looked at more closely than
-/// they must be.
-const HANGING_ANGLE: f64 = 1e-6;
-
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Penetration {
+pub(super) struct Penetration {
     /// Material point, m.
     pub arc_length: f64,
     pub at: Vec2,
@@ -38,9 +34,6 @@ pub(in crate::model::spans) struct Penetration {
     pub body: usize,
 }
 
-/// A line with the side of it (a unit vector) on which the cable is.
-type Side = (Vec2, Vec2);
-
 /// One catenary at its place.
 struct SpanArc<'a> {
     s0: f64,
@@ -50,12 +43,6 @@ struct SpanArc<'a> {
     /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them.
     /// None where it hangs along the load.
     sides: [Option<Side>; 2],
-}
-
-/// The tangent of a cable at a point where its force is known.
-pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
-    let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
-    (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
 }
 
 impl<'a> SpanArc<'a> {
@@ -144,7 +131,7 @@ impl<'a> SpanArc<'a> {
 }
 
 /// The deepest point of span k inside anything, if deeper than `tolerance` (m).
-pub(in crate::model::spans) fn deepest(
+pub(super) fn deepest(
     section: &CableSection,
     context: &SolveContext,
     world: &World,

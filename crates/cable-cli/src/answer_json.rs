@@ -1,12 +1,13 @@
 //! This file makes the JSON object of an answer: SI units in the key names, never a number that is
 //! not finite.
 
+use cable_core::analysis::{Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::solution::robot_report::RobotReport;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, InertiaEffect, ModelReason,
     NextCheaper, Node, Pressure, Solution, SupportReaction, TensionPeaks, Warning,
 };
-use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
+use cable_core::summary::CableSummary;
 use cable_core::timeline::RunPeaks;
 use cable_core::verify::Verification;
 use cable_core::{ErrorEstimates, Model, SolveError, UnitSystem};

@@ -5,15 +5,16 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::math::Vec2;
 use crate::model::Settings;
-use crate::model::fem::mesh::bar_count;
+use crate::model::fem::first_shape::push_out::{PUSHED_OUT_REACHES, depenetrate};
+use crate::model::fem::first_shape::route::{place_nodes, route};
+use crate::model::fem::first_shape::threading::thread_pulleys;
+use crate::model::fem::mesh::{Mesh, bar_count};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
     CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
 };
-use crate::model::fem::system::{ContactSet, Loss, Mesh, StepInput, load_scale, tolerance};
+use crate::model::fem::system::{ContactSet, Loss, StepInput, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
-use crate::model::fem::transfer::from_state::thread_pulleys;
-use crate::model::fem::transfer::initial_guess::{PUSHED_OUT_REACHES, depenetrate, place_nodes, route};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 

@@ -1,7 +1,7 @@
 //! Displacements and accelerations follow each material point of a cable, whatever the nodes do.
 
+use super::Node;
 use crate::math::Vec2;
-use crate::solution::Node;
 
 /// The vector that `of` reads of nodes at an arc length (m), between the two of the nearest ones;
 /// None of a cable without nodes.

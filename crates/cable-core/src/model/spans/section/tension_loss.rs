@@ -1,4 +1,4 @@
-//! This check finds whether a step failed because the cable lost its tension, and where.
+//! This search finds the place where the cable lost its tension, if that is why a step failed.
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};

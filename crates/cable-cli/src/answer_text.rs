@@ -7,7 +7,7 @@ use cable_core::UnitSystem;
 use cable_core::solution::{ContactState, Solution};
 use cable_core::wording::Sentence;
 
-use crate::answer::{ComparedEntry, Figures};
+use crate::answer_json::{ComparedEntry, Figures};
 use crate::summary;
 
 /// Greatest length of a reason why a setting has no answer.
@@ -44,8 +44,9 @@ fn compared(t: &mut String, entries: &[ComparedEntry]) {
     }
 }
 
-/// A table with units. Writing to a `String` cannot fail, so its results are not looked at.
-pub fn table(s: &Solution, figures: &Figures) -> String {
+/// An answer as tables with units. Writing to a `String` cannot fail, so its results are not looked
+/// at.
+pub fn answer_text(s: &Solution, figures: &Figures) -> String {
     let mut t = String::new();
     let top = s.max_tension();
     let _ = writeln!(t, "Model             {} ({})", s.model, s.reason);

@@ -4,7 +4,7 @@
 //! (2 a₀b₀ + a₀b₁ + a₁b₀ + 2 a₁b₁)/6. A sagging bar drawn straight is second order. Lumps, pulleys
 //! and loads are left out.
 
-use crate::problem::Problem;
+use super::definition::Problem;
 use crate::solution::{CableSolution, Energy, Node};
 
 /// ∫ a² ds between two nodes.
@@ -21,12 +21,6 @@ impl Energy {
             .filter_map(|pair| if let [a, b] = pair { Some((a, b)) } else { None })
             .map(|(a, b)| element(problem, a, b))
             .sum()
-    }
-
-    /// All of it, J.
-    #[must_use]
-    pub fn total_j(&self) -> f64 {
-        self.kinetic_j + self.gravity_j + self.stretch_j + self.bending_j
     }
 }
 
@@ -50,16 +44,5 @@ fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
         // Strain by tension is T/EA of a length that temperature has changed.
         stretch_j: 0.5 * problem.thermal_stretch * (stretch - relaxed),
         bending_j: 0.5 * problem.bending_stiffness * squared(a.curvature_per_m, b.curvature_per_m, ds),
-    }
-}
-
-impl std::iter::Sum for Energy {
-    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
-        all.fold(Self::default(), |s, e| Self {
-            kinetic_j: s.kinetic_j + e.kinetic_j,
-            gravity_j: s.gravity_j + e.gravity_j,
-            stretch_j: s.stretch_j + e.stretch_j,
-            bending_j: s.bending_j + e.bending_j,
-        })
     }
 }

@@ -1,4 +1,4 @@
-//! The integrator of dynamic steps is explicit, or that of the preview.
+//! A dynamic step is explicit, or a preview.
 
 use crate::model::mass_spring::mesh::Mesh;
 use crate::model::settings::Stepping;

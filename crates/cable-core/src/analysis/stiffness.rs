@@ -48,7 +48,7 @@ pub struct EndStiffness {
 /// # Errors
 /// As [`Simulation::settle`] and [`Simulation::step_quasi_static`].
 pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<Vec<EndStiffness>, Error> {
-    let still = frozen_scene(scene);
+    let still = scene_at_time_zero(scene);
     let question = if model.is_automatic() { Question::History(Inertia::QuasiStatic) } else { Question::Rest };
     let settings = Settings { histories: false, ..settings };
     let mut rest = Simulation::for_question(still.clone(), model, settings, question)?;
@@ -96,7 +96,7 @@ pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<
 }
 
 /// The scene as it is at time 0, with nothing that moves or changes.
-fn frozen_scene(scene: &Scene) -> Scene {
+fn scene_at_time_zero(scene: &Scene) -> Scene {
     let mut still = scene.clone();
     let hitch = scene.hitch_m();
     still.robot = None;

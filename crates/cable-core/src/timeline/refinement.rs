@@ -1,0 +1,47 @@
+//! A run is made anew on half the elements and in half the steps until its errors are as asked.
+
+use super::{Instant, Timeline};
+use crate::error::SolveError;
+use crate::model::Inertia;
+use crate::simulation::Simulation;
+
+/// The accuracy that is asked of a run, and the effort that it may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Refinement {
+    /// Length of the run, s.
+    pub duration_s: f64,
+    /// Step to begin with, s; the [usual](super::usual_step) one where that is None.
+    pub step_s: Option<f64>,
+    /// Greatest error of forces that is accepted, in parts of the greatest tension.
+    pub tolerance: f64,
+    /// Number of times that elements and steps may be halved; each takes four times as long.
+    pub max_halvings: u32,
+}
+
+/// A run without outputs for every time it is to be finer, until errors are as asked: the
+/// simulation to begin with, settled, and its step (s).
+///
+/// # Errors
+/// As [`Timeline::new`] and [`Timeline::at`].
+pub fn refine_until_accurate(
+    mut simulation: Simulation,
+    inertia: Inertia,
+    asked: &Refinement,
+) -> Result<(Simulation, Option<f64>), SolveError> {
+    let (mut step, mut before) = (asked.step_s, f64::INFINITY);
+    for _ in 0..asked.max_halvings {
+        let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
+        timeline.at(Instant::nearest(asked.duration_s), |_| ())?;
+        let Some(error) = timeline.monitor().relative_error() else { break };
+        // Where a finer run is no nearer, paths are chaotic: still finer ones are not either.
+        if error <= asked.tolerance || error > before {
+            break;
+        }
+        before = error;
+        let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
+        finer.settle()?;
+        step = Some(0.5 * timeline.step_s());
+        simulation = finer;
+    }
+    Ok((simulation, step))
+}
