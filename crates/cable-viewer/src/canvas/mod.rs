@@ -94,7 +94,7 @@ pub fn offer_to_follow(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec
     if !torn_cable::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
         return;
     }
-    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0);
+    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0 - hints_height(state));
     let area = egui::Area::new(egui::Id::unique("out of view")).fixed_pos(foot).pivot(egui::Align2::CENTER_BOTTOM);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
