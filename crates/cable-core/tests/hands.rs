@@ -3,9 +3,10 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::math::Vec2;
+use cable_core::model::Inertia;
 use cable_core::scene::{Motion, Scene, Support, catalog};
 use cable_core::solution::WarningKind;
-use cable_core::{Model, Settings, Simulation};
+use cable_core::{Model, Settings, Simulation, timeline};
 
 /// A slack cable whose right end can be moved far.
 fn slack() -> Scene {
@@ -100,6 +101,21 @@ fn a_hand_is_no_faster_than_it_may_be_and_what_lags_is_said() {
     }
     let wrong = Settings { hand_speed_m_per_s: 21.0, ..Settings::default() };
     assert!(Simulation::with_settings(slack(), Model::Fem, wrong).is_err());
+}
+
+/// The four steps of a frame said it four times, each with its own distance.
+#[test]
+fn issue_020_what_lags_in_the_steps_of_a_frame_is_said_once() {
+    let hands = [Simulation::drag_support, Simulation::pull_support];
+    for (model, hand) in [Model::Fem, Model::MassSpring].into_iter().flat_map(|m| hands.map(|h| (m, h))) {
+        let mut sim = Simulation::new(slack(), model).unwrap();
+        sim.settle().unwrap();
+        hand(&mut sim, 0, 1, Vec2::new(4.0, 6.0));
+        for _ in 0..30 {
+            timeline::make_steps(&mut sim, Inertia::Dynamic, 4, None).unwrap();
+            assert_eq!(held(&sim).len(), 1, "{model}: {:?}", held(&sim));
+        }
+    }
 }
 
 /// A hand: where its spring ends, its force on the cable, N.

@@ -40,6 +40,7 @@ pub use load::Load;
 pub use motion::Motion;
 pub(crate) use obstacle::LineEnds;
 pub use obstacle::{Obstacle, Shape};
+pub use read::changes::{Change, FieldValue};
 pub use read::{file, schema, validate};
 pub use robot::{Heading, Robot, RobotTask};
 pub use support::{PulleySide, Support, SupportKind};

@@ -106,7 +106,8 @@ impl Figures {
         if converted == value { six_digits(value) } else { shortened(format!("{converted:.4e}")) }
     }
 
-    /// The end of a range, without the unit; a power of ten where it is small or large.
+    /// A number beside the ends of its range, or one of them, without the unit; a power of ten
+    /// where it is small or large.
     fn bound(self, quantity: Quantity, value: f64) -> String {
         let text = self.bare(quantity, value);
         match text.parse::<f64>() {

@@ -25,7 +25,7 @@ impl Sentence for SceneFault {
             Self::Syntax { message } => message.clone(),
             Self::Range { value, allowed: [low, high], quantity } => format!(
                 "{} is outside the allowed range {} to {}",
-                f.bare(*quantity, *value),
+                f.bound(*quantity, *value),
                 f.bound(*quantity, *low),
                 f.with_unit(*quantity, f.bound(*quantity, *high))
             ),

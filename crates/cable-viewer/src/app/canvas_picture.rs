@@ -36,13 +36,12 @@ const FRAMES: usize = 2;
 /// In words: the path is of another kind, or refuses.
 pub fn save(state: &mut AppState, theme: Theme, path: &Path) -> Result<(), String> {
     // A picture is of the scene: what is picked and where the pointer is are of the hand.
-    let (view, beside, selection) = (state.view.clone(), state.ui.legend_beside, state.selection.clone());
+    let (view, selection) = (state.view.clone(), state.selection.clone());
     (state.selection.selected, state.selection.hovered) = (None, None);
     state.selection.also_selected.clear();
     (state.view.camera.fitted_to, state.view.camera.follows) = (None, false);
-    state.ui.legend_beside = true;
     let frame = draw(state, theme);
-    (state.view, state.ui.legend_beside, state.selection) = (view, beside, selection);
+    (state.view, state.selection) = (view, selection);
     let ground = frame.ctx().global_style().visuals.panel_fill;
     match path.extension() {
         Some(e) if e.eq_ignore_ascii_case("svg") => {

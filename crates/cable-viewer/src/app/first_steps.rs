@@ -1,6 +1,6 @@
 //! The hints of the first minute stand at the foot of the canvas; each goes once it was followed.
 
-use egui::{Align2, Area, Frame, Id, Label, Order, Pos2, Rect, Ui, pos2};
+use egui::{Align2, Area, Frame, Id, Label, Margin, Order, Pos2, Rect, Ui, pos2, vec2};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::dialog::Dialog;
@@ -10,10 +10,14 @@ use crate::widgets::icon::{self, Icon};
 
 /// Distance from the foot of the canvas, points: the scale bar and the axis stay in sight.
 const ABOVE_FOOT: f32 = 58.0;
+/// Space round the words, points.
+const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 4 };
+/// Space between the words and the buttons, points.
+const GAP: f32 = 6.0;
 /// Height of the line, points: that of a button.
 const HEIGHT: f32 = 22.0;
 /// Half the width of the buttons beside the hints, points: both together stand in the middle.
-const BUTTONS: f32 = 62.0;
+const BUTTONS: f32 = 71.0;
 /// Narrower canvases (points) have no room for a line of hints.
 const MIN_WIDTH: f32 = 420.0;
 
@@ -29,7 +33,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
     };
     let foot = pos2(canvas.center().x - BUTTONS, canvas.bottom() - ABOVE_FOOT);
     let hints = area("words", foot).pivot(Align2::CENTER_BOTTOM).interactable(false).show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).inner_margin(4).show(ui, |ui| {
+        Frame::popup(ui.style()).inner_margin(MARGIN).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_min_height(HEIGHT);
                 for (k, step) in open.iter().enumerate() {
@@ -41,8 +45,8 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
             });
         });
     });
-    area("buttons", hints.response.rect.right_top()).show(ui.ctx(), |ui| {
-        Frame::popup(ui.style()).inner_margin(4).show(ui, |ui| {
+    area("buttons", hints.response.rect.right_top() + vec2(GAP, 0.0)).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).inner_margin(MARGIN).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_min_height(HEIGHT);
                 let help = "What to begin with: guides, scenes, files";

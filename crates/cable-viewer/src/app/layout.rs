@@ -120,6 +120,10 @@ const OUTLINE_WIDTH: WindowShare = WindowShare { fraction: 0.142, least: 164.0, 
 /// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
 /// fit in a line.
 const INSPECTOR_WIDTH: WindowShare = WindowShare { fraction: 0.2, least: 250.0, most: 340.0 };
+/// Widest legend above the canvas, points: beyond, colours are no better told apart.
+const LEGEND_WIDTH: f32 = 340.0;
+/// Widest warning above the canvas, points.
+const WARNING_WIDTH: f32 = 300.0;
 /// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
 /// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
 const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
@@ -146,15 +150,15 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let graphs = height >= MIN_GRAPHS_WINDOW_HEIGHT;
     let open = state.ui.panels;
     let wide = width >= MIN_TWO_PANELS_WIDTH && graphs;
-    // The worst warning stands above what scrolls in a panel, or else in the strip at the top.
+    // The worst warning stands above what scrolls in a panel, or else in the strip above the
+    // canvas.
     let told_in_panel = if wide { open.results } else { open.edit || open.results };
-    Panel::top("menu").show(ui, |ui| menu::ui(ui, !told_in_panel, state, commands));
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     state.ui.results_beside = wide && open.results;
-    state.ui.legend_beside = told_in_panel;
     if wide && open.results {
         side(ui, Panel::right("read"), INSPECTOR_WIDTH.of(width), |ui| {
             legend::beside(ui, state);
@@ -187,10 +191,37 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if wide && open.edit {
         side(ui, Panel::left("edit"), OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
     }
+    if !told_in_panel {
+        strip_above(ui, state, commands);
+    }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
     first_steps::ui(ui, canvas.response.rect, state, commands);
     highlight::frame(ui.ctx());
+}
+
+/// What the colours mean and the worst warning, in a strip above the canvas: on it they would lie
+/// over the handles of things.
+fn strip_above(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let has_map = state.analysis.safe_reach.found().is_some();
+    let height = if has_map { safe_reach::KEY_HEIGHT } else { legend::STRIP_HEIGHT };
+    let margin = egui::Margin::symmetric(8, 2);
+    let frame = Frame::side_top_panel(ui.style()).inner_margin(margin);
+    let strip = Panel::top("legends").frame(frame).resizable(false).exact_size(height + margin.sum().y);
+    strip.show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            let legends: &[fn(&mut Ui, &AppState)] =
+                if has_map { &[legend::beside, safe_reach::legend_beside] } else { &[legend::beside] };
+            let parts = (legends.len() + 1) as f32;
+            let width = (ui.available_width() / parts - ui.spacing().item_spacing.x).min(LEGEND_WIDTH);
+            for legend in legends {
+                ui.allocate_ui(vec2(width, height), |ui| legend(ui, state));
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::TOP), |ui| {
+                panels::warnings::worst_in_strip(ui, ui.available_width().min(WARNING_WIDTH), state, commands);
+            });
+        });
+    });
 }
 
 /// A side panel of a width that its contents do not change.
@@ -348,15 +379,16 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
 }
 
 /// Warnings that come and go do not move what the pointer is at below them: the panel scrolls by
-/// what they take more or less than in the frame before. `top`: where they begin.
+/// what they, and what stands above the panel, take more or less than in the frame before. `top`:
+/// where they begin.
 fn compensate_scroll(ui: &Ui, top: f32) {
     let id = Id::unique("height of the warnings");
-    let height = ui.cursor().top() - top;
+    let height = ui.clip_rect().top() + ui.cursor().top() - top;
     let before = ui.data(|d| d.get_temp::<f32>(id)).unwrap_or(height);
     ui.data_mut(|d| d.insert_temp(id, height));
     let pointer = ui.ctx().pointer_latest_pos().filter(|p| ui.clip_rect().contains(*p));
     // In this frame all that follows has moved already, but not the hand.
-    if height != before && pointer.is_some_and(|p| p.y > top + height.min(before)) {
+    if height != before && pointer.is_some_and(|p| p.y > ui.cursor().top().min(ui.cursor().top() + before - height)) {
         ui.scroll_with_delta_animation(vec2(0.0, before - height), ScrollAnimation::none());
         ui.ctx().request_repaint();
     }

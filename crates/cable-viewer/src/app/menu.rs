@@ -6,7 +6,6 @@ use egui::{Align, Button, KeyboardShortcut, Label, Layout, MenuBar, RichText, Se
 
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::panels;
 use crate::panels::readouts::DIMMED;
 use crate::render::colour::{CableQuantity, ColourMap};
 use crate::render::theme;
@@ -18,15 +17,12 @@ use crate::units::system::System;
 use crate::widgets::highlight;
 use crate::widgets::tick::{checkbox, radio_value};
 
-/// Width of the worst warning in the strip as a part of what is left, and the most, points: the
-/// name of the scene stands beside it.
-const WARNING_WIDTH: (f32, f32) = (0.6, 300.0);
 /// Narrower windows (points) have the last entries of the bar in a menu: the figures on the right
 /// would lie over them.
 const MIN_WHOLE_WIDTH: f32 = 760.0;
 
-/// The menu bar; `with_warning`: no panel says the worst warning.
-pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<Command>) {
+/// The menu bar.
+pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, state, commands));
         let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
@@ -43,10 +39,6 @@ pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<
         ui.separator();
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             results(ui, state, commands);
-            if with_warning {
-                let width = (WARNING_WIDTH.0 * ui.available_width()).min(WARNING_WIDTH.1);
-                panels::warnings::worst_in_strip(ui, width, state, commands);
-            }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(Label::new(RichText::new(title(state)).strong()).truncate());
             });

@@ -14,15 +14,15 @@ use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::layers::{
-    annotations, breaks, cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot,
-    robot_path, safe_reach, supports, tension_marker,
+    annotations, breaks, cable, compare_overlay, contact, forces, grid, no_answer, obstacles, robot, robot_path,
+    safe_reach, supports, tension_marker,
 };
 use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand, ViewCommand};
 use crate::geometry::{bounds, torn_cable};
 use crate::render::theme;
 use crate::state::AppState;
-use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
+use crate::state::camera::BORDER;
 use crate::units::labels;
 
 /// Draws the scene into the rest of the window and reads the pointer.
@@ -39,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
     // A scene that was fitted stays so in a canvas of another size.
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
-    let mut border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
+    let mut border = BORDER;
     border[3] += hints_height(state);
     let torn = torn_cable::torn(state);
     follow(state, rect, border, torn);
@@ -68,6 +68,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
 /// scene once the cable is whole again.
 fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::TornCable>) {
+    // What the pointer holds would go with the view.
+    if state.selection.grab.is_some() {
+        return;
+    }
     let camera = &mut state.view.camera;
     match torn {
         Some(torn) if camera.follows || (camera.fitted_to.is_some() && !camera.fit_wanted && torn.falls) => {
@@ -90,7 +94,7 @@ pub fn offer_to_follow(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec
     if !torn_cable::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
         return;
     }
-    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0);
+    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0 - hints_height(state));
     let area = egui::Area::new(egui::Id::unique("out of view")).fixed_pos(foot).pivot(egui::Align2::CENTER_BOTTOM);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
@@ -156,12 +160,6 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     if state.view.layers.grid {
         grid::axes(view);
         grid::scale_bar(view);
-    }
-    cable::thickness_note(view, state);
-    if !state.ui.legend_beside {
-        legend::draw(view, state);
-        legend::contacts(view, state);
-        safe_reach::legend(view, state);
     }
     no_answer::banner(view, state);
     if state.view.layers.labels {

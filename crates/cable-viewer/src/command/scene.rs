@@ -13,6 +13,7 @@ use crate::command::remove_item::{drop_lost_selection, remove_all};
 use crate::command::robot_hitch::{hitched_support, set_robot};
 use crate::command::waypoint::add_waypoint;
 use crate::command::{clipboard, route};
+use crate::geometry::supports::is_broken;
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
 use crate::worker::engine::is_quasi_static;
@@ -228,11 +229,13 @@ pub fn is_refused_pull(state: &AppState) -> bool {
 }
 
 /// Returns whether the pointer pulls a support, while masses move, to where the cable does not
-/// reach, and the user wants that to pull instead of being refused.
+/// reach, and the user wants that to pull instead of being refused. Of a broken cable the pieces go
+/// where the hand leads them.
 fn pulls_past_length(state: &AppState, before: &Scene, cable: usize, support: usize) -> bool {
     let held = Item::Support { cable, support };
     let by_spring = state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
-    let wanted = state.solver.pulls_past_length && by_spring && !state.live.playback.paused;
+    let pulls = state.solver.pulls_past_length || is_broken(state, cable);
+    let wanted = pulls && by_spring && !state.live.playback.paused;
     wanted && state.document.scene.validate().is_err() && before.validate().is_ok()
 }
 

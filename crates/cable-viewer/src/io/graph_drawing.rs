@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 
 use egui::epaint::TextShape;
-use egui::{Color32, FontId, Pos2, Shape, Stroke, Ui};
+use egui::{Color32, FontId, Mesh, Pos2, Shape, Stroke, Ui};
 
-use crate::io::graph_in_view::{GraphInView, visible};
+use crate::io::graph_in_view::{GraphInView, RIBBON, visible};
 use crate::io::picture_file;
 use crate::render::colour::LINES;
 use crate::render::offscreen::Offscreen;
@@ -34,14 +34,16 @@ const SWATCH: f64 = 20.0;
 const LETTER_WIDTH: f64 = 7.0;
 
 /// Places of the entries of the legend, points from the left and lines from above, so that none
-/// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
+/// leaves the picture or lies on another; longer names are cut. Lines come first, then the ribbon.
+/// Last: how many lines of text there are.
 fn legend(graph: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
     let widest = SIZE[0] - MARGINS[0] - MARGINS[2];
     let most = ((widest - SWATCH - 6.0) / LETTER_WIDTH) as usize;
     let (mut at, mut row, mut entries) = (MARGINS[0], 0, Vec::new());
-    for line in &graph.lines {
-        let cut = line.name.chars().count() > most;
-        let mut name: String = line.name.chars().take(if cut { most - 1 } else { most }).collect();
+    let ribbon = (!graph.known_ribbon().is_empty()).then_some(RIBBON);
+    for name in graph.lines.iter().map(|l| l.name.as_str()).chain(ribbon) {
+        let cut = name.chars().count() > most;
+        let mut name: String = name.chars().take(if cut { most - 1 } else { most }).collect();
         if cut {
             name.push('…');
         }
@@ -52,9 +54,12 @@ fn legend(graph: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
         entries.push((name, at, row));
         at += width + 16.0;
     }
-    (entries, if graph.lines.is_empty() { 0 } else { row + 1 })
+    let rows = if entries.is_empty() { 0 } else { row + 1 };
+    (entries, rows)
 }
 
+/// Strength of the ribbon's colour on white paper, per cent of that of its line.
+const RIBBON_PERCENT: u16 = 28;
 /// Size of letters, points.
 const FONT_SIZE: f64 = 12.0;
 /// Pixels of a PNG in a point: sharp on paper and on dense screens.
@@ -74,6 +79,9 @@ enum Mark {
     Line([[f64; 2]; 2], StrokeStyle),
     /// From place to place, as far as it lies in the frame.
     Path(Vec<[f64; 2]>, StrokeStyle),
+    /// Filled between places above and below each other, as far as it lies in the frame: across,
+    /// upper and lower.
+    Area(Vec<[f64; 3]>, [u8; 3]),
     /// Words on a base line.
     Text(TextLabel),
 }
@@ -126,6 +134,17 @@ impl Drawing {
         // The graph keeps its height however many lines are named above it.
         let size = [SIZE[0], frame[3] + MARGINS[3]];
         let mut marks = Vec::new();
+        let ribbon = graph.known_ribbon();
+        if !ribbon.is_empty() {
+            let [r, g, b, _] = LINES[0].to_array();
+            let colour = [r, g, b].map(|c| 255 - ((255 - u16::from(c)) * RIBBON_PERCENT / 100) as u8);
+            marks.push(Mark::Area(ribbon.iter().map(|r| [x(r[0]), y(r[2]), y(r[1])]).collect(), colour));
+            if let Some((name, at, row)) = entries.last() {
+                let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
+                marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], (colour, 8.0, None)));
+                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
+            }
+        }
         for v in ticks(left, right) {
             marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
             let at = [x(v), frame[3] + 16.0];
@@ -202,6 +221,12 @@ pub fn svg(graph: &GraphInView) -> String {
                 let (points, stroke) = (points.join(" "), stroke(pen));
                 writeln!(out, "<polyline clip-path=\"url(#c)\" fill=\"none\" {stroke} points=\"{points}\"/>")
             }
+            Mark::Area(places, colour) => {
+                let upper = places.iter().map(|[x, y, _]| format!("{x:.2},{y:.2}"));
+                let lower = places.iter().rev().map(|[x, _, y]| format!("{x:.2},{y:.2}"));
+                let (points, fill) = (upper.chain(lower).collect::<Vec<_>>().join(" "), hex(*colour));
+                writeln!(out, "<polygon clip-path=\"url(#c)\" fill=\"{fill}\" points=\"{points}\"/>")
+            }
             Mark::Text(words) => {
                 let [x, y] = words.at;
                 let anchor = match words.anchor {
@@ -260,6 +285,19 @@ fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
         match mark {
             Mark::Line(ends, pen) => line(&paper, ends.map(place).to_vec(), pen),
             Mark::Path(points, pen) => line(&plot, points.iter().copied().map(place).collect(), pen),
+            Mark::Area(places, ink) => {
+                let mut mesh = Mesh::default();
+                for [x, upper, lower] in places {
+                    let next = mesh.vertices.len() as u32;
+                    mesh.colored_vertex(place([*x, *upper]), colour(*ink));
+                    mesh.colored_vertex(place([*x, *lower]), colour(*ink));
+                    if next > 0 {
+                        mesh.add_triangle(next - 2, next - 1, next);
+                        mesh.add_triangle(next - 1, next + 1, next);
+                    }
+                }
+                plot.add(mesh);
+            }
             Mark::Text(text) => words.push(write(&paper, text)),
         }
     }
@@ -346,6 +384,27 @@ mod tests {
             assert!((0.0..height).contains(&y.parse::<f64>().unwrap()), "{y} of {height}");
         }
         assert!(text.contains("service limit 0.8000 kN"));
+    }
+
+    /// Issue 20: the ribbon of less and more friction was left out of what is exported.
+    #[test]
+    fn issue_020_the_ribbon_of_friction_is_drawn_and_named() {
+        let plain = graph();
+        assert!(!svg(&plain).contains("<polygon") && !svg(&plain).contains(RIBBON));
+        let ribbon = vec![[2.0, 200.0, 400.0], [3.0, f64::NAN, 500.0], [4.0, 300.0, 700.0]];
+        let graph = GraphInView { ribbon, ..plain };
+        let text = svg(&graph);
+        assert!(text.contains("<polygon") && text.contains(RIBBON) && !text.contains("NaN"), "{text}");
+        let drawing = Drawing::of(&graph);
+        let picture = image::load_from_memory(&png(&graph).unwrap()).unwrap().to_rgb8();
+        let [left, top, _, bottom] = drawing.frame;
+        // At 3 s, in the middle of the ribbon: from 250 to 550 N of 0 to 1 kN.
+        let pixel = |share: f64| {
+            let at = [left + (SIZE[0] - MARGINS[0] - MARGINS[2]) / 3.0 + 5.0, bottom - share * (bottom - top)];
+            picture.get_pixel((2.0 * at[0]) as u32, (2.0 * at[1]) as u32).0
+        };
+        assert_ne!(pixel(0.45), [255; 3]);
+        assert_eq!([pixel(0.65), pixel(0.22)], [[255; 3]; 2]);
     }
 
     #[test]

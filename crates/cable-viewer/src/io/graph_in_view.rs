@@ -17,8 +17,24 @@ pub struct GraphInView {
     pub bounds: [f64; 4],
     /// The lines, every sample, SI.
     pub lines: Vec<Series>,
+    /// Place, least and greatest with less and more friction, SI; empty: nobody asked.
+    pub ribbon: Vec<[f64; 3]>,
     /// Service and breaking limit, SI; those that are not finite or not in view are left out.
     pub limits: [f64; 2],
+}
+
+/// The name of the ribbon.
+pub const RIBBON: &str = "with less and more friction";
+
+impl GraphInView {
+    /// The places of the ribbon in the units shown, as far as they are known; none of fewer than
+    /// two.
+    pub(crate) fn known_ribbon(&self) -> Vec<[f64; 3]> {
+        let [across, up] = self.si;
+        let shown = self.ribbon.iter().map(|r| [r[0] / across, r[1] / up, r[2] / up]);
+        let known: Vec<[f64; 3]> = shown.filter(|r| r.iter().all(|v| v.is_finite())).collect();
+        if known.len() < 2 { Vec::new() } else { known }
+    }
 }
 
 /// Points of a line in view.
@@ -44,6 +60,7 @@ pub(crate) fn sample() -> GraphInView {
         si: [1.0, 1e3],
         bounds: [2.0, 0.0, 5.0, 1.0],
         limits: [800.0, 10e3],
+        ribbon: Vec::new(),
         lines: vec![line("Maximum", |x| 100.0 * x.sin() + 0.1), line("At left, end", |x| 1.0 / (x - 3.0))],
     }
 }

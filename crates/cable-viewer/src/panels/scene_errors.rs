@@ -51,7 +51,7 @@ pub fn summary(state: &AppState) -> Option<String> {
     let found = state.document.fault.as_ref()?;
     let named = cable_and_key(&found.path).and_then(|(index, key)| {
         let property = crate::panels::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;
-        Some(format!("{} of {}", property.quantity.name, state.document.scene.cables.get(index)?.name))
+        Some(format!("{} of “{}”", property.quantity.name, state.document.scene.cables.get(index)?.name))
     });
     Some(format!("{} {}", named.unwrap_or_else(|| format!("{}:", words::place(&found.path))), sentence(&found.fault)))
 }

@@ -16,7 +16,6 @@ use crate::panels::{cable, environment, robot, solver};
 use crate::state::{AppState, Item};
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, readout};
 
 /// Draws it.
@@ -85,7 +84,7 @@ fn remove(ui: &mut Ui, state: &AppState, item: Item, commands: &mut Vec<Command>
         Item::LoadHead(k) => Item::Load(k),
         other => other,
     };
-    let button = icon::plain_button(ui, Icon::Remove, true);
+    let button = ui.button("Remove");
     field::name(&button, &format!("Remove {name}"));
     if button.on_hover_text(help).clicked() {
         commands.push(Command::Scene(SceneCommand::Remove(whole)));

@@ -1,7 +1,7 @@
 //! The timeline shows what was recorded, what happened in it, and which of it is on screen.
 
 use cable_core::solution::WarningKind;
-use egui::{Color32, Label, Rect, RichText, Sense, Slider, Stroke, TextStyle, Ui, pos2, vec2};
+use egui::{Color32, Label, Rect, RectAlign, RichText, Sense, Slider, Stroke, TextStyle, Tooltip, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
@@ -136,8 +136,12 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
     let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < MARK_REACH);
     let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, sentence(&e.warning))).collect();
     if !text.is_empty() {
-        let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
-        ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));
+        // Above the rail, over the ground of the picture: below it are the graphs.
+        let spot = Rect::from_center_size(pos2(pointer.x, rail.center().y), vec2(1.0, rail.height()));
+        let mark = ui.interact(spot, ui.scope_id().with("event"), Sense::hover());
+        let mut tip = Tooltip::for_enabled(&mark);
+        tip.popup = tip.popup.align(RectAlign::TOP);
+        tip.show(|ui| ui.label(text.join("\n")));
     }
 }
 

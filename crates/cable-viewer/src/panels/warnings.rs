@@ -243,6 +243,12 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::ServiceTension => (Severity::Caution, "Above service tension"),
         WarningKind::BendRadius => (Severity::Caution, "Bend too tight"),
         WarningKind::Accuracy => (Severity::Caution, "Accuracy below target"),
+        // A quick hand, or a cable that holds against it: nothing is in its way.
+        WarningKind::SupportHeld
+            if matches!(warning.cause, WarningCause::Lags { .. } | WarningCause::HandLags { .. }) =>
+        {
+            (Severity::Note, "Behind the hand")
+        }
         WarningKind::SupportHeld => (Severity::Caution, "Support blocked"),
         WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
         WarningKind::ClearOfWheel => (Severity::Note, "Clear of a wheel"),
@@ -277,7 +283,10 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
             if everywhere { String::new() } else { along },
         ]),
         title: whole,
-        text: format!("{}{since}", sentence(warning)),
+        text: warning.since_s.map_or_else(
+            || sentence(warning),
+            |t| format!("{} (since {t:.2}\u{a0}s)", sentence(warning).trim_end_matches('.')),
+        ),
         at_m: position(answer, warning).filter(|_| !everywhere),
         item: index.map(Item::Cable),
         fixes: remedy(state, answer, warning, index).into_iter().collect(),

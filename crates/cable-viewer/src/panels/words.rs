@@ -1,5 +1,7 @@
 //! The panels have words for what a scene file calls by short names.
 
+use cable_core::scene::{Change, FieldValue};
+
 use crate::panels::cable::property::PROPERTIES;
 use crate::units::format;
 use crate::units::unit::Unit;
@@ -28,9 +30,7 @@ fn unit(key: &str) -> Option<(&str, Unit)> {
 
 /// A key of a scene file in words: `to_x_m` is a drive of the path, `service_tension_n` the service
 /// tension.
-#[must_use]
-pub fn property(key: &str) -> String {
-    let key = key.trim();
+fn property(key: &str) -> String {
     match key {
         "to_x_m" => return "Path: drive to".to_owned(),
         "speed_m_per_s" => return "Path: speed".to_owned(),
@@ -47,57 +47,39 @@ pub fn property(key: &str) -> String {
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }
 
-/// The value of a key, as a scene file writes it, with its unit and four digits.
-#[must_use]
-pub fn value(key: &str, text: &str) -> String {
-    let text = text.trim();
-    let of = PROPERTIES.iter().find(|p| p.key == key.trim()).map(|p| p.quantity.unit);
-    let unit = of.or_else(|| Some(unit(key.trim())?.1)).unwrap_or(Unit::NONE);
-    if let Ok(number) = text.parse::<f64>() {
-        return unit.text(number);
-    }
-    let pair = text.strip_prefix('[').and_then(|t| t.strip_suffix(']')).and_then(|t| t.split_once(", "));
-    if let Some((Ok(x), Ok(y))) = pair.map(|(x, y)| (x.parse::<f64>(), y.parse::<f64>())) {
-        if unit.symbol == Unit::M.symbol {
-            return format::position([x, y]);
+/// The value of a key with its unit and four digits.
+fn value(key: &str, value: &FieldValue) -> String {
+    let of = PROPERTIES.iter().find(|p| p.key == key).map(|p| p.quantity.unit);
+    let unit = of.or_else(|| Some(unit(key)?.1)).unwrap_or(Unit::NONE);
+    match value {
+        FieldValue::Number(number) => unit.text(*number),
+        FieldValue::Pair(at) if unit.symbol == Unit::M.symbol => format::position(*at),
+        FieldValue::Pair([x, y]) => {
+            format::with_symbol(format!("({}, {})", unit.bare().text(*x), unit.bare().text(*y)), unit.display().symbol)
         }
-        return format::with_symbol(
-            format!("({}, {})", unit.bare().text(x), unit.bare().text(y)),
-            unit.display().symbol,
-        );
-    }
-    short(text.trim_matches('"'))
-}
-
-/// A line of a scene file in words.
-#[must_use]
-pub fn line(text: &str) -> String {
-    match text.split_once(" = ") {
-        Some((key, written)) => format!("{} {}", property(key), value(key, written)),
-        None => short(text.trim().trim_matches(['[', ']'])),
+        FieldValue::Text(text) => short(text),
+        FieldValue::List(count) => format!("list of {count}"),
     }
 }
 
-/// A line that one scene file has and another has not, in words.
+/// What differs in the input of two answers, in words.
 #[must_use]
-pub fn added(text: &str) -> String {
-    match text.split_once(" = ") {
-        Some((key, written)) if of_cable(key) => format!("{} set to {}", property(key), value(key, written)),
-        _ => format!("{} added", line(text)),
-    }
-}
-
-/// A line that a scene file has no more, in words.
-#[must_use]
-pub fn removed(text: &str) -> String {
-    match text.split_once(" = ") {
-        Some((key, _)) if of_cable(key) => format!("{} back to its default", property(key)),
-        _ => format!("{} removed", line(text)),
+pub fn change(change: &Change) -> String {
+    let key = change.key.as_str();
+    let name = property(key);
+    match (&change.was, &change.is) {
+        (Some(FieldValue::List(was)), Some(FieldValue::List(is))) if was == is => format!("{name} changed"),
+        (Some(was), Some(is)) => format!("{name}: {}, now {}", value(key, was), value(key, is)),
+        (None, Some(is)) if of_cable(key) => format!("{name} set to {}", value(key, is)),
+        (Some(_), None) if of_cable(key) => format!("{name} back to its default"),
+        (None, Some(is)) => format!("{name} {} added", value(key, is)),
+        (Some(was), None) => format!("{name} {} removed", value(key, was)),
+        (None, None) => name,
     }
 }
 
 fn of_cable(key: &str) -> bool {
-    PROPERTIES.iter().any(|p| p.key == key.trim())
+    PROPERTIES.iter().any(|p| p.key == key)
 }
 
 /// A path into a scene, such as `cables[0].supports[1].at_m`, in words.
@@ -139,14 +121,26 @@ mod tests {
 
     #[test]
     fn keys_and_values_are_read_as_an_engineer_says_them() {
-        for (written, said) in [
-            ("to_x_m = 15.868020304568528", "Path: drive to 15.87 m"),
-            ("service_tension_n = 800.0", "Service tension 800.0 N"),
-            ("at_m = [3.2, 0.85]", "Position (3.200, 0.850) m"),
-            ("kind = \"fixed\"", "Kind fixed"),
+        let text = |t: &str| Some(FieldValue::Text(t.to_owned()));
+        let number = |n: &str| n.parse().ok().map(FieldValue::Number);
+        let pair = Some(FieldValue::Pair([3.2, 0.85]));
+        for (key, was, is, said) in [
+            ("to_x_m", None, number("15.868020304568528"), "Path: drive to 15.87 m added"),
+            ("service_tension_n", None, number("800"), "Service tension set to 800.0 N"),
+            ("service_tension_n", number("800"), None, "Service tension back to its default"),
+            ("length_m", number("14.2"), number("15.2"), "Length: 14.20 m, now 15.20 m"),
+            ("at_m", pair.clone(), None, "Position (3.200, 0.850) m removed"),
+            ("kind", text("fixed"), text("pulley"), "Kind: fixed, now pulley"),
+            ("name", text("a = [1"), text("b"), "Name: a = [1, now b"),
+            ("points_m", Some(FieldValue::List(3)), Some(FieldValue::List(3)), "Points changed"),
+            ("points_m", Some(FieldValue::List(3)), Some(FieldValue::List(4)), "Points: list of 3, now list of 4"),
         ] {
-            assert_eq!(line(written), said);
+            assert_eq!(change(&Change { key: key.to_owned(), was, is }), said);
         }
+    }
+
+    #[test]
+    fn paths_are_read_as_an_engineer_says_them() {
         assert_eq!(place("cables[0].supports[1].at_m"), "Cable 1, support 2, position");
         assert_eq!(place("environment.wind_n_per_m"), "Environment, wind");
     }

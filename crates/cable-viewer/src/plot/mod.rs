@@ -13,7 +13,7 @@ pub mod time;
 use egui::{Align2, Color32, Id, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
-use crate::io::graph_in_view::GraphInView;
+use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{grid_marks, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
@@ -250,6 +250,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         si: [x_si, si],
         bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
         lines: lines.to_vec(),
+        ribbon: graph.ribbon.clone(),
         limits: graph.limits,
     };
     // A graph that follows is not moved by hand: a drag in it moves the playhead.
@@ -297,9 +298,6 @@ fn set_accessible_text(figure: &egui::Response, graph: &SpokenGraph<'_>) {
         + &cursors.as_ref().map_or_else(String::new, |t| format!("; {}", t.replace('\n', "; ")));
     figure.ctx.accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
 }
-
-/// The name of the ribbon.
-const RIBBON: &str = "with less and more friction";
 
 /// The ribbon of less and more friction, behind the lines.
 fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2]) {

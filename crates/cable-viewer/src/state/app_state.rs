@@ -69,13 +69,13 @@ impl AppState {
         let cable = |k: usize| scene.cables.get(k).map_or("?", |c| &c.name);
         let obstacle = |k: usize| scene.obstacles.get(k).map_or("?", |o| &o.name);
         match item {
-            Item::Cable(k) => format!("cable {}", cable(k)),
+            Item::Cable(k) => format!("cable “{}”", cable(k)),
             Item::Support { cable: k, support } => {
                 let s = scene.cables.get(k).and_then(|c| c.supports.get(support));
-                format!("support {} of {}", s.map_or("?", |s| &s.name), cable(k))
+                format!("support “{}” of “{}”", s.map_or("?", |s| &s.name), cable(k))
             }
-            Item::Obstacle(k) => format!("obstacle {}", obstacle(k)),
-            Item::Corner { obstacle: k, corner } => format!("corner {} of {}", corner + 1, obstacle(k)),
+            Item::Obstacle(k) => format!("obstacle “{}”", obstacle(k)),
+            Item::Corner { obstacle: k, corner } => format!("corner {} of “{}”", corner + 1, obstacle(k)),
             Item::Load(k) => format!("load {}", k + 1),
             Item::LoadHead(k) => format!("force of load {}", k + 1),
             Item::Robot => "the robot".to_owned(),

@@ -28,11 +28,9 @@ impl Default for Camera {
 /// pixels.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
-/// Free border of a fitted scene, points: left (axis numbers), right (legend), top, bottom.
-/// Smaller and labels or the legend cover the ends of the cable; larger wastes the window.
-pub const BORDER: [f32; 4] = [84.0, 146.0, 56.0, 64.0];
-/// The same where the legend stands beside the canvas.
-pub const BORDER_WITHOUT_LEGEND: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
+/// Free border of a fitted scene, points: left (axis numbers), right, top, bottom. Smaller and
+/// labels cover the ends of the cable; larger wastes the window.
+pub const BORDER: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
 
 impl Camera {
     /// World (m) to screen.
@@ -153,7 +151,7 @@ mod tests {
         let mut camera = Camera::default();
         for bounds in [[[0.0, 0.0], [10.0, 1.0]], [[-5.0, 100.0], [-4.0, 220.0]], [[2.0, 2.0], [2.0, 2.0]]] {
             camera.fit(CANVAS, bounds, BORDER);
-            let free = Rect::from_min_max(CANVAS.min + egui::vec2(83.0, 55.0), CANVAS.max - egui::vec2(145.0, 63.0));
+            let free = Rect::from_min_max(CANVAS.min + egui::vec2(69.0, 39.0), CANVAS.max - egui::vec2(55.0, 51.0));
             for corner in bounds {
                 assert!(free.contains(camera.to_screen(CANVAS, corner)), "{bounds:?}");
             }

@@ -55,8 +55,6 @@ pub enum ToolSection {
 pub struct Ui {
     /// Which parts of the window are open.
     pub panels: OpenPanels,
-    /// The colours are explained beside the canvas, not on it.
-    pub legend_beside: bool,
     /// Results have a panel of their own on the right.
     pub results_beside: bool,
     /// The dialog that is open.

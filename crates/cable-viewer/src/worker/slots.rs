@@ -3,9 +3,8 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use crate::worker::engine::{Engine, Report};
+use crate::worker::engine::{Engine, Report, outbox};
 use crate::worker::request::Request;
-use crate::worker::timing::MAX_ANSWERS;
 
 /// The slots that window and thread share.
 #[derive(Default)]
@@ -62,8 +61,7 @@ impl Report {
         }
         self.answers.extend(later.answers);
         self.routes = later.routes;
-        let excess = self.answers.len().saturating_sub(MAX_ANSWERS);
-        self.answers.drain(..excess);
+        outbox::thin(&mut self.answers);
     }
 }
 
@@ -72,5 +70,53 @@ pub fn keep(slot: &mut Option<Report>, report: Report) {
     match slot {
         Some(waiting) => waiting.merge(report),
         None => *slot = Some(report),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cable_core::solution::{CableSolution, Cost, Energy, ModelReason, TensionPeak, TensionPeaks};
+    use cable_core::{Model, Solution};
+
+    use super::*;
+    use crate::worker::timing::MAX_ANSWERS;
+
+    fn answer(time_s: f64, peak_n: f64) -> Solution {
+        let greatest = TensionPeak { tension_n: peak_n, arc_length_m: 1.0, time_s };
+        let peaks = Some(TensionPeaks { greatest, held: greatest, over_s: 0.01 });
+        Solution {
+            time_s,
+            model: Model::Fem,
+            reason: ModelReason::Requested,
+            next_cheaper: None,
+            cables: vec![CableSolution { peaks, ..CableSolution::default() }],
+            warnings: Vec::new(),
+            cost: Cost::default(),
+            energy: Energy::default(),
+            robot: None,
+            verification: None,
+        }
+    }
+
+    /// A window that stalled for half a minute had lost the greatest tension of its first 20 s, and
+    /// the start of the run.
+    #[test]
+    fn answers_that_wait_for_a_stalled_window_are_thinned_and_keep_the_greatest_tension() {
+        for spike in [0_u32, 1, 2, 3, 700, 1501, 1798, 1799] {
+            let mut slot = None;
+            for k in 0..1800 {
+                let peak_n = if k == spike { 900.0 } else { 100.0 };
+                let answers = vec![answer(f64::from(k) / 60.0, peak_n)];
+                keep(&mut slot, Report { answers, ..Report::default() });
+            }
+            let answers = slot.unwrap().answers;
+            assert!(answers.len() <= MAX_ANSWERS, "{} wait", answers.len());
+            assert_eq!([answers[0].time_s, answers[answers.len() - 1].time_s], [0.0, 1799.0 / 60.0]);
+            let largest_gap_s = answers.windows(2).map(|w| w[1].time_s - w[0].time_s).fold(0.0, f64::max);
+            assert!(largest_gap_s < 0.3, "{largest_gap_s} s between two");
+            let greatest = answers.iter().map(Solution::peaks).reduce(TensionPeaks::with).unwrap();
+            let told = TensionPeak { tension_n: 900.0, arc_length_m: 1.0, time_s: f64::from(spike) / 60.0 };
+            assert_eq!((greatest.greatest, greatest.held), (told, told), "spike {spike}");
+        }
     }
 }

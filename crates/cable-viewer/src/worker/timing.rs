@@ -31,6 +31,7 @@ pub const DRAFT_FIRST_S: f64 = 0.4;
 /// the tank at 200 segments.
 pub const COARSE_AFTER_S: f64 = 0.012;
 
-/// Most answers waiting for a window that does not look: ten seconds of them. Fewer: a window that
-/// stalls loses some; more: one that is hidden for long fills the memory.
+/// Most answers waiting for a window that does not look: ten seconds of them, then every second one
+/// of 20 s and so on. Fewer: a window that stalls has gaps; more: one that is hidden for long fills
+/// the memory.
 pub const MAX_ANSWERS: usize = 600;

@@ -60,7 +60,6 @@ fn the_canvas_is_exported_with_its_legend_and_stays_as_it_is() {
     }
     assert!(picture.get_pixel(4, 4).0.iter().all(|v| *v > 200));
     assert_eq!(before, (harness.state().state.view.camera, harness.state().state.selection.selected));
-    assert!(harness.state().state.ui.legend_beside);
 }
 
 /// Issue 20: the canvas could be had as pixels only.

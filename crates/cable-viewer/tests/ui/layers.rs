@@ -52,11 +52,12 @@ fn a_cable_drawn_thicker_than_it_is_is_said_to_be() {
         let about_m = harness.state().state.view.camera.centre_m;
         apply(&mut harness, Command::View(ViewCommand::Zoom { about_m, factor: 20.0 }));
         assert!(note(&harness).is_none());
-        // Without a panel that has the legend it stands on the canvas.
+        // Without a panel that has the legend it stands in the strip above the canvas.
         apply(&mut harness, Command::View(ViewCommand::Fit));
         let folded = OpenPanels { edit: false, results: false, graphs: false };
         apply(&mut harness, Command::View(ViewCommand::ShowPanels(folded)));
-        assert!(canvas_texts(&harness).iter().any(|(t, _)| t.starts_with("cable drawn ")));
+        harness.run_steps(2);
+        assert!(note(&harness).is_some());
     }
 }
 
@@ -103,6 +104,26 @@ fn legends_of_small_windows_lie_over_no_handle() {
         let legend: Vec<_> = on_canvas.iter().filter(|(t, _)| t.starts_with("Tension (") || t == "holds").collect();
         assert!(legend.is_empty(), "{size:?}: {legend:?}");
         assert!(texts(&harness).iter().any(|(t, _)| t.starts_with("Tension (")), "{size:?}");
+    }
+}
+
+/// With all panels folded both legends lay over the robot and its cable.
+#[test]
+fn legends_lie_on_no_canvas_with_all_panels_folded() {
+    for size in [[640.0, 400.0], [800.0, 600.0], [1280.0, 800.0]] {
+        let mut harness = open(catalog::robot_drive());
+        harness.set_size(Vec2::from(size));
+        let folded = OpenPanels { edit: false, results: false, graphs: false };
+        apply(&mut harness, Command::View(ViewCommand::ShowPanels(folded)));
+        harness.run_steps(6);
+        let canvas = harness.get_by_label("Canvas").rect();
+        let strip = harness.get_by_label("Colours of the cable").rect();
+        assert!(!canvas.intersects(strip.shrink(1.0)), "{size:?}: {canvas:?} {strip:?}");
+        let on_canvas = canvas_texts(&harness);
+        let legend: Vec<_> = on_canvas.iter().filter(|(t, _)| t.starts_with("Tension (") || t == "holds").collect();
+        assert!(legend.is_empty(), "{size:?}: {legend:?}");
+        let words: Vec<_> = texts(&harness).into_iter().filter(|(_, r)| strip.contains(r.center())).collect();
+        assert!(words.iter().any(|(t, _)| t.starts_with("Tension (")), "{size:?}: {words:?}");
     }
 }
 

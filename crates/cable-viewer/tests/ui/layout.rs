@@ -240,6 +240,26 @@ fn hints_do_not_lie_over_the_cable() {
     assert!(foot < hints.top(), "the cable ends at {foot}, hints begin at {}", hints.top());
 }
 
+/// Issue 20: a length that has no answer moved the form by four rows: the next figure was typed
+/// into another field.
+#[test]
+fn issue_020_a_fault_leaves_the_field_under_the_pointer_where_it_is() {
+    let mut harness = open(catalog::hanging_span());
+    apply(&mut harness, Command::View(ViewCommand::Select(Some(Item::Cable(0)))));
+    harness.run_steps(3);
+    let field = harness.get_by_label("Length").rect();
+    harness.hover_at(field.center());
+    harness.run_steps(2);
+    let cable = harness.state().state.document.scene.cables[0].clone();
+    for length_m in [1e9, 5.0, cable.length_m] {
+        let value = Box::new(cable_core::Cable { length_m, ..cable.clone() });
+        apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value }));
+        harness.run_steps(4);
+        let now = harness.get_by_label("Length").rect();
+        assert!((now.center().y - field.center().y).abs() < 1.0, "{length_m} m: {field:?}, then {now:?}");
+    }
+}
+
 /// The form of what was picked in the outline opened where the panel had been scrolled to, in its
 /// middle.
 #[test]

@@ -76,11 +76,16 @@ fn a_support_that_the_scene_moves_is_not_called_fixed() {
 #[test]
 fn the_right_panel_follows_the_selection() {
     for (scene, row, title, figures) in [
-        (catalog::tank(), "Select hitch", "support hitch of umbilical", &["Force on it", "On the cable"][..]),
-        (catalog::pulley_waypoints(), "Select wheel", "support wheel of cable", &["Tension before", "Tension after"]),
-        (catalog::tank(), "Select beam", "obstacle beam", &["Lying on it", "Friction"]),
+        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "On the cable"][..]),
+        (
+            catalog::pulley_waypoints(),
+            "Select wheel",
+            "support “wheel” of “cable”",
+            &["Tension before", "Tension after"],
+        ),
+        (catalog::tank(), "Select beam", "obstacle “beam”", &["Lying on it", "Friction"]),
         (catalog::loads_wind_heat(), "Select load 1", "load 1", &["Tension there"]),
-        (catalog::tank(), "Select umbilical", "cable umbilical", &["Cable preset", "Length slider"]),
+        (catalog::tank(), "Select umbilical", "cable “umbilical”", &["Cable preset", "Length slider"]),
         (catalog::tank(), "Select Scene", "the scene", &["Scene name", "Map"]),
         (catalog::tank(), "Select Environment", "the environment", &["Gravity", "Plan view"]),
         (catalog::tank(), "Select Solver", "the solver", &["Tolerance", "FEM", "Chart error over cost"]),

@@ -24,8 +24,6 @@ fn refusal(text: &str) -> NoAnswer {
 /// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw,
 /// except in CI.
 fn compare(name: &str, mut state: AppState, theme: Theme) {
-    // The canvas alone explains its colours itself.
-    state.ui.legend_beside = false;
     state.ui.first_steps.hide();
     let renderer = match renderer() {
         Ok(renderer) => renderer,

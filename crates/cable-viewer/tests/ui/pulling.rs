@@ -137,3 +137,39 @@ fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
     harness.run_steps(3);
     assert!(!broken(&harness) && tension_n(&harness) < 1e4, "{} N", tension_n(&harness));
 }
+
+/// Issue 20: a cable tore off both ends in a drag. The view went with what fell, and the held end
+/// with the view, until the scene was refused as too short: time stood still.
+#[test]
+fn issue_020_a_cable_that_tears_in_a_drag_neither_moves_the_view_nor_stops_time() {
+    let mut scene = cable_core::scene::catalog::hanging_span();
+    (scene.cables[0].breaking_tension_n, scene.cables[0].service_tension_n) = (150.0, 100.0);
+    let mut harness = crate::open(scene);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    let from = support(&harness, "right");
+    harness.hover_at(from);
+    harness.step();
+    press(&harness, from, true);
+    harness.step();
+    let camera = harness.state().state.view.camera;
+    let at = lead(&mut harness, from, 1.9);
+    let mut broken_for = 0;
+    for _ in 0..240 {
+        harness.run_steps(1);
+        let state = &harness.state().state;
+        assert_eq!((&state.document.fault, &state.live.latest.error), (&None, &None));
+        assert!(!state.live.playback.paused);
+        broken_for += u32::from(!state.live.latest.solution.as_ref().unwrap().cables[0].breaks.is_empty());
+    }
+    assert!(broken_for > 60, "it tears: {broken_for}");
+    assert_eq!(harness.state().state.view.camera, camera);
+    // Past the length of the whole cable there is nothing that would be too short.
+    let at = lead(&mut harness, at, 1.0);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_none() && !state.live.playback.paused, "{:?}", state.document.fault);
+    press(&harness, at, false);
+    harness.run_steps(10);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_none() && state.document.scene.validate().is_ok());
+    assert_ne!(state.view.camera, camera, "let go, it goes with what falls");
+}

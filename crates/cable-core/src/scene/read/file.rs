@@ -69,7 +69,12 @@ impl Scene {
     /// Writes the scene. Of a cable with a preset only what differs from it is written.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        let Ok(mut table) = toml::Table::try_from(self) else { return String::new() };
+        toml::to_string(&self.written()).unwrap_or_default()
+    }
+
+    /// The scene as it is written, as a tree.
+    pub(super) fn written(&self) -> toml::Table {
+        let mut table = toml::Table::try_from(self).unwrap_or_default();
         let cables = table.get_mut("cables").and_then(toml::Value::as_array_mut);
         for cable in cables.into_iter().flatten().filter_map(toml::Value::as_table_mut) {
             let Some(preset) = cable.get("preset").and_then(toml::Value::as_str).and_then(preset::cable_preset) else {
@@ -81,7 +86,7 @@ impl Scene {
                 !values.iter().any(same)
             });
         }
-        toml::to_string(&table).unwrap_or_default()
+        table
     }
 }
 

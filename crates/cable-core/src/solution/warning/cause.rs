@@ -273,6 +273,14 @@ impl WarningCause {
         }
     }
 
+    /// The support that is not where it is sent.
+    pub(crate) fn lagging_support(&self) -> Option<&str> {
+        match self {
+            Self::Lags { support, .. } | Self::HandLags { support, .. } => Some(support),
+            _ => None,
+        }
+    }
+
     /// The kind to which it belongs.
     #[must_use]
     pub fn kind(&self) -> WarningKind {

@@ -42,8 +42,11 @@ pub struct Warning {
 
 impl Warning {
     /// Returns whether it is about the same cause at the same place as another; their values may
-    /// differ.
+    /// differ. A support that lags goes on to another place.
     pub(crate) fn has_cause_of(&self, other: &Self) -> bool {
+        if let (Some(lags), Some(other_lags)) = (self.cause.lagging_support(), other.cause.lagging_support()) {
+            return lags == other_lags && self.cable == other.cable;
+        }
         self.cause == other.cause
             && self.cable == other.cable
             && (self.arc_length_m, self.at_m) == (other.arc_length_m, other.at_m)

@@ -2,7 +2,7 @@
 //! of nodes cost one draw call.
 
 use cable_core::solution::Node;
-use egui::{Align2, Color32, Mesh, Pos2, Stroke, Vec2, vec2};
+use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
 use crate::canvas::layers::surface_offset::{self, MIN_WIDTH};
 use crate::canvas::view::CanvasView;
@@ -14,9 +14,6 @@ use crate::units::format;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than
 /// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;
-/// Of what is said of the thickness above the lower edge of the canvas, points: the axis and the
-/// scale bar with its number lie below.
-const NOTE_HEIGHT: f32 = 56.0;
 /// Width of the soft edge, points.
 const FEATHER: f32 = 0.8;
 /// A joint is drawn sharp up to this ratio of its miter to the half width, then cut.
@@ -89,16 +86,6 @@ pub(super) fn thickening(state: &AppState) -> Option<String> {
     let times = solved.cables.iter().map(|c| MIN_WIDTH / (c.diameter_m * state.view.camera.points_per_m) as f32);
     let most = times.filter(|t| t.is_finite() && *t > NOTED_THICKENING).reduce(f32::max)?;
     Some(format::significant(f64::from(most), 2))
-}
-
-/// Says it at the lower right corner, above the scale bar, where no legend stands beside the
-/// canvas.
-pub fn thickness_note(view: &mut CanvasView<'_>, state: &AppState) {
-    let Some(times) = thickening(state).filter(|_| !state.ui.legend_beside) else { return };
-    let text = format!("cable drawn {times}× as thick");
-    let at = view.rect.right_bottom() - vec2(16.0, NOTE_HEIGHT);
-    let place = view.text(at, Align2::RIGHT_BOTTOM, &text, 11.0, view.palette.weak_text);
-    view.occupied.push(place.expand(2.0));
 }
 
 /// An outdated picture: half way to grey.

@@ -1,66 +1,15 @@
-//! The colour legend, in the upper right corner.
+//! The colour legend, beside the canvas or in a strip above it: never over what can be taken.
 
-use egui::{Align2, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, FontId, Mesh, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::canvas::layers::{cable, contact};
-use crate::canvas::view::CanvasView;
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::render::theme;
 use crate::state::AppState;
 use crate::units::labels;
 
 /// Height of the legend beside the canvas, points.
-const STRIP_HEIGHT: f32 = 42.0;
-/// Size of the coloured bar, points.
-const BAR: [f32; 2] = [14.0, 132.0];
-/// Numbers beside the bar.
-const BAR_LABEL_COUNT: usize = 5;
-
-/// The colours and what they mean.
-pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
-    // Of what has no colours there is nothing to say.
-    let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_current()) else { return };
-    let [low, high] = state.view.colour.range(solution);
-    let (unit, si) = state.view.colour.quantity.unit(high.abs().max(low.abs()));
-    let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, view.rect.min.y + 10.0), vec2(108.0, BAR[1] + 44.0));
-    if plate.min.x < view.rect.min.x + 60.0 || plate.max.y > view.rect.max.y - 30.0 {
-        return;
-    }
-    let line = Stroke::new(1.0, view.palette.plate_line);
-    view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    let title = format!("{} ({unit})", state.view.colour.quantity.name());
-    view.text(plate.min + vec2(9.0, 7.0), Align2::LEFT_TOP, &title, 12.0, view.palette.text);
-    let bar = Rect::from_min_size(plate.min + vec2(10.0, 32.0), vec2(BAR[0], BAR[1]));
-    let mut mesh = Mesh::default();
-    const STRIPS: u32 = 48;
-    for k in 0..=STRIPS {
-        let f = f64::from(k) / f64::from(STRIPS);
-        let y = bar.max.y - bar.height() * f as f32;
-        let colour = state.view.colour.map.at(f);
-        mesh.colored_vertex(pos2(bar.min.x, y), colour);
-        mesh.colored_vertex(pos2(bar.max.x, y), colour);
-        if k > 0 {
-            let b = 2 * k;
-            mesh.add_triangle(b - 2, b - 1, b);
-            mesh.add_triangle(b - 1, b + 1, b);
-        }
-    }
-    view.painter.add(mesh);
-    view.painter.rect_stroke(bar, 0.0, line, StrokeKind::Outside);
-    // A quarter of a step: 2.5 must not be read as 3.
-    let decimals = labels::decimals_of((high - low) / si / (4 * (BAR_LABEL_COUNT - 1)) as f64).min(4);
-    for k in 0..BAR_LABEL_COUNT {
-        let f = k as f64 / (BAR_LABEL_COUNT - 1) as f64;
-        let y = bar.max.y - bar.height() * f as f32;
-        view.painter.hline(bar.max.x..=bar.max.x + 4.0, y, Stroke::new(1.0, view.palette.weak_text));
-        let text = format!("{:.decimals$}", (low + f * (high - low)) / si);
-        view.text(pos2(bar.max.x + 8.0, y), Align2::LEFT_CENTER, &text, 11.0, view.palette.text);
-    }
-    if state.view.colour.quantity == CableQuantity::Tension {
-        service(view, state, bar, [low, high]);
-    }
-    view.occupied.push(plate);
-}
+pub const STRIP_HEIGHT: f32 = 42.0;
 
 /// The colours and what they mean, as a strip beside the canvas.
 pub fn beside(ui: &mut Ui, state: &AppState) {
@@ -130,39 +79,5 @@ pub fn beside(ui: &mut Ui, state: &AppState) {
         let text = format!("{:.decimals$}", (low + f * (high - low)) / si);
         let at = pos2(bar.min.x + bar.width() * f as f32, bar.max.y + 2.0);
         painter.text(at, align, text, font.clone(), ink);
-    }
-}
-
-/// What the bands along the cable mean, below the colours, where there are some.
-pub fn contacts(view: &mut CanvasView<'_>, state: &AppState) {
-    let stretches = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
-    let any = state.is_current() && stretches.into_iter().any(|c| c.ends_m > c.begins_m);
-    let top = view.rect.min.y + 10.0 + BAR[1] + 44.0 + 6.0;
-    let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, top), vec2(108.0, 42.0));
-    if !any
-        || !state.view.layers.contacts
-        || plate.min.x < view.rect.min.x + 60.0
-        || plate.max.y > view.rect.max.y - 30.0
-    {
-        return;
-    }
-    let line = Stroke::new(1.0, view.palette.plate_line);
-    view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    for (k, text) in ["holds", "slides"].into_iter().enumerate() {
-        let y = plate.min.y + 12.0 + 18.0 * k as f32;
-        let bar = Rect::from_center_size(pos2(plate.min.x + 24.0, y), vec2(28.0, 9.0));
-        contact::sample(view.painter, view.palette, bar, k == 0);
-        view.text(pos2(bar.max.x + 9.0, y), Align2::LEFT_CENTER, text, 11.0, view.palette.text);
-    }
-    view.occupied.push(plate);
-}
-
-/// A red mark where the first cable's service tension lies.
-fn service(view: &CanvasView<'_>, state: &AppState, bar: Rect, range: [f64; 2]) {
-    let Some(cable) = state.document.scene.cables.first() else { return };
-    let f = ColourScale::fraction(cable.service_tension_n, range);
-    if (0.0..=1.0).contains(&f) {
-        let y = bar.max.y - bar.height() * f as f32;
-        view.painter.hline(bar.min.x - 5.0..=bar.max.x + 5.0, y, Stroke::new(2.0, view.palette.risk));
     }
 }

@@ -8,11 +8,10 @@ use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace, Trip};
 use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
 use egui::{
-    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::canvas::view::{CanvasView, hints_height};
+use crate::canvas::view::CanvasView;
 use crate::jobs::safe_reach::ReachMaps;
 use crate::render::colour::ColourMap;
 use crate::render::theme::{self, Palette};
@@ -28,9 +27,7 @@ const HATCH: f32 = 7.0;
 /// Height of the strip of a robot of unknown size, m.
 const HEIGHT_M: f64 = 1.0;
 /// Height of what explains the colours, points.
-const KEY_HEIGHT: f32 = 56.0;
-/// Size of the legend on the canvas, points.
-const LEGEND: [f32; 2] = [206.0, KEY_HEIGHT + 12.0];
+pub const KEY_HEIGHT: f32 = 56.0;
 
 /// Draws the map of an end.
 pub fn area(view: &CanvasView<'_>, state: &AppState) {
@@ -94,13 +91,15 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
         }
         mesh.add_triangle(first, first + 1, first + 2);
         mesh.add_triangle(first, first + 2, first + 3);
-    }
-    let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
-    if over(area.service_n) {
-        lines.extend(stroke(view.palette, [at[0], at[2]], 1.0));
-    }
-    if over(area.breaking_n) {
-        lines.extend(stroke(view.palette, [at[1], at[3]], 1.0));
+        // Beyond the end of the map nothing is hatched: there is nothing that the strokes would
+        // say.
+        let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
+        if over(area.service_n) {
+            lines.extend(stroke(view.palette, [at[0], at[2]], 1.0));
+        }
+        if over(area.breaking_n) {
+            lines.extend(stroke(view.palette, [at[1], at[3]], 1.0));
+        }
     }
     let values = corners.map(|(_, n)| n.min(OUT_OF_REACH_FACTOR * area.breaking_n));
     for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
@@ -191,26 +190,6 @@ fn ends(view: &CanvasView<'_>, map: &ReachMap, trip: Trip, height: f32, figures:
         let text = format!("{name} {} {length}", labels::coordinate(place.at_m[0], 0.01));
         figures.push((at - vec2(0.0, height), text, view.palette.text));
     }
-}
-
-/// Draws what the colours of the map mean in the lower left corner of the canvas.
-pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
-    let Some(key) = MapKey::of(state) else { return };
-    let corner = pos2(
-        view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
-        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0 - hints_height(state),
-    );
-    let words =
-        view.painter.layout_no_wrap(key.over.to_owned(), FontId::proportional(10.5), view.palette.text).size().x;
-    let size = vec2(LEGEND[0].max(words + 45.0), LEGEND[1]);
-    let plate = Rect::from_min_size(corner - vec2(0.0, size.y), size);
-    if plate.max.x > view.rect.max.x - 20.0 || plate.min.y < view.rect.min.y + 20.0 {
-        return;
-    }
-    let line = Stroke::new(1.0, view.palette.plate_line);
-    view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    key.draw(view.painter, view.palette, plate.shrink2(vec2(9.0, 6.0)));
-    view.occupied.push(plate);
 }
 
 /// Draws what the colours of the map mean as a strip beside the canvas.

@@ -298,7 +298,7 @@ fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<
     lines
 }
 
-/// Returns what differs in the input of a held answer and the present one, line by line of their
+/// Returns what differs in the input of a held answer and the present one, key by key of their
 /// files; the models first.
 #[must_use]
 pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
@@ -308,21 +308,7 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     {
         out.push(format!("Model: {}, now {}", labels::model(held.solution.model), labels::model(present.model)));
     }
-    let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
-    let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
-    if a.len() == b.len() {
-        let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
-        out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
-            (Some((key, was)), Some((_, is))) => {
-                format!("{}: {}, now {}", words::property(key.trim()), words::value(key, was), words::value(key, is))
-            }
-            _ => format!("{}, now {}", words::line(x), words::line(y)),
-        }));
-    } else {
-        let told = |line: &&&str| line.contains(" = ");
-        out.extend(a.iter().filter(|x| !b.contains(x)).filter(told).map(|x| words::removed(x)));
-        out.extend(b.iter().filter(|y| !a.contains(y)).filter(told).map(|y| words::added(y)));
-    }
+    out.extend(held.scene.changes_to(&state.document.scene).iter().map(words::change));
     if out.is_empty() {
         out.push("Same inputs".to_owned());
     }

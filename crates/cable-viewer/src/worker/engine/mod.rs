@@ -8,7 +8,7 @@
 
 mod answer_edit;
 mod motion;
-mod outbox;
+pub(super) mod outbox;
 mod run;
 mod shown;
 

@@ -7,6 +7,7 @@ use cable_core::timeline::RunPeaks;
 use cable_core::{Scene, Solution};
 
 use crate::state::Snapshot;
+use crate::worker::timing::MAX_ANSWERS;
 
 /// A message to the window.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +22,38 @@ pub struct Report {
     pub routes: Vec<(usize, Vec<Point>)>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
+}
+
+/// Leaves out every second answer until no more than [`MAX_ANSWERS`] wait. The next one tells the
+/// greatest tensions of one that is left out; warnings stay for a second, so no kind of them goes.
+pub fn thin(answers: &mut Vec<Solution>) {
+    while answers.len() > MAX_ANSWERS {
+        let last = answers.len() - 1;
+        let mut left_out: Option<Solution> = None;
+        let mut kept = Vec::with_capacity(last / 2 + 2);
+        for (k, mut answer) in std::mem::take(answers).into_iter().enumerate() {
+            if let Some(before) = left_out.take() {
+                tell_peaks_of(&before, &mut answer);
+            }
+            if k % 2 == 1 && k < last {
+                left_out = Some(answer);
+            } else {
+                kept.push(answer);
+            }
+        }
+        *answers = kept;
+    }
+}
+
+/// An answer takes over the greater tensions of the one before it.
+fn tell_peaks_of(before: &Solution, answer: &mut Solution) {
+    for (cable, then) in answer.cables.iter_mut().zip(&before.cables) {
+        let own = cable.peaks_at(answer.time_s);
+        let both = then.peaks_at(before.time_s).with(own);
+        if (both.greatest, both.held) != (own.greatest, own.held) {
+            cable.peaks = Some(both);
+        }
+    }
 }
 
 /// Reports that wait for the window.

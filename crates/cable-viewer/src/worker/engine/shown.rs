@@ -5,10 +5,9 @@ use std::sync::Arc;
 use cable_core::solution::Histories;
 use cable_core::{Error, Scene, Simulation, Solution};
 
-use super::outbox::Report;
+use super::outbox::{self, Report};
 use super::{Engine, Phase};
 use crate::state::NoAnswer;
-use crate::worker::timing::MAX_ANSWERS;
 
 impl Engine {
     /// Adds the present instant to the history, the start as well as every reading; nothing of a
@@ -16,10 +15,10 @@ impl Engine {
     pub(super) fn sample(&mut self) {
         if let Some(run) = &self.run
             && !self.coarse()
-            && self.outbox.answers.len() < MAX_ANSWERS
         {
             let answer = self.solution_of(run.simulation());
             self.outbox.answers.push(answer);
+            outbox::thin(&mut self.outbox.answers);
         }
     }
 
