@@ -16,6 +16,7 @@ use cable_core::solution::Node;
 use cable_core::{Model, Scene, Simulation, Solution, SolveError};
 
 use crate::fresh;
+use crate::machine::Clock;
 
 /// A cost is the least of this many solves, or of as many as fit the time below, at least one.
 const REPEATS: usize = 15;
@@ -95,7 +96,7 @@ pub struct Row {
     pub model: Model,
     /// With how many elements; None: it has none.
     pub segments: Option<usize>,
-    /// Least elapsed time of several solves, s.
+    /// Least time of several solves, s.
     pub cost_s: f64,
     /// Relative error.
     pub error: f64,
@@ -217,9 +218,9 @@ fn repeated(
     let mut answer = None;
     while costs.len() < repeats && (costs.is_empty() || all.elapsed().as_secs_f64() < LONGEST_S) {
         let mut simulation = start.clone();
-        let clock = Instant::now();
+        let clock = Clock::start();
         let result = Question::of(scene).answer(&mut simulation);
-        costs.push(clock.elapsed().as_secs_f64());
+        costs.push(clock.spent_s());
         match result {
             Ok(a) => answer = Some(a),
             Err(e) => {

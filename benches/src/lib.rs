@@ -5,6 +5,7 @@ pub mod chart;
 pub mod compare;
 pub mod dots;
 pub mod explicit;
+pub mod machine;
 pub mod maps;
 pub mod motion;
 pub mod ridges;

@@ -2,13 +2,14 @@
 //! value.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use cable_core::model::mass_spring::settings::Tuning;
 use cable_core::model::mass_spring::{MassSpringModel, Stepping};
 use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
+
+use crate::machine::Clock;
 
 /// A motion, and what is read off it.
 #[derive(Clone, Copy)]
@@ -31,8 +32,8 @@ pub struct Motion {
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
-    /// Elapsed time of the motion alone, s.
-    pub elapsed_s: f64,
+    /// Time of the motion alone, s.
+    pub spent_s: f64,
 }
 
 /// A simulation about to begin, and its step.
@@ -79,9 +80,9 @@ impl Motion {
     fn follow(&self, mut sim: Simulation, step_s: f64) -> Result<Measured, Error> {
         sim.settle()?;
         let mut run = Run { sim, step_s };
-        let began = Instant::now();
+        let clock = Clock::start();
         let figure = (self.run)(&mut run)?;
-        Ok(Measured { figure, elapsed_s: began.elapsed().as_secs_f64() })
+        Ok(Measured { figure, spent_s: clock.spent_s() })
     }
 }
 

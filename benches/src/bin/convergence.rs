@@ -8,6 +8,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
+use cable_benches::machine::measured_now;
 use cable_benches::motion::{Measured, Motion, motions};
 use cable_core::{Model, Vec2};
 
@@ -37,14 +38,14 @@ struct Line {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let asked: Vec<String> = std::env::args().skip(1).collect();
-    let mut text = String::from(HEAD);
+    let mut tables = String::new();
     for motion in motions().iter().filter(|m| asked.is_empty() || asked.iter().any(|a| a == m.id)) {
-        let tables = measured(motion)?;
-        print!("{tables}");
-        text.push_str(&tables);
+        let table = measured(motion)?;
+        print!("{table}");
+        tables.push_str(&table);
     }
     if asked.is_empty() {
-        std::fs::write(FILE, text)?;
+        std::fs::write(FILE, format!("{HEAD}\n{}\n{tables}", measured_now()))?;
     }
     Ok(())
 }
@@ -54,8 +55,7 @@ const HEAD: &str = "# How errors of motions fall
 `cargo run --release -p cable-benches --bin convergence` makes this page. Each motion is followed on a ladder of meshes with the shortest step, and of steps on the
 finest mesh, where the error is of the step alone: against half of the shortest. Elsewhere it is that of the figure named, relative to what it should be; the order is the exponent by which it fell
 from the line before. `mass-spring` takes steps of its own, 0.8 of the longest that its mesh is stable with; its ladder of steps is of parts of that, on the finest mesh that takes
-at most 2 s, against half of the shortest. Times are of the motion alone, on one core of
-whatever machine made the page.
+at most 2 s, against half of the shortest. Times are of the motion alone, on one core, each measured once.
 ";
 
 fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
@@ -78,7 +78,7 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
         let coarser = |k: usize| k.checked_sub(1).map_or(1.0, |j| motion.meshes[k] as f64 / motion.meshes[j] as f64);
         let mut lines: Vec<Line> = Vec::new();
         for (k, &n) in motion.meshes.iter().enumerate() {
-            let slow = lines.iter().any(|l| l.run.as_ref().is_ok_and(|run| run.elapsed_s > LONGEST_S));
+            let slow = lines.iter().any(|l| l.run.as_ref().is_ok_and(|run| run.spent_s > LONGEST_S));
             let run = if slow { Err("not tried: it would take minutes".to_owned()) } else { by(n, step) };
             lines.push(Line { name: n.to_string(), finer: coarser(k), run });
         }
@@ -104,7 +104,7 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
 /// The ladder of sub-steps of `mass-spring`, where its runs on the meshes of the motion, which are
 /// given, leave the time for it.
 fn sub_steps(text: &mut String, motion: &Motion, meshes: &[Line], scale: f64) {
-    let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.elapsed_s <= LONGEST_OF_LADDER_S);
+    let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.spent_s <= LONGEST_OF_LADDER_S);
     let Some(&mesh) = meshes.iter().rposition(quick).and_then(|k| motion.meshes.get(k)) else { return };
     let step = STEPS[STEPS.len() - 1];
     let by = |fraction: f64| motion.measure_in_sub_steps(mesh, step, fraction).map_err(|e| e.to_string());
@@ -137,7 +137,7 @@ fn table(text: &mut String, what: &str, lines: &[Line], (exact, scale): (Vec2, f
                 let order = before
                     .map_or_else(String::new, |last: f64| format!("{:.2}", (last / error).ln() / line.finer.ln()));
                 let second = if run.figure.y == 0.0 { String::new() } else { format!(", {:.6}", run.figure.y) };
-                let [name, time] = [line.name.clone(), format!("{:.1}", 1e3 * run.elapsed_s)];
+                let [name, time] = [line.name.clone(), format!("{:.1}", 1e3 * run.spent_s)];
                 let _ = writeln!(text, "| {name} | {:.6}{second} | {error:.1e} | {order} | {time} |", run.figure.x);
                 before = Some(error);
             }

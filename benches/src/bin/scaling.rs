@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use cable_benches::chart::{Panel, Series, svg};
+use cable_benches::machine::{Clock, measured_now};
 use cable_benches::ridges::{arched, ridges};
 use cable_core::model::mass_spring::Stepping;
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
@@ -247,17 +248,17 @@ fn cost(mut run: impl FnMut() -> Result<(f64, Simulation), Box<dyn Error>>) -> R
 fn at_rest(scene: &Scene, model: Model, segments: Option<usize>) -> Result<Cost, Box<dyn Error>> {
     cost(|| {
         let mut simulation = simulation(scene, model, segments)?;
-        let clock = Instant::now();
+        let clock = Clock::start();
         simulation.settle()?;
-        Ok((clock.elapsed().as_secs_f64(), simulation))
+        Ok((clock.spent_s(), simulation))
     })
 }
 
 fn made_ready(scene: &Scene, model: Model) -> Result<Cost, Box<dyn Error>> {
     cost(|| {
-        let clock = Instant::now();
+        let clock = Clock::start();
         let simulation = simulation(scene, model, None)?;
-        Ok((clock.elapsed().as_secs_f64(), simulation))
+        Ok((clock.spent_s(), simulation))
     })
 }
 
@@ -270,11 +271,11 @@ fn in_motion(scene: &Scene, model: Model, elements: usize) -> Result<Cost, Box<d
     }
     cost(|| {
         let mut copy = simulation.clone();
-        let clock = Instant::now();
+        let clock = Clock::start();
         for _ in 0..STEPS {
             copy.step(STEP_S)?;
         }
-        Ok((clock.elapsed().as_secs_f64() / f64::from(STEPS), copy))
+        Ok((clock.spent_s() / f64::from(STEPS), copy))
     })
 }
 
@@ -337,20 +338,23 @@ fn panels(measured: &Measured) -> Vec<Panel> {
 }
 
 fn page(measured: &Measured) -> String {
-    let mut out = String::from(
+    let mut out = format!(
         "# What size costs
 
 This page shows how time and memory grow with the number of elements, contacts, corners of the ground
 and cables. `cargo run --release -p cable-benches --bin scaling-page` makes it. A time is the least
-elapsed time of several on one core; the exponent is fitted over the upper two decades. Memory is what
+of several on one core (elapsed, or of the processor where that is less); the exponent is fitted over the upper two decades. Memory is what
 the process took more of at the greatest size, model and scene together. Figures are in
 [scaling.csv](scaling.csv).
+
+{}
 
 ![Time over size](scaling.svg)
 
 | question | from | to | time at the least and greatest | exponent | memory |
 |---|---|---|---|---|---|
 ",
+        measured_now()
     );
     for (ladder, points) in measured {
         let (Some(first), Some(last)) = (points.first(), points.last()) else { continue };

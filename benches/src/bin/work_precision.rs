@@ -9,8 +9,8 @@
 //! points; `-- draw` draws the table again. Points of other programs are read from
 //! `docs/charts/peers.csv`, which `benches/peers/run` writes.
 //!
-//! A cost is the least elapsed time of several solves, on one core, without building the model and
-//! without the search of other friction histories.
+//! A cost is the least time of several solves, on one core, without building the model and without
+//! the search of other friction histories.
 
 use std::collections::BTreeSet;
 use std::error::Error;
@@ -21,6 +21,7 @@ use std::time::Instant;
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::compare::{self, Question, Reference, lies_in_itself};
 use cable_benches::dots::{self, Dot, Line, Plot};
+use cable_benches::machine::{MEASURED, measured_now};
 use cable_benches::motion::{Motion, motions};
 use cable_benches::span_of;
 use cable_core::catenary::Catenary;
@@ -96,7 +97,10 @@ impl Point {
 fn main() -> Result<(), Box<dyn Error>> {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     if asked.iter().any(|a| a == "draw") {
-        return draw(&read(TABLE)?);
+        // The page says of its points when they were measured.
+        let page = std::fs::read_to_string(PAGE).unwrap_or_default();
+        let line = page.lines().find(|line| line.starts_with(MEASURED)).unwrap_or("");
+        return draw(&read(TABLE)?, line);
     }
     let wanted = |id: &str| asked.is_empty() || asked.iter().any(|a| a == id);
     let mut points = Vec::new();
@@ -112,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     }
     write(TABLE, &points)?;
-    draw(&points)
+    draw(&points, &measured_now())
 }
 
 /// The drive in the tank, out: on its way back the cable folds, and `spans` cannot follow.
@@ -238,7 +242,7 @@ fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
                 let found: Result<Vec<_>, _> = runs.collect();
                 let (cost, error, note) = match &found {
                     Ok(runs) => {
-                        let cost = runs.iter().map(|r| r.elapsed_s).fold(f64::INFINITY, f64::min);
+                        let cost = runs.iter().map(|r| r.spent_s).fold(f64::INFINITY, f64::min);
                         let figure = runs.first().map_or_else(Vec2::zeros, |r| r.figure);
                         (Some(cost), Some((figure - exact).norm() / exact.norm()), String::new())
                     }
@@ -283,8 +287,9 @@ fn write(path: &str, points: &[Point]) -> Result<(), Box<dyn Error>> {
     Ok(csv.flush()?)
 }
 
-/// Charts and page of the table and of what other programs were measured with.
-fn draw(own: &[Point]) -> Result<(), Box<dyn Error>> {
+/// Charts and page of the table, with the line that says when it was measured, and of what other
+/// programs were measured with.
+fn draw(own: &[Point], measured: &str) -> Result<(), Box<dyn Error>> {
     let peers = if Path::new(PEERS).exists() { read(PEERS)? } else { Vec::new() };
     let all: Vec<Point> = own.iter().chain(&peers).cloned().collect();
     let mut ids: Vec<String> = Vec::new();
@@ -300,7 +305,7 @@ fn draw(own: &[Point]) -> Result<(), Box<dyn Error>> {
         std::fs::write(format!("{FOLDER}/work_precision/{id}.svg"), svg(&panels(id, &points), 2))?;
         missed.extend(section(&mut sections, id, &points));
     }
-    let page = format!("{HEAD}{}{sections}", shortfalls(&missed));
+    let page = format!("{HEAD}\n{measured}\n{}{sections}", shortfalls(&missed));
     std::fs::write(format!("{FOLDER}/work_precision.svg"), dots::svg(&front(&ids, &all)))?;
     std::fs::write(PAGE, page)?;
     println!("{} points of {} scenes drawn on {PAGE}", all.len(), ids.len());
@@ -312,8 +317,8 @@ const HEAD: &str = "# Work and precision
 This page shows what an answer costs at what error, scene by scene: each model on its meshes and steps,
 and other programs on the same scenes where they can express them ([how](../../benches/peers/README.md)).
 `cargo run --release -p cable-benches --bin work-precision` makes it; with `benches/peers/run` before it
-the points of other programs are of the same machine and hour. A cost is the least elapsed time of
-several solves on one core, of the solve alone: without building the model and without the search of
+the points of other programs are of the same machine and hour. A cost is the least time of
+several solves on one core (elapsed, or of the processor where that is less), of the solve alone: without building the model and without the search of
 other equilibria that friction allows (`Settings::histories` is off). At rest the error is the largest
 of any support's force and of the greatest tension, over the greatest tension; in motion that of the
 figure named in [convergence.md](../convergence.md). Figures are in

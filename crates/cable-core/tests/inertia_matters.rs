@@ -1,7 +1,8 @@
 //! A run with inertia says its Mach and Froude numbers and, beside a run without inertia, whether
 //! masses matter in it.
 //!
-//! All: `cargo test --locked -p cable-core --test inertia_matters -- --ignored --nocapture`.
+//! All: `cargo test --locked -p cable-core --test inertia_matters -- --ignored --nocapture`;
+//! `FROM=1000 TO=1200` takes other motions than those from which the rule was made.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
@@ -118,8 +119,11 @@ fn difference(scene: &Scene) -> Option<f64> {
 #[test]
 #[ignore = "minutes"]
 fn verdicts_are_those_of_finer_runs() {
-    let (mut right, mut near, mut wrong, mut slow, mut hidden) = (0, 0, Vec::new(), 0, 0);
-    for number in 0..100u64 {
+    let (mut right, mut near, mut wrong, mut slow, mut hidden) = (0u64, 0, Vec::new(), 0u64, 0);
+    let number = |name: &str, usual: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(usual);
+    let numbers = number("FROM", 0)..number("TO", 100);
+    let count = numbers.end.saturating_sub(numbers.start);
+    for number in numbers {
         let mut dice = Dice(number.wrapping_mul(0x2000_0003) + 19);
         let reach = dice.log(1e-6, 1.0);
         let angle = dice.within(0.0, std::f64::consts::TAU);
@@ -134,7 +138,7 @@ fn verdicts_are_those_of_finer_runs() {
         let said = effect(&scene);
         let is = difference(&scene);
         let tolerance = said.tolerance;
-        slow += usize::from(said.matters() == Some(false));
+        slow += u64::from(said.matters() == Some(false));
         let line = format!("{number}: reach {reach:.1e} m, {said}; finer: {is:?}");
         println!("{line}");
         match is {
@@ -149,5 +153,5 @@ fn verdicts_are_those_of_finer_runs() {
         wrong.len()
     );
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert!(right > 60 && slow > 10, "{right} {slow}");
+    assert!(100 * right > 60 * count && 100 * slow > 10 * count, "{right} {slow}");
 }

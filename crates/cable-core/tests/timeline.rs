@@ -188,7 +188,9 @@ fn one_verdict_on_every_mesh() {
 }
 
 /// Coarser runs beside steps of more than a third of a second were refused, as their own are more
-/// than a second long: nothing was said of errors.
+/// than a second long: nothing was said of errors. Once all runs have been compared, what is said
+/// covers the error at every instant: at steps of 0.84 s, each longer than what differed was
+/// remembered, 0.073 m was said of 0.102 m where two runs crossed.
 #[test]
 fn steps_of_more_than_a_third_of_a_second_have_errors_too() {
     let (length_m, bob_kg, swing) = (2.0, 10.0, 0.1f64);
@@ -203,7 +205,7 @@ fn steps_of_more_than_a_third_of_a_second_have_errors_too() {
         }
         sim.set_states(&states).unwrap();
     };
-    for step_s in [0.25, 0.4, 0.6, 0.9] {
+    for step_s in [0.25, 0.4, 0.6, 0.84, 0.9] {
         let settings =
             Settings { segments: Some(12), inner_step_s: Some(step_s), histories: false, ..Settings::default() };
         let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, settings).unwrap();
@@ -212,14 +214,16 @@ fn steps_of_more_than_a_third_of_a_second_have_errors_too() {
         aside(&mut sim);
         monitor.steer(aside);
         let (mut off, mut said) = (0.0f64, 0.0f64);
-        for _ in 0..12 {
+        for step in 1..=18 {
             sim.step(step_s).unwrap();
             monitor.follow(&mut sim);
             let turned = swing * ((9.80665 / length_m).sqrt() * (1.0 - swing * swing / 16.0) * sim.time_s()).cos();
             let answer = &sim.answers()[0];
             let at = answer.nodes[answer.nodes.len() - 1].at();
-            off = off.max((at - Vec2::new(turned.sin(), -turned.cos()) * length_m).norm());
-            said = said.max(answer.errors.position_m.expect("an error"));
+            let off_now = (at - Vec2::new(turned.sin(), -turned.cos()) * length_m).norm();
+            let said_now = answer.errors.position_m.expect("an error");
+            assert!(step < 6 || said_now >= off_now, "step {step} of {step_s} s: {off_now} m off, {said_now} m said");
+            (off, said) = (off.max(off_now), said.max(said_now));
         }
         println!("steps of {step_s} s: {off:.3} m off, {said:.3} m said");
         assert!(said >= off, "steps of {step_s} s: {off} m off and {said} m said");

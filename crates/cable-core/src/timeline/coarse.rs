@@ -21,10 +21,10 @@ const COMMON_STEPS: u64 = 6;
 /// Part of a time by which a sum of steps may be short of it.
 const TENSION_ROUNDING: f64 = 1e-9;
 
-/// A difference is forgotten within these times, s; the geometric mean of what both remember
-/// counts. With one time it is 0.25 s, and where 95 figures in 100 are covered 78 instead of 80 are
-/// within ten times the error. Shorter: errors vanish wherever two runs cross; longer: what once
-/// struck is uncertain long after it lies still.
+/// A difference is forgotten within these times, s, or [`COMMON_STEPS`] if they take longer; the
+/// geometric mean of what both remember counts. With one time it is 0.25 s, and where 95 figures in
+/// 100 are covered 78 instead of 80 are within ten times the error. Shorter: errors vanish wherever
+/// two runs cross; longer: what once struck is uncertain long after it lies still.
 const DECAY_TIMES_S: [f64; 2] = [0.1, 0.4];
 
 /// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one
@@ -94,6 +94,8 @@ struct CoarseRun {
     simulation: Simulation,
     /// Number of steps of the fine run that make one of it.
     times: u64,
+    /// Time between comparisons of all runs by its last step, s; 0 before.
+    common_s: f64,
     /// Difference of each cable from the fine run, as each of [`DECAY_TIMES_S`] remembers it.
     differences: Vec<[ErrorEstimates; 2]>,
     recent: Vec<RecentPeaks>,
@@ -114,7 +116,7 @@ impl CoarseRuns {
             let cables = fine.answers().iter().zip(simulation.answers());
             let differences = cables.map(|(a, b)| [ErrorEstimates::between(b, a); 2]).collect();
             let recent = max_tensions(&simulation).map(RecentPeaks::begin).collect();
-            runs.push(CoarseRun { simulation, times, differences, recent });
+            runs.push(CoarseRun { simulation, times, common_s: 0.0, differences, recent });
         }
         let own: Vec<RecentPeaks> = max_tensions(fine).map(RecentPeaks::begin).collect();
         let before = vec![TensionRanges::default(); own.len()];
@@ -193,7 +195,11 @@ impl CoarseRuns {
                 Some(short.with(long, |short, long| (short * long).sqrt()))
             };
             let differences = self.runs.iter().filter_map(remembered);
-            let bounds = differences.reduce(|finer, coarser| finer.with(&coarser, error_bound));
+            // Differences of few instants may be small because runs cross there: that runs converge
+            // is not seen by them.
+            let seldom = self.runs.iter().any(|run| run.common_s > DECAY_TIMES_S[1]);
+            let bound = if seldom { error_bound_of_any } else { error_bound };
+            let bounds = differences.reduce(|finer, coarser| finer.with(&coarser, bound));
             bounds.filter(|_| known).unwrap_or_default()
         })
     }
@@ -210,8 +216,13 @@ fn max_tensions(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
 fn error_bound(finer: f64, coarser: f64) -> f64 {
     match finer <= CONVERGENCE_RATIO * coarser {
         true => ERROR_FACTOR * finer,
-        false => ERROR_FACTOR * larger(finer, coarser),
+        false => error_bound_of_any(finer, coarser),
     }
+}
+
+/// The same, of runs that may not converge.
+fn error_bound_of_any(finer: f64, coarser: f64) -> f64 {
+    ERROR_FACTOR * larger(finer, coarser)
 }
 
 impl CoarseRun {
@@ -223,7 +234,11 @@ impl CoarseRun {
             .iter_mut()
             .zip(max_tensions(&self.simulation))
             .for_each(|(own, max_tensions)| own.note(max_tensions));
-        let kept = DECAY_TIMES_S.map(|memory_s| ((before_s - fine.time_s()) / memory_s).exp());
+        let step_s = fine.time_s() - before_s;
+        // A memory shorter than the time between comparisons of all runs would hold but the last
+        // difference, which vanishes where two runs cross.
+        self.common_s = step_s * COMMON_STEPS as f64 / self.times as f64;
+        let kept = DECAY_TIMES_S.map(|memory_s| (-step_s / larger(memory_s, self.common_s)).exp());
         let cables = fine.answers().iter().zip(self.simulation.answers());
         for (remembered, (a, b)) in self.differences.iter_mut().zip(cables) {
             let now = ErrorEstimates::between(b, a);

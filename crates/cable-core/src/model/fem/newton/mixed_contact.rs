@@ -17,13 +17,9 @@ use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2, larger};
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::minimize::{ENERGY_NOISE, Workspace};
-<<<<<<< HEAD
 use crate::model::fem::system::{
-    ContactSet, Converged, Failure, Mesh, PlainBar, StepContext, StepInput, Unknowns, bar_energy,
+    ContactSet, Converged, Failure, PlainBar, StepContext, StepInput, Unknowns, bar_energy,
 };
-=======
-use crate::model::fem::system::{ContactSet, Converged, Failure, StepContext, StepInput, Unknowns, bar_energy};
->>>>>>> w33
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;

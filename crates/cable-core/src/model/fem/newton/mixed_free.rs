@@ -20,12 +20,8 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-<<<<<<< HEAD
-use crate::model::fem::system::{BarBranch, Converged, Mesh, PlainBar, StepInput, Unknowns, bar_energy};
-=======
 use crate::model::fem::mesh::Mesh;
-use crate::model::fem::system::{Converged, StepInput, Unknowns, bar_energy};
->>>>>>> w33
+use crate::model::fem::system::{BarBranch, Converged, PlainBar, StepInput, Unknowns, bar_energy};
 
 /// Roundings of a coordinate that a bar's length may be off by.
 const ROUNDING: f64 = 16.0;

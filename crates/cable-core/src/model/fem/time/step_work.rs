@@ -19,11 +19,7 @@ use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight::{self};
-<<<<<<< HEAD
-use crate::model::fem::system::{ContactPair, Mesh, PlainBar, Unknowns, Weight, bar_energy, bends_slope};
-=======
-use crate::model::fem::system::{ContactPair, Unknowns, Weight, bar_energy, bends_slope};
->>>>>>> w33
+use crate::model::fem::system::{ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope};
 use crate::model::fem::time::loss_memory;
 use crate::scene::SupportKind;
 use crate::solution::Energy;
