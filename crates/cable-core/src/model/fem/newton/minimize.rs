@@ -226,11 +226,12 @@ impl Workspace {
         self.magnitude += value.abs();
         for i in 0..x.len() {
             let (k, scale) = (input.inertial.stiffness[i], node_scale(input, i));
-            let (kinetic, work) = if mesh.sliding[i].is_some() {
+            let (kinetic, work) = if let Some(node) = &mesh.sliding[i] {
                 let away = unknowns.slides[i] - input.inertial.predicted_slide[i];
-                s.gradient[2 * i] += scale * k * away;
+                let lightens = input.inertial.momentum_flux[i] * (node.factor - 1.0);
+                s.gradient[2 * i] += scale * (k * away - lightens);
                 s.hessian.add(2 * i, 2 * i, scale * k);
-                (0.5 * k * away * away, 0.0)
+                (0.5 * k * away * away, lightens * unknowns.slides[i])
             } else {
                 let away = x[i] - input.inertial.predicted[i];
                 if measured {

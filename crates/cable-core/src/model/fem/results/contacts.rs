@@ -97,7 +97,8 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             // The law of friction holds between the pulls along the bars: what hangs across them is
             // the cable's own weight, and what the floor takes of what slides here is not the
             // round's.
-            let acts = node.balanced.unwrap_or(BalancedTensions { pull: load.at_round(), turn: load.turn });
+            let at_rest = BalancedTensions { pull: load.at_round(), turn: load.turn, momentum_flux: 0.0 };
+            let acts = node.balanced.unwrap_or(at_rest);
             let [a, b] = acts.pull;
             let floor = load.floor[1];
             let over = RoundFloorFriction::between([a, b], floor);
@@ -120,7 +121,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
-            samples.push(ContactSample::new(d.mesh.arc_length[j], round_force(&load)));
+            samples.push(ContactSample::new(d.mesh.arc_length[j], round_force(&load, acts.momentum_flux)));
             r.tension_after_n = after;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };
@@ -133,12 +134,12 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
     }
 }
 
-/// Force of a round on the cable at a sliding node, N: the change of the internal force without the
-/// part of the floor.
-fn round_force(load: &SlidingNodeLoad) -> Vec2 {
+/// Force of a round on the cable at a sliding node, N: the change of the internal force, less the
+/// momentum that is carried over in a second, without the part of the floor.
+fn round_force(load: &SlidingNodeLoad, momentum_flux: f64) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
-    -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
+    (after - before) * momentum_flux - load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
 fn report(

@@ -136,6 +136,8 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
     input.losses.predicted_length.extend_from_slice(&mesh.rest_length);
     input.inertial.predicted_slide.clear();
     input.inertial.predicted_slide.resize(n, 0.0);
+    input.inertial.momentum_flux.clear();
+    input.inertial.momentum_flux.resize(n, 0.0);
 }
 
 /// Sets the greatest friction of a rough floor, and the part of the weight of bars that rests on

@@ -116,7 +116,8 @@ pub(in crate::model::fem) fn update_stick_slip(
         // none. (The pull with which the cable comes is a result of the step: with a test of it
         // friction came and went in one jump, and no state was lawful.)
         let turn = load.turn_with_inertia(inertia);
-        let presses = turn > 0.0 && load.at_material[1] > 0.0;
+        let momentum_flux = cable.input.inertial.momentum_flux[k];
+        let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
         let exponent = if presses { node.friction * turn } else { 0.0 };
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
@@ -126,7 +127,7 @@ pub(in crate::model::fem) fn update_stick_slip(
         changes.lawful &= lawful;
         // Which way it slips, if at all, follows from its turn, not from a guess of it.
         let by_turn = SlidingNode { exponent, ..node };
-        let stick_slip = load.stick_slip(&by_turn, unknowns.slides[k], [inertia, slack], stiffness);
+        let stick_slip = load.stick_slip(&by_turn, unknowns.slides[k], [inertia, momentum_flux, slack], stiffness);
         next.exponent = match &mut tried {
             Some(tried) if !lawful => tried.next(k, node.exponent, exponent),
             None if one => 0.5 * (node.exponent + exponent),

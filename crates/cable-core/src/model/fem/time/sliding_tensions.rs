@@ -11,6 +11,7 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
         let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
         let inertia =
             cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
+        let momentum_flux = cable.input.inertial.momentum_flux[k];
         if let Some(node) = &mut cable.mesh.sliding[k] {
             let [comes, leaves] = load.at_round();
             // The step balances slopes by the slide, where inertia counts by what is stretched.
@@ -19,9 +20,13 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
             let pulls = match node.stick_slip {
                 _ if load.floor != [0.0; 3] => comes - inertia,
                 StickSlip::Stick => leaves + (before - inertia - after) / stretch,
-                slips => load.ratio(slips, node.exponent) * leaves,
+                slips => load.ratio(slips, node.exponent) * (leaves - momentum_flux) + momentum_flux,
             };
-            node.balanced = Some(BalancedTensions { pull: [pulls, leaves], turn: load.turn_with_inertia(inertia) });
+            node.balanced = Some(BalancedTensions {
+                pull: [pulls, leaves].map(|pull| pull - momentum_flux),
+                turn: load.turn_with_inertia(inertia),
+                momentum_flux,
+            });
         }
     }
 }

@@ -28,6 +28,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         input.inertial.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
         input.inertial.stiffness[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;
         if mesh.sliding[k].is_some() {
+            input.inertial.momentum_flux[k] = cable.problem.linear_density * m.slide_rates[k] * m.slide_rates[k];
             let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
             let s = mesh.arc_length[k];
             input.inertial.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;

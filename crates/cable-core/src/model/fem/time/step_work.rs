@@ -275,7 +275,7 @@ impl BalancedStep<'_> {
         for (k, node) in mesh.sliding.iter().enumerate() {
             let Some(node) = node.filter(|_| slides[k] != 0.0) else { continue };
             let leaves = bar_energy::pull_at_slide(mesh, input, k, 0, x, slides);
-            works.friction -= (node.factor - 1.0) * leaves * slides[k];
+            works.friction -= (node.factor - 1.0) * (leaves - input.inertial.momentum_flux[k]) * slides[k];
             if let Some(limit) = input.loads.floor_limit.get(k) {
                 let slid = self.cable.contacts.floor_slip[k].x + slides[k];
                 let (_, slope, _) = friction::at(slid, limit * node.floor_factor, self.cable.contacts.slip);
