@@ -72,9 +72,14 @@ fn a_cable_that_runs_fast_presses_by_its_tension_less_its_momentum() {
             let flux = DENSITY_KG_PER_M * speed * speed;
             let leaves = flux + (PULL_N - flux) * (friction * std::f64::consts::FRAC_PI_2).exp();
             let presses = (PULL_N - flux).hypot(leaves - flux);
-            println!("{speed} m/s, friction {friction}, wheel {over_wheel}: pulls {pull:.2} ({leaves:.2}) N, presses {taken:.2} ({presses:.2}) N");
+            println!(
+                "{speed} m/s, friction {friction}, wheel {over_wheel}: pulls {pull:.2} ({leaves:.2}) N, presses {taken:.2} ({presses:.2}) N"
+            );
             assert!((pull / leaves - 1.0).abs() < 0.02, "{speed} m/s, {friction}: pulls {pull} N, and not {leaves}");
-            assert!((taken / presses - 1.0).abs() < 0.03, "{speed} m/s, {friction}: presses {taken} N, and not {presses}");
+            assert!(
+                (taken / presses - 1.0).abs() < 0.03,
+                "{speed} m/s, {friction}: presses {taken} N, and not {presses}"
+            );
         }
     }
 }

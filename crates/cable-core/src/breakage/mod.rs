@@ -480,6 +480,8 @@ impl BreakableCable {
 
     /// Takes over a state of the whole cable.
     pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        self.leaves_reach |= self.problem.is_beyond_reach(state);
+        self.meet_what_is_in_reach()?;
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => {
                 whole.mechanics.set_state(state)?;

@@ -17,6 +17,7 @@ use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, larger, smaller};
 use crate::scene::SupportKind;
+use crate::state::State;
 
 /// The greatest tension with which reach is reckoned, in parts of the breaking tension. A cable may
 /// have more for less than its breaking time. Less: all obstacles are there for the rest of a run
@@ -69,6 +70,15 @@ impl Problem {
     #[must_use]
     pub(crate) fn max_tension_within_reach_n(&self) -> Option<f64> {
         self.unreachable.as_ref().map(|_| TENSION_MARGIN * self.cable.breaking_tension_n)
+    }
+
+    /// True if a state is at or in obstacles that were left out: it is not one that the cable comes to
+    /// by itself.
+    #[must_use]
+    pub(crate) fn is_beyond_reach(&self, state: &State) -> bool {
+        let Some(world) = &self.unreachable else { return false };
+        let touches = |at: &Vec2| world.signed_gap(*at, self.length).is_some_and(|gap| gap.gap_m < self.radius);
+        state.position_m.iter().any(touches)
     }
 }
 

@@ -363,7 +363,7 @@ mod tests {
     /// Landing nodes are thrown together along the floor with forces of kN: where friction was not
     /// found by branches, 14 of these steps went to and fro until the minimiser was asked. A step
     /// in which a node lands is balanced twice, as friction follows the normal forces of its own
-    /// step: 591 iterations and 28 steps of a dozen or more. (495 and 17 where slack bars resisted
+    /// step: 565 iterations and 28 steps of a dozen or more. (495 and 17 where slack bars resisted
     /// as strongly as taut ones do; below 380 and none where friction was that of the step before.)
     #[test]
     fn a_landing_front_is_found_without_the_minimiser() {
@@ -393,7 +393,7 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 14 562 and 250, since slack bars give way: where the nodes of a front are thrown
+        // Measured: 13 444 and 250, since slack bars give way: where the nodes of a front are thrown
         // together, which bars buckle is found by the minimiser. With slack bars that resisted as
         // taut ones 7087 and 10.
         assert!(whole < 16_000 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
