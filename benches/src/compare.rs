@@ -16,7 +16,7 @@ use cable_core::solution::Node;
 use cable_core::{Model, Scene, Simulation, Solution, SolveError};
 
 use crate::fresh;
-use crate::machine::Clock;
+use crate::machine::{Clock, Spent};
 
 /// A cost is the least of this many solves, or of as many as fit the time below, at least one.
 const REPEATS: usize = 15;
@@ -220,7 +220,7 @@ fn repeated(
         let mut simulation = start.clone();
         let clock = Clock::start();
         let result = Question::of(scene).answer(&mut simulation);
-        costs.push(clock.spent_s());
+        costs.push(clock.spent());
         match result {
             Ok(a) => answer = Some(a),
             Err(e) => {
@@ -229,14 +229,13 @@ fn repeated(
             }
         }
     }
-    costs.sort_by(f64::total_cmp);
     let answer = answer?;
     let said = answer.cables.iter().filter_map(|c| c.error_estimate).reduce(f64::max);
     Some(Row {
         scene: id,
         model,
         segments,
-        cost_s: costs[0],
+        cost_s: Spent::least_s(&costs),
         error: reference.error(&answer),
         shape_error: reference.shape_error(&answer),
         said,

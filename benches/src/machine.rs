@@ -6,8 +6,47 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 /// this, s.
 const LEAST_PROCESSOR_S: f64 = 0.1;
 
-/// A clock that other programs on the machine do not make run faster, where what is measured takes
-/// more than 0.1 s: the lesser of elapsed time and of the processor time of this thread.
+/// The time that something took, s.
+#[derive(Clone, Copy, Debug)]
+pub struct Spent {
+    elapsed_s: f64,
+    processor_s: Option<f64>,
+}
+
+impl Spent {
+    /// The least elapsed time of several runs, s, or their mean processor time where that is known
+    /// and less: a run of some milliseconds never has a busy machine for itself.
+    #[must_use]
+    pub fn least_s(runs: &[Self]) -> f64 {
+        let elapsed = runs.iter().map(|run| run.elapsed_s).fold(f64::INFINITY, f64::min);
+        let processor: Option<f64> = runs.iter().map(|run| run.processor_s).sum();
+        processor.filter(|s| *s > LEAST_PROCESSOR_S).map_or(elapsed, |s| elapsed.min(s / runs.len() as f64))
+    }
+
+    /// As [`Self::least_s`], of this one.
+    #[must_use]
+    pub fn seconds(self) -> f64 {
+        Self::least_s(&[self])
+    }
+
+    /// Returns whether so many runs are to be followed by another: until there are `least` of them,
+    /// and until their processor time is known.
+    #[must_use]
+    pub fn wants_more(runs: &[Self], least: usize) -> bool {
+        let elapsed: f64 = runs.iter().map(|run| run.elapsed_s).sum();
+        runs.len() < least || (elapsed > SHORT_S * runs.len() as f64 && elapsed < ENOUGH_S)
+    }
+}
+
+/// A run shorter than this, s, has a core for itself once in a while.
+const SHORT_S: f64 = 1e-3;
+
+/// Elapsed time of several runs after which no more are made, s: then the processor has spent more
+/// than [`LEAST_PROCESSOR_S`] on them on a machine that ten others share.
+const ENOUGH_S: f64 = 1.0;
+
+/// A clock of elapsed time and of the processor time of this thread, on which other programs do not
+/// count.
 #[derive(Clone, Copy, Debug)]
 pub struct Clock {
     began: Instant,
@@ -21,12 +60,11 @@ impl Clock {
         Self { processor_s: processor_s(), began: Instant::now() }
     }
 
-    /// Time since then, s.
+    /// Time since then.
     #[must_use]
-    pub fn spent_s(&self) -> f64 {
-        let elapsed = self.began.elapsed().as_secs_f64();
-        let processor = processor_s().zip(self.processor_s).map(|(now, then)| now - then);
-        processor.filter(|s| *s > LEAST_PROCESSOR_S).map_or(elapsed, |s| s.min(elapsed))
+    pub fn spent(&self) -> Spent {
+        let elapsed_s = self.began.elapsed().as_secs_f64();
+        Spent { elapsed_s, processor_s: processor_s().zip(self.processor_s).map(|(now, then)| now - then) }
     }
 }
 

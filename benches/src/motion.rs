@@ -9,7 +9,7 @@ use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, 
 use cable_core::state::State;
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
 
-use crate::machine::Clock;
+use crate::machine::{Clock, Spent};
 
 /// A motion, and what is read off it.
 #[derive(Clone, Copy)]
@@ -32,8 +32,8 @@ pub struct Motion {
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
-    /// Time of the motion alone, s.
-    pub spent_s: f64,
+    /// Time of the motion alone.
+    pub spent: Spent,
 }
 
 /// A simulation about to begin, and its step.
@@ -82,7 +82,7 @@ impl Motion {
         let mut run = Run { sim, step_s };
         let clock = Clock::start();
         let figure = (self.run)(&mut run)?;
-        Ok(Measured { figure, spent_s: clock.spent_s() })
+        Ok(Measured { figure, spent: clock.spent() })
     }
 }
 

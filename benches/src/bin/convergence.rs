@@ -78,7 +78,7 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
         let coarser = |k: usize| k.checked_sub(1).map_or(1.0, |j| motion.meshes[k] as f64 / motion.meshes[j] as f64);
         let mut lines: Vec<Line> = Vec::new();
         for (k, &n) in motion.meshes.iter().enumerate() {
-            let slow = lines.iter().any(|l| l.run.as_ref().is_ok_and(|run| run.spent_s > LONGEST_S));
+            let slow = lines.iter().any(|l| l.run.as_ref().is_ok_and(|run| run.spent.seconds() > LONGEST_S));
             let run = if slow { Err("not tried: it would take minutes".to_owned()) } else { by(n, step) };
             lines.push(Line { name: n.to_string(), finer: coarser(k), run });
         }
@@ -104,7 +104,7 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
 /// The ladder of sub-steps of `mass-spring`, where its runs on the meshes of the motion, which are
 /// given, leave the time for it.
 fn sub_steps(text: &mut String, motion: &Motion, meshes: &[Line], scale: f64) {
-    let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.spent_s <= LONGEST_OF_LADDER_S);
+    let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.spent.seconds() <= LONGEST_OF_LADDER_S);
     let Some(&mesh) = meshes.iter().rposition(quick).and_then(|k| motion.meshes.get(k)) else { return };
     let step = STEPS[STEPS.len() - 1];
     let by = |fraction: f64| motion.measure_in_sub_steps(mesh, step, fraction).map_err(|e| e.to_string());
@@ -137,7 +137,7 @@ fn table(text: &mut String, what: &str, lines: &[Line], (exact, scale): (Vec2, f
                 let order = before
                     .map_or_else(String::new, |last: f64| format!("{:.2}", (last / error).ln() / line.finer.ln()));
                 let second = if run.figure.y == 0.0 { String::new() } else { format!(", {:.6}", run.figure.y) };
-                let [name, time] = [line.name.clone(), format!("{:.1}", 1e3 * run.spent_s)];
+                let [name, time] = [line.name.clone(), format!("{:.1}", 1e3 * run.spent.seconds())];
                 let _ = writeln!(text, "| {name} | {:.6}{second} | {error:.1e} | {order} | {time} |", run.figure.x);
                 before = Some(error);
             }

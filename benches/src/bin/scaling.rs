@@ -250,7 +250,7 @@ fn at_rest(scene: &Scene, model: Model, segments: Option<usize>) -> Result<Cost,
         let mut simulation = simulation(scene, model, segments)?;
         let clock = Clock::start();
         simulation.settle()?;
-        Ok((clock.spent_s(), simulation))
+        Ok((clock.spent().seconds(), simulation))
     })
 }
 
@@ -258,7 +258,7 @@ fn made_ready(scene: &Scene, model: Model) -> Result<Cost, Box<dyn Error>> {
     cost(|| {
         let clock = Clock::start();
         let simulation = simulation(scene, model, None)?;
-        Ok((clock.spent_s(), simulation))
+        Ok((clock.spent().seconds(), simulation))
     })
 }
 
@@ -275,7 +275,7 @@ fn in_motion(scene: &Scene, model: Model, elements: usize) -> Result<Cost, Box<d
         for _ in 0..STEPS {
             copy.step(STEP_S)?;
         }
-        Ok((clock.spent_s() / f64::from(STEPS), copy))
+        Ok((clock.spent().seconds() / f64::from(STEPS), copy))
     })
 }
 

@@ -6,8 +6,9 @@
 //! `cargo run --release -p cable-benches --bin work-precision`. It measures, and writes
 //! `docs/charts/work_precision.csv`, a chart a scene into `docs/charts/work_precision/` and the
 //! page `docs/charts/work_precision.md`. `-- tank swing` measures some of them and prints their
-//! points; `-- draw` draws the table again. Points of other programs are read from
-//! `docs/charts/peers.csv`, which `benches/peers/run` writes.
+//! points; `-- anew tank swing` measures them and takes the others as they are in the table;
+//! `-- draw` draws the table again. Points of other programs are read from `docs/charts/peers.csv`,
+//! which `benches/peers/run` writes.
 //!
 //! A cost is the least time of several solves, on one core, without building the model and without
 //! the search of other friction histories.
@@ -21,8 +22,8 @@ use std::time::Instant;
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::compare::{self, Question, Reference, lies_in_itself};
 use cable_benches::dots::{self, Dot, Line, Plot};
-use cable_benches::machine::{MEASURED, measured_now};
-use cable_benches::motion::{Motion, motions};
+use cable_benches::machine::{MEASURED, Spent, measured_now};
+use cable_benches::motion::{Measured, Motion, motions};
 use cable_benches::span_of;
 use cable_core::catenary::Catenary;
 use cable_core::scene::{SupportKind, catalog};
@@ -46,7 +47,7 @@ const STEPS: [f64; 6] = [1.0 / 30.0, 1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0, 1.0 /
 const MASS_SPRING_STEP_S: f64 = 1.0 / 240.0;
 /// A finer mesh is not tried where this one took longer, s.
 const LONGEST_S: f64 = 6.0;
-/// A motion is followed so often, and the least time counts.
+/// A motion is followed so often at least.
 const MOTION_REPEATS: usize = 3;
 /// The catenary as a function is asked so often, and the least time counts.
 const FUNCTION_REPEATS: usize = 2000;
@@ -95,7 +96,11 @@ impl Point {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let asked: Vec<String> = std::env::args().skip(1).collect();
+    let mut asked: Vec<String> = std::env::args().skip(1).collect();
+    let anew = asked.first().is_some_and(|a| a == "anew");
+    if anew {
+        asked.remove(0);
+    }
     if asked.iter().any(|a| a == "draw") {
         // The page says of its points when they were measured.
         let page = std::fs::read_to_string(PAGE).unwrap_or_default();
@@ -112,7 +117,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     for motion in motions().iter().filter(|m| wanted(m.id)) {
         points.extend(in_motion(motion)?);
     }
-    if !asked.is_empty() {
+    if anew {
+        let mut all: Vec<Point> = read(TABLE)?.into_iter().filter(|p| !wanted(&p.scene)).collect();
+        all.append(&mut points);
+        let order: Vec<&str> = scenes().iter().map(|s| s.0).chain(motions().iter().map(|m| m.id)).collect();
+        all.sort_by_key(|p| order.iter().position(|id| *id == p.scene));
+        points = all;
+    } else if !asked.is_empty() {
         return Ok(());
     }
     write(TABLE, &points)?;
@@ -238,11 +249,10 @@ fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
         let steps = if model == Model::Fem { &STEPS[..] } else { &[MASS_SPRING_STEP_S] };
         'meshes: for &n in motion.meshes {
             for &step_s in steps {
-                let runs = (0..MOTION_REPEATS).map(|_| motion.measure(model, n, step_s));
-                let found: Result<Vec<_>, _> = runs.collect();
+                let found = followed(motion, model, n, step_s);
                 let (cost, error, note) = match &found {
                     Ok(runs) => {
-                        let cost = runs.iter().map(|r| r.spent_s).fold(f64::INFINITY, f64::min);
+                        let cost = Spent::least_s(&runs.iter().map(|r| r.spent).collect::<Vec<_>>());
                         let figure = runs.first().map_or_else(Vec2::zeros, |r| r.figure);
                         (Some(cost), Some((figure - exact).norm() / exact.norm()), String::new())
                     }
@@ -261,6 +271,17 @@ fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
         }
     }
     Ok(out)
+}
+
+/// A motion, followed as often as its time is to be known.
+fn followed(motion: &Motion, model: Model, elements: usize, step_s: f64) -> Result<Vec<Measured>, cable_core::Error> {
+    let (mut runs, mut spent) = (Vec::new(), Vec::new());
+    while Spent::wants_more(&spent, MOTION_REPEATS) {
+        let run = motion.measure(model, elements, step_s)?;
+        spent.push(run.spent);
+        runs.push(run);
+    }
+    Ok(runs)
 }
 
 /// The figure of a motion without the errors of mesh and step, both of the second order.
