@@ -322,7 +322,8 @@ fn extreme_hands_pull_no_harder_than_impact_theory() {
             println!("{told}");
             assert!(most < bound, "{told}");
         }
-        // Of 20 elements each is too long for the whip of the loose end: they have a sixth less than 80.
+        // Of 20 elements each is too long for the whip of the loose end: they have a sixth less
+        // than 80.
         assert!((pulls[2] / pulls[1] - 1.0).abs() < 0.1, "{pulls:.0?} N on three meshes");
     }
 }

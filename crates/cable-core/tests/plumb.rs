@@ -1,5 +1,5 @@
-//! A flexible cable that hangs plumb pushes nothing, whether it is lowered on a floor or let go above
-//! it: what comes down is taken up sideways.
+//! A flexible cable that hangs plumb pushes nothing, whether it is lowered on a floor or let go
+//! above it: what comes down is taken up sideways.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, catalog};

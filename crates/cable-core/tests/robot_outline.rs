@@ -196,8 +196,8 @@ fn squeezed_against_a_wall_it_jams() {
     }
 }
 
-/// Where a robot presses its cable against bumps its speed is sought between one that is flat and one
-/// that is steep: 22 steps of these ended with up to 119 kN between robot and cable.
+/// Where a robot presses its cable against bumps its speed is sought between one that is flat and
+/// one that is steep: 22 steps of these ended with up to 119 kN between robot and cable.
 #[test]
 fn robot_and_cable_agree_in_every_step() {
     for (length_m, ground, drives) in [

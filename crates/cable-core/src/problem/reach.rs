@@ -72,8 +72,8 @@ impl Problem {
         self.unreachable.as_ref().map(|_| TENSION_MARGIN * self.cable.breaking_tension_n)
     }
 
-    /// True if a state is at or in obstacles that were left out: it is not one that the cable comes to
-    /// by itself.
+    /// True if a state is at or in obstacles that were left out: it is not one that the cable comes
+    /// to by itself.
     #[must_use]
     pub(crate) fn is_beyond_reach(&self, state: &State) -> bool {
         let Some(world) = &self.unreachable else { return false };

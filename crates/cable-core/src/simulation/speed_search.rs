@@ -10,14 +10,14 @@
 //! any that comes out too fast and any that comes out too slow. It is sought by the secant through
 //! the last two trials where that leaves less than half of what lay between these two trials ago,
 //! and halfway between otherwise (after R. P. Brent, "Algorithms for Minimization without
-//! Derivatives", Prentice-Hall, 1973, chapter 4): where a cable is squeezed between robot and ground
-//! a speed comes out that is flat on one side and steep on the other, and a secant alone comes from
-//! one side for ever. What the governor reaches anyway needs one trial, a cable that pulls evenly
-//! harder one or two.
+//! Derivatives", Prentice-Hall, 1973, chapter 4): where a cable is squeezed between robot and
+//! ground a speed comes out that is flat on one side and steep on the other, and a secant alone
+//! comes from one side for ever. What the governor reaches anyway needs one trial, a cable that
+//! pulls evenly harder one or two.
 
-/// Trials of a step. Halving alone takes two for each of the 30 halvings of a metre a second down to
-/// [`SPEED_TOLERANCE`], and a trial between each two of them. Fewer: a robot that squeezes its cable
-/// against a wall is out of balance, which is warned of; more: none is ever made.
+/// Trials of a step. Halving alone takes two for each of the 30 halvings of a metre a second down
+/// to [`SPEED_TOLERANCE`], and a trial between each two of them. Fewer: a robot that squeezes its
+/// cable against a wall is out of balance, which is warned of; more: none is ever made.
 const MAX_TRIALS: usize = 60;
 
 /// Speeds that come out too slow and too fast are the same when they are this near to each other,
@@ -109,9 +109,9 @@ mod tests {
         assert!(count <= 3 && (speed - 0.1).abs() < 1e-3, "{count}: {speed}");
     }
 
-    /// A cable that is squeezed presses as the logarithm of a gap that closes at a speed, and not at
-    /// all at less: with twelve trials and the secant wherever it lay between, such steps ended with
-    /// forces of kilonewtons left.
+    /// A cable that is squeezed presses as the logarithm of a gap that closes at a speed, and not
+    /// at all at less: with twelve trials and the secant wherever it lay between, such steps ended
+    /// with forces of kilonewtons left.
     #[test]
     fn a_cable_that_is_squeezed_is_balanced() {
         for closes_at in [0.3, 0.011, 2.3e-3] {

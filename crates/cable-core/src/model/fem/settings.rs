@@ -95,8 +95,8 @@ impl Default for ContactTuning {
 pub struct NewtonTuning {
     /// Iterations of the mixed method in contact before the minimiser is asked. Fewer: one of its
     /// iterations costs as much as five of these. More: where it is needed after all they are lost:
-    /// of eight drops of 600 bars 250 of 960 steps come to it with 20 as with 40, in 14 600 iterations
-    /// and in 20 700.
+    /// of eight drops of 600 bars 250 of 960 steps come to it with 20 as with 40, in 14 600
+    /// iterations and in 20 700.
     pub mixed_iterations: usize,
     /// The same where nothing is touched. Measured: 2 to 5 in a swing, up to 12 where a slack chain
     /// snaps taut.

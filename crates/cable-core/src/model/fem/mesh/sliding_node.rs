@@ -14,8 +14,8 @@
 //! beyond are only scaled by this, and the matrix stays symmetric. A cable of ρ per metre that runs
 //! at the speed w needs the momentum ρw² a second to turn, and presses by as much less: in the law
 //! both tensions are less by that (as for belts: J. E. Shigley, C. R. Mischke, "Mechanical
-//! Engineering Design", McGraw-Hill, 1989, chapter on flexible elements). What is balanced is Θ = T +
-//! T²/2EA, the slope of a bar's energy by its own length, so γ is corrected by Θ(γT)/Θ(T)/γ.
+//! Engineering Design", McGraw-Hill, 1989, chapter on flexible elements). What is balanced is Θ =
+//! T + T²/2EA, the slope of a bar's energy by its own length, so γ is corrected by Θ(γT)/Θ(T)/γ.
 
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;

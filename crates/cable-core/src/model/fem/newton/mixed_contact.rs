@@ -393,9 +393,9 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 13 444 and 250, since slack bars give way: where the nodes of a front are thrown
-        // together, which bars buckle is found by the minimiser. With slack bars that resisted as
-        // taut ones 7087 and 10.
+        // Measured: 13 444 and 250, since slack bars give way: where the nodes of a front are
+        // thrown together, which bars buckle is found by the minimiser. With slack bars that
+        // resisted as taut ones 7087 and 10.
         assert!(whole < 16_000 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
     }
 

@@ -50,12 +50,12 @@ pub struct BarIterate {
 /// A bar between nodes that move with the material, in a step: its pull is piecewise linear in its
 /// length, continuous, and never falls as it becomes longer.
 ///
-/// Stretch pulls by EA (P/L − 1) and loss by c (P − P̂)/L, as long as both together pull. A bar that
-/// would push gives way sideways instead: there only its folds resist, by a force that grows with its
-/// speed and is small beside its weight (`step_inertia.rs`), from its length P̂ at the start of the
-/// step or, if it was stretched then, from where its pull ends. With the loss of a stretched bar in a
-/// slack one, a cable that hung plumb stood as a column on the floor that it was lowered on, and pushed
-/// its riser up with 35 times its weight.
+/// Stretch pulls by EA (P/L − 1) and loss by c (P − P̂)/L, as long as both together pull. A bar
+/// that would push gives way sideways instead: there only its folds resist, by a force that grows
+/// with its speed and is small beside its weight (`step_inertia.rs`), from its length P̂ at the
+/// start of the step or, if it was stretched then, from where its pull ends. With the loss of a
+/// stretched bar in a slack one, a cable that hung plumb stood as a column on the floor that it was
+/// lowered on, and pushed its riser up with 35 times its weight.
 #[derive(Clone, Copy, Debug)]
 pub struct PlainBar {
     /// Length at which it begins to be stretched, m.

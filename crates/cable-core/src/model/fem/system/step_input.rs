@@ -63,8 +63,8 @@ pub struct InertialTerms {
     pub predicted: Vec<Vec2>,
     /// Predicted slide of each sliding node, m.
     pub predicted_slide: Vec<f64>,
-    /// Momentum that the cable carries over each sliding node in a second, N: ρw² at its rate w when
-    /// the step begins. What bends its way there does so against the tension less that.
+    /// Momentum that the cable carries over each sliding node in a second, N: ρw² at its rate w
+    /// when the step begins. What bends its way there does so against the tension less that.
     pub momentum_flux: Vec<f64>,
     /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m);
     /// empty: nothing does.
