@@ -181,7 +181,7 @@ impl TensionRanges {
 
     /// True if the runs beside this one part from it so far that its greatest tension depends on
     /// small differences, of mesh and step and so of how it began: the ends of a range are more
-    /// than [`RESOLVED_RATIO`] times apart.
+    /// than [`SMALL_DIFFERENCES_RATIO`] times apart.
     #[must_use]
     pub fn depend_on_small_differences(&self) -> bool {
         [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > SMALL_DIFFERENCES_RATIO * from)
