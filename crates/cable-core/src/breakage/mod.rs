@@ -480,7 +480,7 @@ impl BreakableCable {
 
     /// Takes over a state of the whole cable.
     pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
-        self.leaves_reach |= self.problem.is_beyond_reach(state);
+        self.leaves_reach |= self.problem.is_beyond_reach(&state.position_m);
         self.meet_what_is_in_reach()?;
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => {

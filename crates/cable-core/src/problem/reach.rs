@@ -17,7 +17,6 @@ use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, larger, smaller};
 use crate::scene::SupportKind;
-use crate::state::State;
 
 /// The greatest tension with which reach is reckoned, in parts of the breaking tension. A cable may
 /// have more for less than its breaking time. Less: all obstacles are there for the rest of a run
@@ -72,13 +71,13 @@ impl Problem {
         self.unreachable.as_ref().map(|_| TENSION_MARGIN * self.cable.breaking_tension_n)
     }
 
-    /// True if a state is at or in obstacles that were left out: it is not one that the cable comes
-    /// to by itself.
+    /// True if the cable at these places (m) is at or in obstacles that were left out: it does not
+    /// come there by itself.
     #[must_use]
-    pub(crate) fn is_beyond_reach(&self, state: &State) -> bool {
+    pub(crate) fn is_beyond_reach(&self, places: &[Vec2]) -> bool {
         let Some(world) = &self.unreachable else { return false };
         let touches = |at: &Vec2| world.signed_gap(*at, self.length).is_some_and(|gap| gap.gap_m < self.radius);
-        state.position_m.iter().any(touches)
+        places.iter().any(touches)
     }
 }
 
