@@ -196,7 +196,7 @@ fn squeezed_against_a_wall_it_jams() {
     }
 }
 
-/// Where a robot presses its cable against bumps its speed is sought between one that is flat and
+/// A robot that presses its cable against bumps has its speed sought between one that is flat and
 /// one that is steep: 22 steps of these ended with up to 119 kN between robot and cable.
 #[test]
 fn robot_and_cable_agree_in_every_step() {

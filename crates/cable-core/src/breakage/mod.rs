@@ -271,15 +271,18 @@ impl BreakableCable {
         if !self.leaves_reach {
             return Ok(());
         }
-        self.leaves_reach = false;
-        let Some(problem) = self.problem.with_all_obstacles() else { return Ok(()) };
+        let Some(problem) = self.problem.with_all_obstacles() else {
+            self.leaves_reach = false;
+            return Ok(());
+        };
         for k in 0..self.pieces.len() {
             let mut mechanics = self.source.build(problem.clone(), self.settings)?;
             self.draw_supports(&self.pieces[k].part, mechanics.as_mut());
             mechanics.set_state(&self.pieces[k].mechanics.state())?;
             self.pieces[k].mechanics = mechanics;
         }
-        self.problem = problem;
+        // Not before: a cable that could not go on among them is asked again.
+        (self.problem, self.leaves_reach) = (problem, false);
         Ok(())
     }
 

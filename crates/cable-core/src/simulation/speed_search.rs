@@ -42,7 +42,7 @@ pub(super) struct SpeedSearch {
     /// The fastest that comes out faster, and the slowest that comes out slower.
     low: Option<f64>,
     high: Option<f64>,
-    /// How far apart these were before each of the last two trials, m/s.
+    /// Distance between these before each of the last two trials, m/s.
     widths: [f64; 2],
 }
 

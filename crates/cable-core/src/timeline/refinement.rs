@@ -33,7 +33,7 @@ pub fn refine_until_accurate(
         let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
         timeline.at(Instant::nearest(asked.duration_s), |_| ())?;
         let Some(error) = timeline.monitor().relative_error() else { break };
-        // Where a finer run is no nearer, paths are chaotic: still finer ones are not either.
+        // Paths are chaotic if a finer run is no nearer: still finer ones are not either.
         if error <= asked.tolerance || error > before {
             break;
         }

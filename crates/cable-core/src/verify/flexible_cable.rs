@@ -71,8 +71,8 @@ fn check_tension(
 
 /// A flexible cable pulls along its way.
 ///
-/// What lies loose carries its weight anywhere along it: there it pushes if it does at both its
-/// ends.
+/// A bar that lies loose carries its weight anywhere along it: there it pushes if it does at both
+/// its ends.
 fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
     // Nodes of one material point have no way between them.
     if bar.length <= MATERIAL_TOLERANCE * checked.cable.length_m {

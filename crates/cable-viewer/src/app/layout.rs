@@ -200,8 +200,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     highlight::frame(ui.ctx());
 }
 
-/// What the colours mean and the worst warning, in a strip above the canvas: on it they would lie
-/// over the handles of things.
+/// The meaning of the colours and the worst warning, in a strip above the canvas: on it they would
+/// lie over the handles of things.
 fn strip_above(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let has_map = state.analysis.safe_reach.found().is_some();
     let height = if has_map { safe_reach::KEY_HEIGHT } else { legend::STRIP_HEIGHT };

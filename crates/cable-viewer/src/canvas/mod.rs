@@ -68,7 +68,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
 /// scene once the cable is whole again.
 fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::TornCable>) {
-    // What the pointer holds would go with the view.
+    // A thing that the pointer holds would go with the view.
     if state.selection.grab.is_some() {
         return;
     }

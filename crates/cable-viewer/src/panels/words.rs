@@ -62,7 +62,7 @@ fn value(key: &str, value: &FieldValue) -> String {
     }
 }
 
-/// What differs in the input of two answers, in words.
+/// The differences in the input of two answers, in words.
 #[must_use]
 pub fn change(change: &Change) -> String {
     let key = change.key.as_str();
