@@ -44,14 +44,16 @@ pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: 
     Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
 }
 
-/// Halves the elements until the forces change by less than `tolerance` of the greatest;
-/// returns what error is left, in parts of the greatest tension.
+/// Halves the elements until the forces change by less than `tolerance` of the greatest, or until
+/// the next halving is not solved; returns what error is left, in parts of the greatest tension.
+/// None where the first halving is not solved: nothing is known of the error then.
 pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
+    let mut known = None;
     loop {
         let mut fine = elastica.halved();
         fine.regrid();
         if !fine.settle(problem) {
-            return None;
+            return known;
         }
         let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
         if fine.joints == elastica.joints {
@@ -68,12 +70,13 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
         let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
         let coarse = std::mem::replace(elastica, fine);
         let count: usize = elastica.pieces.iter().map(|p| p.nodes.len()).sum();
+        let answer = solution(elastica, problem);
+        let rounding = ErrorEstimates::rounding(&answer, problem);
+        let errors = ErrorEstimates::between(&solution(&coarse, problem), &answer).times(HALVING_ERROR_FRACTION);
+        let relative = estimate + rounding.relative(&answer)?;
+        known = relative.is_finite().then_some((relative, errors.plus(&rounding)));
         if estimate <= tolerance || count > MOST_ELEMENTS {
-            let answer = solution(elastica, problem);
-            let rounding = ErrorEstimates::rounding(&answer, problem);
-            let errors = ErrorEstimates::between(&solution(&coarse, problem), &answer).times(HALVING_ERROR_FRACTION);
-            let known = estimate + rounding.relative(&answer)?;
-            return known.is_finite().then_some((known, errors.plus(&rounding)));
+            return known;
         }
     }
 }

@@ -49,10 +49,9 @@ mod stiffening;
 pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
 
 use crate::contact::swept_corners;
-use crate::math::{Vec2, larger, smaller};
+use crate::math::{Vec2, larger};
 use crate::problem::Problem;
-use crate::scene::SupportKind;
-use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
+use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use chain::{Chain, ChainInput, RestState, StabilityOutcome};
@@ -60,11 +59,6 @@ use chain::{Chain, ChainInput, RestState, StabilityOutcome};
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
-
-/// Most of the tension somewhere by which that of a bent cable may fall for its flexible answer to
-/// be taken. Smaller: chains of bars for cables that they take for flexible ones; larger: the
-/// places where a slack cable bends sharply are those of a flexible one.
-const MAX_BEND_FRACTION: f64 = 1e-2;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
@@ -79,9 +73,6 @@ pub fn rest(
     flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    if let Some(limit) = flexible.and_then(|flexible| flexible_limit(problem, flexible, tolerance)) {
-        return Some((limit, Cost::default()));
-    }
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.and_then(|flexible| {
         let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
@@ -124,36 +115,6 @@ pub fn rest(
 fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(f64::MIN_POSITIVE, larger);
     (problem.bending_stiffness / greatest).sqrt()
-}
-
-/// The answer for the flexible cable, where its stiffness changes less than the `tolerance`; None
-/// where it changes more, or where the flexible shape has angles, which stiffness rounds off.
-///
-/// A bend of curvature κ lowers the tension by EI κ²/2, and the cable leaves its support over a
-/// length √(EI/T) that is short beside 1/κ. The chain of bars knows neither on bars that are
-/// longer.
-fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
-    let has_angles = problem.supports.len() > 2
-        || !problem.loads.is_empty()
-        || problem.supports.iter().any(|s| s.angle.is_some() || s.kind == SupportKind::Pulley);
-    if has_angles || !flexible.breaks.is_empty() {
-        return None;
-    }
-    let greatest = flexible.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-    let fall = |n: &Node| problem.bending_stiffness * n.curvature_per_m * n.curvature_per_m;
-    let is_slight = |n: &Node| fall(n) <= smaller(MAX_BEND_FRACTION * n.tension_n, tolerance * greatest);
-    if !flexible.nodes.iter().all(is_slight) {
-        return None;
-    }
-    let force_n = flexible.nodes.iter().map(fall).fold(0.0, larger);
-    let bent = ErrorEstimates {
-        max_tension_n: Some(force_n),
-        support_force_n: Some(force_n),
-        contact_force_n: (!flexible.contacts.is_empty()).then_some(force_n),
-        position_m: Some(bend_length(problem, flexible)),
-    };
-    let assumptions = Assumptions { bending_stiffness_n_m2: problem.bending_stiffness, ..flexible.assumptions };
-    Some(CableSolution { assumptions, ..flexible.clone() }.known_to(flexible.errors.plus(&bent)))
 }
 
 /// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the

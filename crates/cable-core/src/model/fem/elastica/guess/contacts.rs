@@ -49,13 +49,6 @@ fn sense_of(normal: Vec2, t: Vec2) -> f64 {
     if normal.dot(&perp(t)) > 0.0 { -1.0 } else { 1.0 }
 }
 
-/// True if two contacts are with one line or round.
-fn same_surface(a: &Contact, b: &Contact) -> bool {
-    a.owner == b.owner
-        && a.radius == b.radius
-        && (a.radius.is_some() && a.at == b.at || a.radius.is_none() && (a.normal - b.normal).norm() < 1e-9)
-}
-
 impl ElasticaGuess<'_> {
     /// Attaches a contact, in one point where `from` and `to` (m) are one. `middle` is where its
     /// friction is read.
@@ -137,7 +130,7 @@ impl ElasticaGuess<'_> {
                 .and_then(|g| contact_at(self.problem, &g, n.at(), direction))
                 .or_else(|| self.pulley_at(n.at(), direction, within));
             match (&mut open, touched) {
-                (Some((contact, [_, to])), Some(new)) if same_surface(contact, &new) => *to = n.arc_length_m,
+                (Some((contact, [_, to])), Some(new)) if contact.is_same_surface(&new) => *to = n.arc_length_m,
                 (_, new) => {
                     found.extend(open.take());
                     open = new.map(|c| (c, [n.arc_length_m; 2]));
