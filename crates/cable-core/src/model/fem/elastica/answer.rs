@@ -34,6 +34,7 @@ const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 const MOST_ELEMENTS: usize = 4000;
 
 /// Raises the elastica to the whole stiffness and refines it; returns its answer with the error.
+/// None where that is not found.
 pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
     if !elastica.stiffen(problem) {
         return None;
@@ -52,7 +53,7 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
     loop {
         let mut fine = elastica.halved();
         fine.regrid();
-        if !fine.settle(problem) {
+        if !fine.settle(problem) || !fine.resolves_layers() {
             return known;
         }
         let (mut change, mut largest): (f64, f64) = (0.0, 0.0);

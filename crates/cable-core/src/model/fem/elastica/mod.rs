@@ -60,6 +60,11 @@ use chain::{Chain, ChainInput, RestState, StabilityOutcome};
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
 
+/// Layers of bending with which the continuation in EI begins, one after the other, in parts of the
+/// shortest free piece. Larger: the first guess, a flexible cable with layers, is too rough, and
+/// Newton's method ends nowhere or at a curl; smaller: more steps.
+const FIRST_LAYERS: [f64; 2] = [0.05, 0.005];
+
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
 /// the bars changes. None where neither is found.
@@ -75,9 +80,12 @@ pub fn rest(
 ) -> Option<(CableSolution, Cost)> {
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.and_then(|flexible| {
-        let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
-        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
-        keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
+        let bent_from_layer = |first_layer: f64| {
+            let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible, first_layer)?;
+            let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+            keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
+        };
+        FIRST_LAYERS.into_iter().find_map(bent_from_layer)
     });
     let chain = match &bent {
         // A cable may run away from an equilibrium: a chain that is let go there shows it.

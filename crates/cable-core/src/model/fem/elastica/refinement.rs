@@ -2,7 +2,7 @@
 //! ask for them, or at half the distance.
 
 use crate::math::{Vec2, cross};
-use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, Piece, STATES, force, tangent};
+use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, MOMENT, Piece, STATES, force, tangent};
 use crate::model::fem::free::places;
 
 /// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
@@ -12,6 +12,10 @@ const DIFFERENCE: f64 = 1e-2;
 /// Layers √(EI/T) to which an element shows how the cable bends. Smaller: states are read with less
 /// than their order; larger: errors of shear are seen as bends.
 const RESOLVED_LAYERS: f64 = 2.0;
+
+/// Turn of a layer (rad) that may be left at the node where elements become long beside it. Smaller:
+/// layers are refused that elements show well enough; larger: bends between nodes are not seen.
+const MAX_LEFT_TURN: f64 = 0.05;
 
 impl Elastica {
     /// Thickness λ of the layer in which bending fades beside a place with a tension (N), m; where
@@ -33,8 +37,7 @@ impl Elastica {
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
         let h = piece.grid[e + 1] - piece.grid[e];
         let z = ((x - piece.grid[e]) / h).clamp(0.0, 1.0);
-        let in_layers = h * a[LENGTH] / (self.bending / (force(a) + force(b)).norm() * 2.0).sqrt();
-        if piece.contact.is_none() && in_layers > RESOLVED_LAYERS {
+        if piece.contact.is_none() && self.layer_of_long([a, b], h).is_some() {
             return self.outer_state([a, b], z, h);
         }
         let [(fa, ga), (fb, gb)] = [a, b].map(|u| {
@@ -49,6 +52,27 @@ impl Elastica {
                 + h * (fa[i] * (z - 6.0 * z3 + 8.0 * z4 - 3.0 * z5) + fb[i] * (-4.0 * z3 + 7.0 * z4 - 3.0 * z5))
                 + 0.5 * h * h * (ga[i] * (z2 - 3.0 * z3 + 3.0 * z4 - z5) + gb[i] * (z3 - 2.0 * z4 + z5))
         })
+    }
+
+    /// The thickness √(EI/F) of the layer in a free element that is long beside it, m; None where
+    /// the element shows how the cable bends.
+    fn layer_of_long(&self, [a, b]: [&[f64; STATES]; 2], h: f64) -> Option<f64> {
+        let layer = (2.0 * self.bending / (force(a) + force(b)).norm()).sqrt();
+        (h * a[LENGTH] > RESOLVED_LAYERS * layer).then_some(layer)
+    }
+
+    /// True if no bend of a layer reaches an element that is long beside it: there the equations
+    /// carry it on without end, and a cable that turns back and forth from node to node balances.
+    pub(super) fn resolves_layers(&self) -> bool {
+        let is_resolved = |piece: &Piece| {
+            piece.contact.is_some()
+                || piece.nodes.windows(2).zip(piece.grid.windows(2)).all(|(u, g)| {
+                    let layer = self.layer_of_long([&u[0], &u[1]], g[1] - g[0]);
+                    let turn = |layer: f64| u.iter().all(|u| (u[MOMENT] * layer).abs() <= MAX_LEFT_TURN * self.bending);
+                    layer.is_none_or(turn)
+                })
+        };
+        self.pieces.iter().all(is_resolved)
     }
 
     /// The state at the part `z` of a free element that is long beside its layer. Its force changes

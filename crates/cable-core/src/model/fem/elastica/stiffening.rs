@@ -21,7 +21,7 @@ impl Elastica {
     /// Raises EI to that of the cable; returns false where that is not reached.
     pub fn stiffen(&mut self, problem: &Problem) -> bool {
         let whole = problem.bending_stiffness;
-        if !self.settle(problem) {
+        if !self.settle(problem) || !self.resolves_layers() {
             return false;
         }
         let mut factor = FIRST_RISE;
@@ -36,7 +36,7 @@ impl Elastica {
             // Moments of stretches in contact grow with the stiffness, those of layers with its
             // root: Newton's method begins with neither changed.
             self.regrid();
-            if self.settle(problem) {
+            if self.settle(problem) && self.resolves_layers() {
                 factor = (factor * EASY_RISE_GROWTH).min(MAX_RISE);
             } else {
                 let (steps, work) = (self.steps, self.work);
