@@ -2,7 +2,7 @@
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
-    ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
+    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
 };
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
@@ -53,7 +53,7 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
     loop {
         let mut fine = elastica.halved();
         fine.regrid();
-        if !fine.settle(problem) || !fine.resolves_layers() {
+        if !fine.settle(problem) || !fine.is_sound() {
             return known;
         }
         let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
@@ -191,7 +191,7 @@ fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<Suppo
 }
 
 fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport> {
-    let mut out = Vec::new();
+    let mut out: Vec<ContactReport> = report_of_whole(elastica, problem).into_iter().collect();
     for (j, joint) in elastica.joints.iter().enumerate() {
         let (k, stretch) = match *joint {
             Joint::PointContact(k) => (k, None),
@@ -241,13 +241,7 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         r.set_samples(samples);
         let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
         if let Some(p) = stretch {
-            let l = p.nodes[0][LENGTH];
-            for (e, pair) in p.nodes.windows(2).enumerate() {
-                let half = elastica.state_in(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
-                let pressed =
-                    elastica.pressure(c, &pair[0]) + 4.0 * elastica.pressure(c, &half) + elastica.pressure(c, &pair[1]);
-                r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
-            }
+            r.normal_n += pressed_along(elastica, c, p);
             let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
             if let (Joint::ContactBegin(_), Some(next)) =
                 (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
@@ -270,6 +264,45 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         out.push(r);
     }
     out
+}
+
+/// Force along the normal of a contact on the piece that lies on it, N.
+fn pressed_along(elastica: &Elastica, contact: &Contact, piece: &Piece) -> f64 {
+    let Some(first) = piece.nodes.first() else { return 0.0 };
+    let of_element = |(u, g): (&[[f64; STATES]], &[f64])| {
+        let half = elastica.state_in(piece, 0.5 * (g[0] + g[1]));
+        let [from, middle, to] = [&u[0], &half, &u[1]].map(|u| elastica.pressure(contact, u));
+        (from + 4.0 * middle + to) * first[LENGTH] * (g[1] - g[0]) / 6.0
+    };
+    piece.nodes.windows(2).zip(piece.grid.windows(2)).map(of_element).sum()
+}
+
+/// The contact of a cable that lies on one surface from end to end; None where it does not.
+fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactReport> {
+    let [piece] = elastica.pieces.as_slice() else { return None };
+    let contact = elastica.contacts.get(piece.contact?)?;
+    let Owner::Obstacle(obstacle) = contact.owner else { return None };
+    let (first, last, middle) = (piece.nodes.first()?, piece.nodes.last()?, elastica.state_in(piece, 0.5));
+    let (at, normal) = (place(&middle), perp(tangent(&middle)) * -contact.sense);
+    let normal_n = pressed_along(elastica, contact, piece);
+    let mut report = ContactReport {
+        obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+        normal_n,
+        friction_n: contact.mobilised * normal_n,
+        tension_before_n: tension(first),
+        tension_after_n: tension(last),
+        begins_m: first[ARC],
+        ends_m: last[ARC],
+        arc_length_m: 0.5 * (first[ARC] + last[ARC]),
+        turn_deg: (last[ANGLE] - first[ANGLE]).to_degrees(),
+        x_m: at.x,
+        y_m: at.y,
+        normal: normal.into(),
+        state: if contact.slips || contact.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+        ..ContactReport::default()
+    };
+    report.set_samples(along(elastica, problem, piece));
+    Some(report)
 }
 
 /// A piece at as many places as it takes to draw it with straight lines.

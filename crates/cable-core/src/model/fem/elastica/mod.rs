@@ -49,12 +49,12 @@ mod stiffening;
 pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
 
 use crate::contact::swept_corners;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use chain::{Chain, ChainInput, RestState, StabilityOutcome};
+use chain::{CLAMPED_EULER, Chain, ChainInput, RestState, StabilityOutcome};
 
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
@@ -64,6 +64,9 @@ const BOW_TOLERANCE: f64 = 1e-4;
 /// shortest free piece. Larger: the first guess, a flexible cable with layers, is too rough, and
 /// Newton's method ends nowhere or at a curl; smaller: more steps.
 const FIRST_LAYERS: [f64; 2] = [0.05, 0.005];
+
+/// Turn of a stretch in contact up to which it is straight, °. Larger: wraps are taken for struts.
+const MAX_STRAIGHT_TURN_DEG: f64 = 30.0;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
@@ -79,7 +82,7 @@ pub fn rest(
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
-    let bent = flexible.and_then(|flexible| {
+    let bent = flexible.filter(|flexible| !chain::is_folded(problem, flexible)).and_then(|flexible| {
         let bent_from_layer = |first_layer: f64| {
             let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible, first_layer)?;
             let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
@@ -87,15 +90,32 @@ pub fn rest(
         };
         FIRST_LAYERS.into_iter().find_map(bent_from_layer)
     });
+    let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
+    if crushed {
+        // What is pressed so bows, if anything lifts it.
+        let rest = rest_by_chain(chain_input, chain::rest_of_flexible(chain_input), tolerance);
+        return rest.filter(|(answer, _)| !lies_crushed(problem, answer)).or(bent);
+    }
     let chain = match &bent {
         // A cable may run away from an equilibrium: a chain that is let go there shows it.
         Some((answer, _)) => match chain::test_stability(chain_input, answer) {
             StabilityOutcome::Stays | StabilityOutcome::Unknown => return bent,
-            StabilityOutcome::Leaves(chain) => *chain,
+            StabilityOutcome::Leaves(chain) => Some(*chain),
             StabilityOutcome::Unstable => return None,
         },
-        None => chain::rest_of_flexible(chain_input)?,
+        None => chain::rest_of_flexible(chain_input),
     };
+    rest_by_chain(chain_input, chain, tolerance)
+}
+
+/// The resting place of a stiff cable from a chain of bars at rest: as an elastica where that is
+/// found, else as the chain on bars half as long.
+fn rest_by_chain(
+    chain_input: ChainInput<'_>,
+    chain: Option<Chain<'_>>,
+    tolerance: f64,
+) -> Option<(CableSolution, Cost)> {
+    let (problem, flexible, chain) = (chain_input.problem, chain_input.friction_source, chain?);
     let bent_from = |chain: &Chain<'_>| {
         let elastica = Elastica::from_chain(chain)?;
         let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
@@ -117,6 +137,18 @@ pub fn rest(
         errors = errors.componentwise_max(&ErrorEstimates::between(&finer, flexible));
     }
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
+}
+
+/// True if an answer lies straight on a surface, pressed along itself with more than Euler's force
+/// of a clamped strut.
+fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
+    answer.contacts.iter().any(|contact| {
+        let [from, to] = contact.extent_m();
+        let lying = answer.nodes.iter().filter(|n| (from..=to).contains(&n.arc_length_m));
+        let push = lying.map(|n| -n.tension_n).reduce(smaller).unwrap_or(0.0);
+        let force = CLAMPED_EULER * problem.bending_stiffness / ((to - from) * (to - from));
+        to > from && contact.turn_deg.abs() < MAX_STRAIGHT_TURN_DEG && push > force
+    })
 }
 
 /// Length over which a cable bends at the tension of an answer, √(EI/T), m.

@@ -1,10 +1,10 @@
 //! Contacts, holds and loads divide the cable of a first guess into pieces.
 
 use crate::math::Vec2;
-use crate::model::fem::elastica::boundary_value::{Elastica, Joint, Piece};
+use crate::model::fem::elastica::boundary_value::{Contact, Elastica, End, Joint, Piece};
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
-use crate::model::fem::free::places;
+use crate::model::fem::free::{nearest_turn, places};
 
 /// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts
 /// outside of where it converges; more: costs.
@@ -17,6 +17,9 @@ const LEAST_FREE_PIECE_FRACTION: f64 = 1e-6;
 
 /// Length of a contact with a line, in layers, below which it is a point.
 const POINT_LAYERS: f64 = 4.0;
+
+/// Angle between a clamp and a surface, rad, below which they have one direction: rounding.
+const SAME_DIRECTION: f64 = 1e-9;
 
 /// Part of an arc that is given up where two contacts leave no cable between them.
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
@@ -49,6 +52,7 @@ impl ElasticaGuess<'_> {
     /// Divides the cable at its attachments; None where two of them leave no cable between them.
     pub(super) fn divide(&mut self) -> Option<()> {
         self.make_short_contacts_points();
+        self.leave_ends_to_their_holds();
         self.drop_lifted_lines();
         self.part_neighbours()?;
         self.make_pieces()
@@ -73,6 +77,37 @@ impl ElasticaGuess<'_> {
             if is_point {
                 let middle = 0.5 * (a.from + a.to);
                 *a = Attachment { from: middle, to: middle, joint: Joint::PointContact(k) };
+            }
+        }
+    }
+
+    /// Leaves some free cable at an end that cannot lie from its support on: where a clamp has
+    /// another direction than the surface, or a hinge stands on a round, which would bend the cable
+    /// there.
+    fn leave_ends_to_their_holds(&mut self) {
+        let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
+        let lies_from = |end: &End, contact: &Contact, s: f64| match end {
+            End::Held(_, Some(angle)) => {
+                let along = curve.angle_at(s, [0.0, length]);
+                let off = (nearest_turn(*angle, along) - along).abs();
+                off < SAME_DIRECTION && contact.curvature() == 0.0
+            }
+            End::Held(_, None) => contact.curvature() == 0.0,
+            End::Loaded(_) => true,
+        };
+        for a in &mut self.attachments {
+            let Joint::ContactBegin(k) = a.joint else { continue };
+            let contact = &elastica.contacts[k];
+            let part = |s: f64| {
+                (POINT_LAYERS * elastica.layer_thickness(curve.tension_at(s)))
+                    .min(SURRENDERED_ARC_FRACTION * (a.to - a.from))
+            };
+            let (first, last) = (part(a.from), part(a.to));
+            if a.from <= SAME_PLACE_FRACTION * length && !lies_from(&elastica.ends[0], contact, a.from) {
+                a.from += first;
+            }
+            if a.to >= (1.0 - SAME_PLACE_FRACTION) * length && !lies_from(&elastica.ends[1], contact, a.to) {
+                a.to -= last;
             }
         }
     }
