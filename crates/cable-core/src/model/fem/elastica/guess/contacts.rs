@@ -22,6 +22,10 @@ const CHAIN_CONTACT_BARS: f64 = 2.5;
 /// Length, in bars, from which a reported contact is a stretch.
 const REPORTED_STRETCH_BARS: f64 = 3.0;
 
+/// Distance, in bars, of a stretch of a chain's contacts from the cable's end up to which it reaches
+/// that end.
+const END_BARS: f64 = 2.0;
+
 /// Part of a wheel's friction from which it counts as slipping: the rest is rounding.
 const SLIPPING_FRACTION: f64 = 0.999;
 
@@ -91,9 +95,23 @@ impl ElasticaGuess<'_> {
             let x = self.curve.position_at(first.arc);
             let direction = self.direction_at(middle, bar);
             let Some(contact) = contact_at(self.problem, &first.gap, x, direction) else { continue };
-            let extent = if is_stretch { [first.arc, to] } else { [middle, middle] };
+            let extent = if is_stretch { self.to_lying_ends([first.arc, to], bar) } else { [middle, middle] };
             self.attach_contact(contact, extent, middle);
         }
+    }
+
+    /// A stretch of contact, from the cable's end on or up to it where it comes within two bars of an
+    /// end that stands on a surface: a chain has no contact where it is held.
+    fn to_lying_ends(&self, [from, to]: [f64; 2], bar: f64) -> [f64; 2] {
+        let within = CONTACT_DISTANCE_FRACTION * self.problem.radius;
+        let lies = |s: f64| {
+            let gap = self.problem.world.signed_gap(self.curve.position_at(s), within);
+            gap.is_some_and(|g| g.gap_m <= within)
+        };
+        let length = self.elastica.length;
+        let begins = from < END_BARS * bar && lies(0.0);
+        let ends = length - to < END_BARS * bar && lies(length);
+        [if begins { 0.0 } else { from }, if ends { length } else { to }]
     }
 
     /// Attaches the contacts that the answer of a mesh reports.
