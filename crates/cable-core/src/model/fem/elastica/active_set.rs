@@ -200,7 +200,15 @@ impl Elastica {
                 return Some(true);
             }
         }
-        // A stretch that would have to pull, or that lies in another surface.
+        // A stretch that would have to pull where it begins or ends.
+        for j in 0..self.joints.len() {
+            let (Joint::ContactBegin(k) | Joint::ContactEnd(k)) = self.joints[j] else { continue };
+            let pulley = matches!(self.contacts[k].owner, Owner::Pulley(_));
+            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
+                return None;
+            }
+        }
+        // A stretch that would have to pull along its way, or that lies in another surface.
         for k in 0..self.pieces.len() {
             let Some(c) = self.pieces[k].contact.and_then(|c| self.contacts.get(c)) else { continue };
             let pulley = matches!(c.owner, Owner::Pulley(_));

@@ -54,7 +54,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use chain::{CLAMPED_EULER, Chain, ChainInput, RestState, StabilityOutcome};
+use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
@@ -139,14 +139,14 @@ fn rest_by_chain(
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
-/// True if an answer lies straight on a surface, pressed along itself with more than Euler's force
-/// of a clamped strut.
+/// True if an answer lies straight on a surface, pressed along itself with more than it bears if
+/// anything lifts it.
 fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
     answer.contacts.iter().any(|contact| {
         let [from, to] = contact.extent_m();
         let lying = answer.nodes.iter().filter(|n| (from..=to).contains(&n.arc_length_m));
         let push = lying.map(|n| -n.tension_n).reduce(smaller).unwrap_or(0.0);
-        let force = CLAMPED_EULER * problem.bending_stiffness / ((to - from) * (to - from));
+        let force = LYING_EULER * problem.bending_stiffness / ((to - from) * (to - from));
         to > from && contact.turn_deg.abs() < MAX_STRAIGHT_TURN_DEG && push > force
     })
 }

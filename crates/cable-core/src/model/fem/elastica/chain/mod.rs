@@ -33,7 +33,7 @@ use crate::model::fem::first_shape::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
 pub(super) use contacts::ChainContact;
-pub(super) use relaxation::{CLAMPED_EULER, RestState};
+pub(super) use relaxation::{CLAMPED_EULER, LYING_EULER, RestState};
 
 /// Length of a bar in parts of its material below which an answer is folded there. Smaller: slack
 /// that a flexible cable lays down without a force crushes a stiff one; larger: chains are laid

@@ -65,6 +65,11 @@ const PERTURBATION_FRACTION: f64 = 1e-2;
 /// Euler's force of a strut that is clamped at both ends, in EI/l².
 pub(in crate::model::fem::elastica) const CLAMPED_EULER: f64 = 4.0 * std::f64::consts::PI * std::f64::consts::PI;
 
+/// Push of a strut that lies on a surface, in EI/l², from which it bows away from it: Euler's force of
+/// one that is clamped at its middle too. Smaller: heavy struts that lie well are lifted, and come to
+/// one of several bows; larger: cables with slack are crushed along the ground.
+pub(in crate::model::fem::elastica) const LYING_EULER: f64 = 4.0 * CLAMPED_EULER;
+
 /// Cosine of the angle between two bars up to which a stretch is straight: half a radian.
 const STRAIGHT_COSINE: f64 = 0.88;
 
@@ -230,8 +235,8 @@ impl Chain<'_> {
         }
     }
 
-    /// Bows each straight stretch that is pressed with more than Euler's force of a clamped strut away
-    /// from what it lies on, as far as its material wants; returns whether there was any that could
+    /// Bows each straight stretch that is pressed with more than [`LYING_EULER`] away from what it
+    /// lies on, as far as its material wants; returns whether there was any that could
     /// be. What lies on a surface is held by it and stays straight however much it is pressed, unless
     /// something lifts it: no cable is laid as straight as that.
     pub(super) fn bow_crushed(&mut self) -> bool {
@@ -248,7 +253,7 @@ impl Chain<'_> {
             };
             let length: f64 = self.unstretched[first..=last].iter().sum();
             let push = self.tension[first..=last].iter().fold(f64::INFINITY, |p, t| smaller(p, -t));
-            if push * length * length > CLAMPED_EULER * ei {
+            if push * length * length > LYING_EULER * ei {
                 bowed |= self.bow([first, last + 1], length, push);
             }
             first = last + 1;

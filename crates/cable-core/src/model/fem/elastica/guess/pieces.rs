@@ -42,6 +42,10 @@ impl ElasticaGuess<'_> {
             }
             last = a.to;
         }
+        let free = elastica.length - last;
+        if free > LEAST_FREE_PIECE_FRACTION * elastica.length && free < shortest {
+            shortest = free;
+        }
         let layer = first_layer * shortest;
         let soft = elastica.scale * layer * layer;
         if soft < elastica.bending {
