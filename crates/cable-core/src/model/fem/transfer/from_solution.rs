@@ -171,7 +171,7 @@ fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
 }
 
 /// Takes the plain nodes out that would lie on a round, between two material points (m).
-fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
+pub(in crate::model::fem) fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
         let s = cable.mesh.arc_length[k];
