@@ -42,6 +42,7 @@ use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reac
 use crate::render::theme;
 use crate::state::analysis::hold;
 use crate::state::dialog::Dialog;
+use crate::state::live::RestartCause;
 use crate::state::questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::{AppState, WorkerStatus};
 use crate::units::system;
@@ -402,8 +403,9 @@ impl ViewerApp {
             let of = state.live.latest.scene.as_deref();
             let [back, forward] = state.document.undo.neighbours();
             let scene = if forward == of { of } else { back.or(of) };
-            let scene = scene.cloned();
-            state.live.end_run(scene);
+            if let Some(scene) = scene.cloned() {
+                state.live.end_run(RestartCause::Edit(scene));
+            }
         }
         if let (Some(wall_s), false) = (&mut state.live.recording.solve_wall_s, report.answers.is_empty()) {
             *wall_s += report.snapshot.solve_wall_s;

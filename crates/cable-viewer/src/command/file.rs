@@ -280,7 +280,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.live.playback.paused = true;
     state.live.robot_speed_command = None;
     state.live.reopened_run = None;
-    (state.live.earlier_run, state.live.reset_is_last, state.live.restart_is_reset) = (None, false, false);
+    (state.live.earlier_run, state.live.reset_is_last, state.live.reset_asked) = (None, false, None);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);

@@ -15,7 +15,6 @@ use crate::panels::scene::{self, loads, obstacles, supports};
 use crate::panels::{cable, environment, robot, solver};
 use crate::state::{AppState, Item};
 use crate::units::format;
-use crate::units::unit::Unit;
 use crate::widgets::{field, readout};
 
 /// Draws it.
@@ -122,8 +121,6 @@ fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize)
         rows.push(("Holds", "nothing, torn off".to_owned(), "The cable broke away from it"));
         return rows;
     }
-    let help = "Unstretched length from the start of the cable";
-    rows.push(("On the cable", Unit::COORDINATE.text(s.arc_length_m), help));
     for (name, tension, help) in [
         ("Tension before", s.tension_before_n, "On the side of the start of the cable"),
         ("Tension after", s.tension_after_n, "On the side of the end of the cable"),

@@ -14,7 +14,7 @@ use egui::{Align2, Color32, Id, Rect, RichText, Sense, Stroke, TextStyle, Ui, ve
 use egui_plot::{HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
-use crate::plot::axes::{grid_marks, tick_across, tick_with_unit, vertical_range};
+use crate::plot::axes::{grid_marks, last_across, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
@@ -44,6 +44,8 @@ const MIN_HEIGHT: f32 = 42.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
 /// to touch.
 const X_TICK_SPACING: f32 = 66.0;
+/// Width of the numbers beside a graph, points.
+const VALUES_WIDTH: f32 = 44.0;
 /// Height of the numbers below a graph, points.
 const TICK_LABELS_HEIGHT: f32 = 18.0;
 /// Distance of numbers on the vertical axis, points.
@@ -163,12 +165,13 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(MIN_HEIGHT);
     let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
+    let width = ui.available_width() - VALUES_WIDTH;
     let rows = f64::from((height - TICK_LABELS_HEIGHT) / Y_TICK_SPACING).max(1.0);
     let plot = Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
-        .y_axis_min_width(44.0)
+        .y_axis_min_width(VALUES_WIDTH)
         // As fine as that of the canvas: lines of data stand off it.
         .grid_color(theme::palette(ui.visuals()).grid_zero)
         .allow_drag(!follow)
@@ -179,7 +182,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .allow_axis_zoom_drag(!follow)
         .x_grid_spacer(|input| grid_marks(input, columns))
         .y_grid_spacer(|input| grid_marks(input, rows))
-        .x_axis_formatter(|mark, shown| tick_across(mark, shown, across_symbol))
+        .x_axis_formatter(|mark, shown| tick_across(mark, shown, across_symbol, width))
         .y_axis_formatter(|mark, shown| tick_with_unit(mark, shown, symbol))
         .label_formatter(|at| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
@@ -221,6 +224,13 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     name_limits(ui, graph, &response.transform, high, si);
+    let in_view = response.transform.bounds();
+    let in_view = in_view.min()[0]..=in_view.max()[0];
+    if let Some(number) = last_across(in_view, columns, across_symbol, width) {
+        let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+        let end = response.transform.frame().right_bottom();
+        ui.painter().text(end, Align2::RIGHT_TOP, number, font, colour);
+    }
     let asked = response.inner;
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];

@@ -76,7 +76,7 @@ fn a_support_that_the_scene_moves_is_not_called_fixed() {
 #[test]
 fn the_right_panel_follows_the_selection() {
     for (scene, row, title, figures) in [
-        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "On the cable"][..]),
+        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "Arc length"][..]),
         (
             catalog::pulley_waypoints(),
             "Select wheel",
