@@ -10,8 +10,8 @@ mod cursors;
 mod keys;
 pub mod time;
 
-use egui::{Align2, Color32, Id, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
-use egui_plot::{HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
+use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{grid_marks, last_across, tick_across, tick_with_unit, vertical_range};
@@ -167,11 +167,16 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
     let width = ui.available_width() - VALUES_WIDTH;
     let rows = f64::from((height - TICK_LABELS_HEIGHT) / Y_TICK_SPACING).max(1.0);
+    // Numbers are as far apart as they are asked to be: none of them is faint.
+    let axis = |hints: AxisHints<'static>| hints.label_spacing(Rangef::new(1.0, 2.0));
+    let across_axis = axis(AxisHints::new_x());
+    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, across_symbol, width));
+    let up_axis = axis(AxisHints::new_y()).min_thickness(VALUES_WIDTH);
+    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, symbol));
     let plot = Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
-        .y_axis_min_width(VALUES_WIDTH)
         // As fine as that of the canvas: lines of data stand off it.
         .grid_color(theme::palette(ui.visuals()).grid_zero)
         .allow_drag(!follow)
@@ -182,8 +187,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .allow_axis_zoom_drag(!follow)
         .x_grid_spacer(|input| grid_marks(input, columns))
         .y_grid_spacer(|input| grid_marks(input, rows))
-        .x_axis_formatter(|mark, shown| tick_across(mark, shown, across_symbol, width))
-        .y_axis_formatter(|mark, shown| tick_with_unit(mark, shown, symbol))
+        .custom_x_axes(vec![across_axis])
+        .custom_y_axes(vec![up_axis])
         .label_formatter(|at| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
             Some(read(position.x))

@@ -96,6 +96,10 @@ fn text_field<T>(
     }
     let response = ui.add(edit);
     name(&response, label);
+    if response.has_focus() {
+        let pass = ui.ctx().cumulative_pass_nr();
+        ui.data_mut(|d| d.insert_temp(typing_id(), pass));
+    }
     let mut entered = None;
     if response.lost_focus() {
         let dropped = ui.input(|i| i.key_pressed(Key::Escape));
@@ -120,6 +124,17 @@ fn text_field<T>(
         }
     });
     FieldOutput { value: entered, fault, response }
+}
+
+fn typing_id() -> Id {
+    Id::unique("pass in which a field was typed in")
+}
+
+/// Returns whether a field was being typed in until this frame: egui takes its focus away before
+/// the keys of the frame are read, and Escape is the field's.
+pub fn was_typed_in(ctx: &egui::Context) -> bool {
+    let pass: Option<u64> = ctx.data(|d| d.get_temp(typing_id()));
+    pass.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
 /// Forgets what was typed into a field of this `ui`.

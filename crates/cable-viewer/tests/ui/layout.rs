@@ -436,3 +436,23 @@ fn issue_020_a_step_of_a_guide_is_one_row() {
         }
     }
 }
+
+/// In small windows the status took a second row, and all above it moved as its words changed.
+#[test]
+fn transport_and_status_stand_in_one_row_at_every_width() {
+    for width in [640.0, 800.0, 1024.0, 1280.0] {
+        let mut harness = open(catalog::tank_robot());
+        harness.set_size(Vec2::new(width, 600.0));
+        harness.run_steps(4);
+        let canvas = harness.get_by_label("Canvas").rect();
+        let row = harness.get_by_label("Reset").rect();
+        assert!(600.0 - row.bottom() < 6.0, "{width}: {row}");
+        harness.state_mut().state.ui.written = Some("a/long/name/of-a-picture-that-was-exported.png".into());
+        crate::apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        harness.run_steps(4);
+        assert_eq!(harness.get_by_label("Canvas").rect(), canvas, "{width}");
+        for told in ["Time 0", "Runs at"] {
+            assert!(harness.get_by_label_contains(told).rect().right() <= width, "{width}: {told}");
+        }
+    }
+}
