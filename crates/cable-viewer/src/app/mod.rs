@@ -4,7 +4,7 @@
 //!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
-//! - `early_clicks`: clicks that come before the first frame
+//! - `held_clicks`: clicks that come before the first frame, or are over within one
 //! - `tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
@@ -13,9 +13,9 @@
 mod canvas_picture;
 mod dialogs;
 pub mod documentation_pictures;
-mod early_clicks;
 mod feedback_form;
 mod first_steps;
+mod held_clicks;
 mod keys;
 mod layout;
 mod menu;
@@ -102,7 +102,7 @@ impl ViewerApp {
 
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
         theme::install(ctx);
-        ctx.add_plugin(early_clicks::EarlyClicks::default());
+        ctx.add_plugin(held_clicks::HeldClicks::default());
         // A press that stays where it is is a click, however long a frame takes meanwhile.
         ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
         let worker = new_worker(ctx, threaded);

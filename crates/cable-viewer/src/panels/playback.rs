@@ -159,7 +159,9 @@ fn status(state: &AppState) -> Vec<StatusItem> {
     let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);
     let (text, help) = match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
         (Some(seconds), ..) => (labels::solving(seconds), "The answer to the last edits is being sought".to_owned()),
-        (None, Freshness::Outdated, _) => ("Not solved".to_owned(), "The scene has no answer: see the warnings".to_owned()),
+        (None, Freshness::Outdated, _) => {
+            ("Not solved".to_owned(), "The scene has no answer: see the warnings".to_owned())
+        }
         (None, _, Some(latency)) => {
             let help = format!("From the last edit to the first frame that shows it. {solved}");
             (format!("Updated in {:.0} ms", latency * 1e3), help)

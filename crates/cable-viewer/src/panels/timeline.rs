@@ -66,7 +66,9 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(run) = &state.live.earlier_run {
         let help = match &run.cause {
             RestartCause::Reset(_) => "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)",
-            RestartCause::Edit(_) => "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)",
+            RestartCause::Edit(_) => {
+                "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)"
+            }
         };
         if ui.button("Undo restart").on_hover_text(help).clicked() {
             push(PlaybackCommand::UndoRestart);

@@ -16,6 +16,9 @@ const HEADROOM: f64 = 0.12;
 /// Room (points) that half of a number with its unit takes on the horizontal axis: nearer to the
 /// end it would be cut there, so it is drawn before the end instead.
 const HALF_LABEL_WIDTH: f32 = 18.0;
+/// Room (points) at the start of that axis in which a number would lie on the lowest one of the
+/// vertical axis.
+const LEFT_END_WIDTH: f32 = 5.0;
 
 /// Lowest and highest value in view, SI.
 pub(super) fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f64; 2] {
@@ -53,22 +56,38 @@ pub(super) fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol
     if last { format!("{} {symbol}", tick(mark)) } else { tick(mark) }
 }
 
-/// As [`tick_with_unit`] on a horizontal axis of so many points; [`last_across`] stands in the
-/// place of a number that would be cut by its end.
+/// As [`tick_with_unit`] on a horizontal axis of so many points; [`ends_across`] stand in the place
+/// of numbers at its ends.
 pub(super) fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str, width: f32) -> String {
-    if is_cut(mark.value, shown, width) { String::new() } else { tick_with_unit(mark, shown, symbol) }
+    if end_at(mark.value, shown, width).is_some() { String::new() } else { tick_with_unit(mark, shown, symbol) }
 }
 
-/// The number that the end of a horizontal axis would cut, with its unit, to be written before the
-/// end; None where the last number is not cut. `parts`: as of its [`grid_marks`].
-pub(super) fn last_across(shown: RangeInclusive<f64>, parts: f64, symbol: &str, width: f32) -> Option<String> {
+/// The numbers at the ends of a horizontal axis, to be written inside of the ends: the right one
+/// would be cut there, and the left one would lie on the lowest number of the other axis. `parts`:
+/// as of its [`grid_marks`].
+pub(super) fn ends_across(shown: RangeInclusive<f64>, parts: f64, symbol: &str, width: f32) -> [Option<String>; 2] {
     let input = GridInput { bounds: (*shown.start(), *shown.end()), base_step_size: 1.0 };
-    let mark = grid_marks(input, parts).pop()?;
-    is_cut(mark.value, &shown, width).then(|| tick_with_unit(mark, &shown, symbol))
+    let marks = grid_marks(input, parts);
+    [(AxisEnd::Left, marks.first()), (AxisEnd::Right, marks.last())].map(|(end, mark)| {
+        let mark = mark.filter(|m| end_at(m.value, &shown, width) == Some(end))?;
+        Some(tick_with_unit(*mark, &shown, symbol))
+    })
 }
 
-fn is_cut(value: f64, shown: &RangeInclusive<f64>, width: f32) -> bool {
-    value > shown.end() - f64::from(HALF_LABEL_WIDTH / width.max(1.0)) * (shown.end() - shown.start())
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum AxisEnd {
+    Left,
+    Right,
+}
+
+fn end_at(value: f64, shown: &RangeInclusive<f64>, width: f32) -> Option<AxisEnd> {
+    let (start, end) = (*shown.start(), *shown.end());
+    let per_point = (end - start) / f64::from(width.max(1.0));
+    if value > end - f64::from(HALF_LABEL_WIDTH) * per_point {
+        Some(AxisEnd::Right)
+    } else {
+        (value < start + f64::from(LEFT_END_WIDTH) * per_point).then_some(AxisEnd::Left)
+    }
 }
 
 #[cfg(test)]
@@ -88,16 +107,17 @@ mod tests {
     }
 
     /// The 3.0 at the end of a cable of 3 m was cut in half by the edge of its graph; then it was
-    /// left out, and the unit stood at the 2.5.
+    /// left out, and the unit stood at the 2.5. The 0 at its start lay on that of the other axis.
     #[test]
     fn the_last_number_of_an_axis_is_whole_and_has_the_unit() {
         let across = |end: f64| {
             let text = |value| tick_across(GridMark { value, step_size: 0.5 }, &(0.0..=end), "m", 300.0);
-            ([2.0, 2.5, 3.0].map(text), last_across(0.0..=end, 6.0, "m", 300.0))
+            ([0.0, 2.5, 3.0].map(text), ends_across(0.0..=end, 6.0, "m", 300.0))
         };
         let three = |a: &str, b: &str, c: &str| [a.to_owned(), b.to_owned(), c.to_owned()];
-        assert_eq!(across(3.0), (three("2.0", "2.5", ""), Some("3.0 m".to_owned())));
-        assert_eq!(across(3.4), (three("2.0", "2.5", "3.0 m"), None));
+        let (first, last) = (Some("0.0".to_owned()), Some("3.0 m".to_owned()));
+        assert_eq!(across(3.0), (three("", "2.5", ""), [first.clone(), last]));
+        assert_eq!(across(3.4), (three("", "2.5", "3.0 m"), [first, None]));
         let up = |value| tick_with_unit(GridMark { value, step_size: 50.0 }, &(0.0..=101.0), "N");
         assert_eq!([50.0, 100.0].map(up), ["50", "100 N"]);
     }

@@ -2,10 +2,12 @@
 //!
 //! - `along`, `time`: what each graph shows
 //! - `axes`: ranges, and the numbers along them
+//! - `corners`: the pieces that a line is drawn in
 //! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along;
 mod axes;
+mod corners;
 mod cursors;
 mod keys;
 pub mod time;
@@ -14,7 +16,7 @@ use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle
 use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
-use crate::plot::axes::{grid_marks, last_across, tick_across, tick_with_unit, vertical_range};
+use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
@@ -215,7 +217,14 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
                 plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
                 continue;
             }
-            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
+            let transform = *plot.transform();
+            let to_screen = |p: [f64; 2]| transform.position_from_point(&p.into());
+            let pieces =
+                if style == LineStyle::Solid { corners::pieces(&points, to_screen) } else { vec![&points[..]] };
+            for piece in pieces {
+                let piece = egui_plot::Line::new(line.name.clone(), piece.to_vec());
+                plot.line(piece.color(colour).width(width).style(style));
+            }
         }
         draw_limits(plot, graph, high, si);
         if let Some(hint) = graph.hint {
@@ -231,10 +240,11 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     name_limits(ui, graph, &response.transform, high, si);
     let in_view = response.transform.bounds();
     let in_view = in_view.min()[0]..=in_view.max()[0];
-    if let Some(number) = last_across(in_view, columns, across_symbol, width) {
+    let frame = *response.transform.frame();
+    let ends = [(frame.left_bottom(), Align2::LEFT_TOP), (frame.right_bottom(), Align2::RIGHT_TOP)];
+    for ((at, align), number) in ends.into_iter().zip(ends_across(in_view, columns, across_symbol, width)) {
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
-        let end = response.transform.frame().right_bottom();
-        ui.painter().text(end, Align2::RIGHT_TOP, number, font, colour);
+        ui.painter().text(at, align, number.unwrap_or_default(), font, colour);
     }
     let asked = response.inner;
     let bounds = response.transform.bounds();
