@@ -4,6 +4,7 @@
 //!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
+//! - `frame_pacing`: fewer frames where there is no GPU
 //! - `held_clicks`: clicks that come before the first frame, or are over within one
 //! - `tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
@@ -15,6 +16,7 @@ mod dialogs;
 pub mod documentation_pictures;
 mod feedback_form;
 mod first_steps;
+mod frame_pacing;
 mod held_clicks;
 mod keys;
 mod layout;
@@ -34,6 +36,7 @@ use std::time::{Duration, Instant};
 
 use cable_core::Scene;
 
+use crate::app::frame_pacing::{FramePacing, SOFTWARE_FRAME_INTERVAL};
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::{Autosave, Changes};
@@ -62,6 +65,7 @@ pub struct ViewerApp {
     pub state: AppState,
     worker: Worker,
     threaded: bool,
+    frame_pacing: FramePacing,
     /// As last sent to the window.
     title: String,
     /// Keeps unsaved changes on disk, in a window.
@@ -105,11 +109,13 @@ impl ViewerApp {
         ctx.add_plugin(held_clicks::HeldClicks::default());
         // A press that stays where it is is a click, however long a frame takes meanwhile.
         ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
-        let worker = new_worker(ctx, threaded);
+        let frame_pacing = FramePacing::default();
+        let worker = new_worker(ctx, threaded, &frame_pacing);
         let mut app = Self {
             state: AppState::new(scene, path),
             worker,
             threaded,
+            frame_pacing,
             title: String::new(),
             autosave: None,
             pending_edits: VecDeque::new(),
@@ -126,6 +132,11 @@ impl ViewerApp {
         submit_new_scene(&mut app.state, &mut effects);
         app.perform_effects(ctx, effects);
         app
+    }
+
+    /// From now on the window is drawn without a GPU.
+    pub fn draw_in_software(&mut self) {
+        self.frame_pacing.every(SOFTWARE_FRAME_INTERVAL);
     }
 
     /// From now on unsaved changes are kept in a file; if there are some from a window that died,
@@ -227,7 +238,7 @@ impl ViewerApp {
                 scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
-            self.worker = new_worker(ctx, self.threaded);
+            self.worker = new_worker(ctx, self.threaded, &self.frame_pacing);
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
@@ -371,6 +382,8 @@ impl ViewerApp {
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
+        let runs = !self.state.live.playback.paused && self.pending_edits.is_empty();
+        self.frame_pacing.drawn(Instant::now(), runs);
         self.update_autosave(&ctx);
         if let Some((list, written)) = &mut self.recent_list
             && *written != self.state.ui.recent
@@ -448,10 +461,10 @@ impl ViewerApp {
     }
 }
 
-fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
+fn new_worker(ctx: &egui::Context, threaded: bool, frame_pacing: &FramePacing) -> Worker {
     if threaded {
-        let ctx = ctx.clone();
-        Worker::thread(move || ctx.request_repaint())
+        let (ctx, frame_pacing) = (ctx.clone(), frame_pacing.clone());
+        Worker::thread(move || ctx.request_repaint_after(frame_pacing.wait(Instant::now())))
     } else {
         Worker::inline()
     }

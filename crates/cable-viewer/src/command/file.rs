@@ -275,6 +275,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
         state.ui.add_recent(path.clone());
     }
     state.document = Document::new(scene, path);
+    state.ui.scenes_opened += 1;
     (state.selection.selected, state.selection.also_selected) = (None, Vec::new());
     (state.selection.hovered, state.analysis.tension_marker) = (None, None);
     state.live.playback.paused = true;

@@ -244,7 +244,9 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let ends = [(frame.left_bottom(), Align2::LEFT_TOP), (frame.right_bottom(), Align2::RIGHT_TOP)];
     for ((at, align), number) in ends.into_iter().zip(ends_across(in_view, columns, across_symbol, width)) {
         let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
-        ui.painter().text(at, align, number.unwrap_or_default(), font, colour);
+        if let Some(number) = number {
+            ui.painter().text(at, align, number, font, colour);
+        }
     }
     let asked = response.inner;
     let bounds = response.transform.bounds();

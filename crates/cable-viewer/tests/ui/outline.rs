@@ -40,7 +40,7 @@ fn the_outline_begins_the_left_panel_and_selects() {
         }
         // Warnings are the last of it, and lead to the worst.
         let before = harness.state().state.view.camera.points_per_m;
-        click(&mut harness, "2 warnings");
+        click(&mut harness, "1 warning, 1 note");
         assert!(harness.state().state.view.camera.points_per_m > 1.5 * before, "{size:?}");
     }
     let mut harness = open(catalog::robot_drive());
