@@ -21,6 +21,8 @@ use crate::widgets::{field, highlight, progress, readout};
 
 /// Narrowest column of the table, points: the cross and the number of a pin fit.
 const MIN_COLUMN_WIDTH: f32 = 28.0;
+/// Width of the panel from which columns stand apart, points: below, they have no room to.
+const MIN_WIDE_TABLE: f32 = 300.0;
 /// Size of its figures, points. Larger: the last column is cut in US units.
 const FIGURES: f32 = 12.0;
 /// Most lines of difference told; more are counted.
@@ -63,7 +65,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let present = answer.map(|s| Figures::of(s, solved, state.live.snapshot.solve_wall_s));
     let compared = present.as_ref().filter(|_| state.is_current());
     readout::wide(ui, "compare", |ui| {
-        let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
+        let gap = if ui.available_width() < MIN_WIDE_TABLE { 4.0 } else { 14.0 };
+        let grid = Grid::new("compare").num_columns(5).spacing([gap, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
         grid.striped(true).show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
