@@ -13,15 +13,16 @@ use crate::worker::request::{Edit, EditStart, Request, Resume};
 pub(super) fn undo_restart(state: &mut AppState, effects: &mut Effects) {
     let Some(run) = &state.live.earlier_run else { return };
     let by_edit = matches!(run.cause, RestartCause::Edit(_));
-    let present = state.document.scene.clone();
-    if present != *run.scene() {
-        state.document.scene = state.document.undo.go_to(present, run.scene());
+    let robot_speed_command = state.live.robot_speed_command;
+    let present = ResetOrigin { scene: state.document.scene.clone(), robot_speed_command };
+    if present.scene != *run.scene() {
+        state.document.scene = state.document.undo.go_to(present.scene.clone(), run.scene());
         state.document.validate();
     }
     if by_edit {
         submit_undone(state, effects);
     }
-    match state.live.undo_restart() {
+    match state.live.undo_restart(present) {
         Some(RestartCause::Edit(_)) => resume_from_shown(state, effects),
         Some(RestartCause::Reset(origin)) => undo_reset(state, origin, effects),
         None => {}

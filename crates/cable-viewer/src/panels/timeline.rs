@@ -65,7 +65,10 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     if let Some(run) = &state.live.earlier_run {
         let help = match &run.cause {
-            RestartCause::Reset(_) => "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)",
+            RestartCause::Reset(_) if state.live.reset_is_last => {
+                "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
+            }
+            RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
             RestartCause::Edit(_) => {
                 "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)"
             }

@@ -30,7 +30,8 @@ pub struct Live {
     pub history: History,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Option<ReopenedRun>,
-    /// The run that the last restart ended, until the next one or another scene.
+    /// The run that the last restart ended, until the next one or another scene; or the run since,
+    /// where a reset was taken back.
     pub earlier_run: Option<Box<EarlierRun>>,
     /// The reset is the last thing that was done: undo takes it back.
     pub reset_is_last: bool,
@@ -86,10 +87,14 @@ impl Live {
 
     /// Puts back what was recorded before the last restart and shows its end; returns what had
     /// ended it. After an edit the end is that of the scene before it, while the cable was whole;
-    /// after a reset it is the present, to which the worker goes back.
-    pub fn undo_restart(&mut self) -> Option<RestartCause> {
+    /// after a reset it is the present, to which the worker goes back, and what has run since is
+    /// kept in its place. `present`: the window as it is.
+    pub fn undo_restart(&mut self, present: ResetOrigin) -> Option<RestartCause> {
         self.reset_is_last = false;
         let before = self.earlier_run.take()?;
+        if matches!(before.cause, RestartCause::Reset(_)) {
+            self.end_run(RestartCause::Reset(present));
+        }
         (self.recording, self.history) = (before.recording, before.history);
         match &before.cause {
             RestartCause::Edit(scene) => {

@@ -115,6 +115,30 @@ fn the_undo_of_a_reset_brings_its_scene_back_too() {
     assert_eq!(state.freshness(), cable_viewer::state::Freshness::Current);
 }
 
+/// To take a reset back dropped what had run since.
+#[test]
+fn the_run_since_a_reset_is_kept_when_it_is_taken_back() {
+    let mut harness = weak();
+    let run = |harness: &mut Harness<'_, ViewerApp>, frames: usize| {
+        harness.key_press(Key::Space);
+        harness.run_steps(frames);
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        (harness.state().state.live.snapshot.solution.clone().unwrap(), harness.state().state.live.recording.span_s())
+    };
+    let first = run(&mut harness, 60);
+    harness.key_press(Key::R);
+    harness.run_steps(3);
+    let second = run(&mut harness, 20);
+    assert_ne!(first, second);
+    for then in [&first, &second, &first] {
+        harness.get_by_label("Undo restart").click();
+        harness.run_steps(3);
+        let live = &harness.state().state.live;
+        assert_eq!((&live.snapshot.solution, live.recording.span_s()), (&Some(then.0.clone()), then.1));
+    }
+}
+
 #[test]
 fn a_view_that_was_moved_is_left_alone_and_offers_to_follow() {
     let mut harness = weak();
