@@ -23,7 +23,7 @@
 //! Dependencies between the modules point one way, as a test checks; those of one step do not know
 //! each other:
 //! `math, numerics, model_id, units → energy, verification → error → catenary, scene, solution
-//! → contact, robot → problem, state → model, record, verify → breakage, files
+//! → contact, robot → problem, state → breakage, model, record, verify → files, simulated_cable
 //! → warnings, wording → any_error → simulation → analysis, conformance, summary, timeline`.
 
 pub mod analysis;
@@ -43,6 +43,7 @@ pub mod problem;
 pub mod record;
 pub mod robot;
 pub mod scene;
+mod simulated_cable;
 pub mod simulation;
 pub mod solution;
 pub mod state;

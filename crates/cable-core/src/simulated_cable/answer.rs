@@ -1,7 +1,7 @@
 //! The pieces of a cable are read as one cable again: arc lengths from its start, supports in the
 //! scene's order.
 
-use super::BreakableCable;
+use super::SimulatedCable;
 use super::piece::Piece;
 use crate::problem::SupportPoint;
 use crate::solution::{Assumptions, CableSolution, EnergyAccount, MomentumAccount, SupportReaction};
@@ -10,7 +10,7 @@ use crate::state::State;
 /// Part by which sums of times round.
 const TIME_TOLERANCE: f64 = 1e-6;
 
-impl BreakableCable {
+impl SimulatedCable {
     /// The answer at this instant.
     pub fn answer(&self) -> CableSolution {
         if let ([whole], true) = (self.pieces.as_slice(), self.breaks.is_empty()) {

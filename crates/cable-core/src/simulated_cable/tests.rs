@@ -238,12 +238,12 @@ fn a_mass_on_a_cable_breaks_it_into_two_pieces_that_go_on() {
             (vec![0.0, 0.1, 0.3, 0.4], vec![[0.0, 0.0], [700.0, 0.0], [700.0, 0.0], [0.0, 0.0]]);
         c.supports.insert(1, mass);
         let (sim, answer) = run(&scene, model, 1.5);
-        let strand = &sim.cables()[0];
-        assert!(!strand.breaks().is_empty());
+        let cable = &sim.cables()[0];
+        assert!(!cable.breaks().is_empty());
         // Every metre of cable and the mass are still somewhere, once.
-        let length: f64 = strand.pieces.iter().map(|p| p.part.length()).sum();
+        let length: f64 = cable.pieces.iter().map(|p| p.part.length()).sum();
         assert!((length - 10.0).abs() < 1e-12);
-        assert_eq!(strand.pieces.iter().filter(|p| p.part.supports.contains(&Some(1))).count(), 1);
+        assert_eq!(cable.pieces.iter().filter(|p| p.part.supports.contains(&Some(1))).count(), 1);
         // A free piece falls: the next frames change its momentum by its weight.
         assert_eq!(answer.cables[0].supports.len(), 3);
         assert_eq!(answer.cables[0].pieces().map(<[_]>::len).sum::<usize>(), answer.cables[0].nodes.len());
@@ -259,18 +259,18 @@ fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
             let mut scene = span(9.81, [6.0, 0.0]);
             moved(&mut scene, 1, vec![0.0, 1.0], vec![[6.0, 0.0], [8.0, 1.0]]);
             let (mut sim, _) = run(&scene, model, 0.4);
-            let strand = &mut sim.cables_mut()[0];
-            let whole = strand.pieces[0].mechanics.state();
-            let at = super::rupture::Rupture { node, fraction: 1.0 };
-            let point = super::piece::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
-            strand.split(0, &point, Inertia::Dynamic).unwrap();
-            let now: Vec<State> = strand.pieces.iter().map(|p| p.mechanics.state()).collect();
+            let cable = &mut sim.cables_mut()[0];
+            let whole = cable.pieces[0].mechanics.state();
+            let at = crate::breakage::rupture::Rupture { node, fraction: 1.0 };
+            let point = super::break_search::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
+            cable.split(0, &point, Inertia::Dynamic).unwrap();
+            let now: Vec<State> = cable.pieces.iter().map(|p| p.mechanics.state()).collect();
             assert_eq!(now.len(), 2);
             let (m0, p0) = mass_and_momentum(std::slice::from_ref(&whole), 1.0);
             let (m1, p1) = mass_and_momentum(&now, 1.0);
             assert!((m1 - m0).abs() < 1e-12 * m0, "{model} {node}: {m0} {m1}");
             assert!(p0.norm() > 1.0 && (p1 - p0).norm() < 1e-9 * p0.norm(), "{model} {node}: {p0} {p1}");
-            for (k, x) in strand.state().position_m.iter().enumerate() {
+            for (k, x) in cable.state().position_m.iter().enumerate() {
                 let same = whole.position_m[k - usize::from(k > node)];
                 assert!((x - same).norm() < 1e-9, "{model} {node}: {x} {same}");
             }
@@ -329,9 +329,9 @@ fn a_broken_cable_runs_off_its_pulleys() {
     (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (500.0, 1e3);
     moved(&mut scene, 2, vec![0.0, 0.5], vec![[8.0, 0.0], [9.5, -0.5]]);
     let (sim, answer) = run(&scene, Model::MassSpring, 4.0);
-    let strand = &sim.cables()[0];
+    let cable = &sim.cables()[0];
     assert_eq!(broken(&answer)[0].1, 10.0, "{:?}", broken(&answer));
-    assert!(strand.pieces.iter().all(|p| !p.part.supports.contains(&Some(1))), "{:?}", strand.pieces[0].part);
+    assert!(cable.pieces.iter().all(|p| !p.part.supports.contains(&Some(1))), "{:?}", cable.pieces[0].part);
     assert_eq!(answer.cables[0].supports.len(), 3);
     let highest = answer.cables[0].nodes.iter().map(|n| n.y_m).fold(f64::NEG_INFINITY, f64::max);
     assert!(highest < 1.0, "{highest}");
@@ -378,13 +378,13 @@ proptest! {
             Some(sim)
         };
         let Some(sim) = go() else { return Ok(()) };
-        let strand = &sim.cables()[0];
-        let whole: f64 = strand.pieces.iter().map(|p| p.part.length()).sum();
+        let cable = &sim.cables()[0];
+        let whole: f64 = cable.pieces.iter().map(|p| p.part.length()).sum();
         prop_assert!((whole - 11.0).abs() < 1e-9);
-        let held: usize = strand.pieces.iter().map(|p| p.part.supports.iter().flatten().count()).sum();
-        let torn = strand.breaks().iter().filter(|b| b.detached_from.is_some()).count();
-        prop_assert_eq!(held + torn, strand.problem().supports.len());
-        prop_assert_eq!(strand.pieces.len() + torn, strand.breaks().len() + 1);
+        let held: usize = cable.pieces.iter().map(|p| p.part.supports.iter().flatten().count()).sum();
+        let torn = cable.breaks().iter().filter(|b| b.detached_from.is_some()).count();
+        prop_assert_eq!(held + torn, cable.problem().supports.len());
+        prop_assert_eq!(cable.pieces.len() + torn, cable.breaks().len() + 1);
         prop_assert_eq!(go().unwrap().solution(), sim.solution());
     }
 }

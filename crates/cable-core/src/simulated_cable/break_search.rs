@@ -1,49 +1,27 @@
-//! A piece is a part of the cable that holds together: it advances until its tension reaches the
-//! breaking tension, and finds the instant of that between two of its steps.
+//! A piece advances until its tension reaches the breaking tension, and the instant of that is
+//! found between two of its steps.
 
-use super::partition::CablePart;
-use super::rupture;
+use super::piece::Piece;
+use crate::breakage::rupture::{self, Rupture};
 use crate::error::SolveError;
-use crate::model::gauge::{Limit, TensionGauge};
-use crate::model::{Inertia, Mechanics, StepReport};
-use crate::problem::Problem;
-use crate::scene::SupportKind;
-use crate::solution::{CableSolution, MomentumAccount, TensionPeak, TensionPeaks};
+use crate::model::gauge::Limit;
+use crate::model::{Inertia, StepReport};
+use crate::solution::TensionPeaks;
 use crate::state::State;
 
-/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
-/// place of the break is blurred; shorter: more steps for each break. It is the inner step of
-/// `fem`.
+/// Longest step with inertia at whose end a break is looked for, s: a longer one in which the piece
+/// breaks is taken again in parts. Longer: the place of the break is blurred; shorter: more steps
+/// for each break. It is the inner step of `fem`.
 const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 
-/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break
-/// is interpolated between two of them: with 16 the end of a cable pulled from slack to taut in one
+/// Parts of a step without inertia that ends beyond the breaking tension. The moment of the break
+/// is interpolated within one of them: with 16 the end of a cable pulled from slack to taut in one
 /// step is found to 1e-2 of the step.
 const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
-/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces
-/// of inertia are rounding.
+/// A break in the last such part of a step is put at its end: over a millionth of a step the forces
+/// of inertia would be rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
-
-/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into
-/// the pulley, where there is no element left on one side; larger: it drops off visibly early. 2
-/// leaves a moving node beside the pulley.
-const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
-
-/// A part of the cable that holds together.
-pub(super) struct Piece {
-    pub mechanics: Box<dyn Mechanics>,
-    pub part: CablePart,
-    /// The answer at its present instant, in its own arc lengths.
-    pub answer: CableSolution,
-    pub unwatched_steps: u32,
-    /// Not watched before, s.
-    pub unwatched_until_s: f64,
-    /// Its tension in the inner steps of its model, in its own arc lengths.
-    pub gauge: TensionGauge,
-    /// Its momentum since the caller's step began, as far as there is an account of it.
-    pub account: Option<MomentumAccount>,
-}
 
 /// The break of a piece.
 pub(super) struct BreakPoint {
@@ -52,7 +30,7 @@ pub(super) struct BreakPoint {
     /// The state of the piece then.
     pub state: State,
     /// The place on it.
-    pub at: rupture::Rupture,
+    pub at: Rupture,
 }
 
 /// The outcome of a step of a piece.
@@ -62,28 +40,6 @@ pub(super) enum StepOutcome {
 }
 
 impl Piece {
-    pub fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
-        let answer = mechanics.solution();
-        Self { answer, mechanics, part, unwatched_steps: 0, unwatched_until_s: f64::NEG_INFINITY, gauge, account: None }
-    }
-
-    pub fn refresh_answer(&mut self) {
-        self.answer = self.mechanics.solution();
-    }
-
-    /// Adds the account of the step just made.
-    fn accumulate_momentum(&mut self) {
-        self.account = match (self.account, self.answer.momentum) {
-            (Some(before), Some(now)) => Some(before.then(&now)),
-            (before, now) => now.or(before),
-        };
-    }
-
-    /// Mean length of an element, m.
-    pub fn element(&self) -> f64 {
-        self.part.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
-    }
-
     /// Advances until it breaks, at most by `dt_s`.
     pub fn advance(
         &mut self,
@@ -112,8 +68,8 @@ impl Piece {
         breaking_n: Option<f64>,
         sum: &mut StepReport,
     ) -> Result<StepOutcome, SolveError> {
-        let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
-        if looks > 1.0 && self.unwatched_steps == 0 {
+        let parts = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
+        if parts > 1.0 && self.unwatched_steps == 0 {
             // What cannot break is never taken again.
             let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));
             let report = self.gauged_step(dt_s, breaking_n)?;
@@ -125,9 +81,9 @@ impl Piece {
             };
             (self.mechanics, self.gauge) = before;
         }
-        let (mut left_s, h) = (dt_s, dt_s / looks);
+        let (mut left_s, h) = (dt_s, dt_s / parts);
         let mut peaks: Option<TensionPeaks> = None;
-        for _ in 0..looks as usize {
+        for _ in 0..parts as usize {
             let state = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
             let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
@@ -142,8 +98,7 @@ impl Piece {
             if let Some(reached) = self.gauge.reached() {
                 let now = self.mechanics.state();
                 let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
-                let at =
-                    rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let at = Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
                 let state =
                     if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
                 return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
@@ -218,59 +173,5 @@ impl Piece {
         let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
         let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
         [low, high]
-    }
-
-    /// The greatest tensions of the last advance, with the nodes at its end where it did not break,
-    /// in arc lengths of the whole cable.
-    pub fn peaks(&self) -> Option<TensionPeaks> {
-        let mut peaks = self.gauge.peaks()?;
-        if self.gauge.reached().is_none() {
-            let time_s = self.mechanics.time_s();
-            for n in &self.answer.nodes {
-                if n.tension_n > peaks.greatest.tension_n {
-                    peaks.greatest = TensionPeak { tension_n: n.tension_n, arc_length_m: n.arc_length_m, time_s };
-                }
-            }
-        }
-        peaks.greatest.arc_length_m += self.part.from;
-        peaks.held.arc_length_m += self.part.from;
-        Some(peaks)
-    }
-
-    /// A pulley that a new end has come to.
-    pub fn pulley_at_new_end(&self, whole: &Problem) -> Option<usize> {
-        let supports = &self.part.supports;
-        let [start, end] = [supports.first(), supports.last()].map(|s| s == Some(&None));
-        let near = PULLEY_RELEASE_ELEMENTS * self.element();
-        supports.iter().zip(&self.answer.supports).find_map(|(k, r)| {
-            let k = (*k)?;
-            let pulley = whole.supports.get(k)?.kind == SupportKind::Pulley;
-            let off = (start && r.arc_length_m <= near) || (end && self.part.length() - r.arc_length_m <= near);
-            (pulley && off).then_some(k)
-        })
-    }
-
-    /// A copy to go back to.
-    pub fn checkpoint(&self) -> Self {
-        self.with(self.mechanics.copy_to_keep())
-    }
-
-    /// A copy with a copy of its mechanics.
-    fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
-        Self {
-            mechanics,
-            part: self.part.clone(),
-            answer: self.answer.clone(),
-            unwatched_steps: self.unwatched_steps,
-            unwatched_until_s: self.unwatched_until_s,
-            gauge: self.gauge.clone(),
-            account: self.account,
-        }
-    }
-}
-
-impl Clone for Piece {
-    fn clone(&self) -> Self {
-        self.with(self.mechanics.boxed_clone())
     }
 }
