@@ -21,16 +21,16 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, as a test checks; those of one step do not know
-//! each other:
-//! `math, numerics, model_id, units → energy, verification → error → catenary, scene, solution
-//! → contact, robot → problem, state → breakage, model, record, verify → files, simulated_cable
-//! → warnings, wording → any_error → simulation → analysis, conformance, summary, timeline`.
+//! each other: `math, numerics, model_id, units → energy, verification_report
+//! → error → catenary, scene, solution → contact, robot → problem,
+//! state → answer_verifier, breakage, model, record → files, simulated_cable
+//! → warnings, wording → any_error → simulation → analysis, summary, timeline`.
 
 pub mod analysis;
+pub mod answer_verifier;
 mod any_error;
 mod breakage;
 pub mod catenary;
-pub mod conformance;
 pub mod contact;
 mod energy;
 pub mod error;
@@ -50,8 +50,7 @@ pub mod state;
 pub mod summary;
 pub mod timeline;
 pub mod units;
-pub mod verification;
-pub mod verify;
+mod verification_report;
 mod warnings;
 pub mod wording;
 

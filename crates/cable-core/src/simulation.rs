@@ -18,6 +18,7 @@ mod speed_search;
 
 use std::sync::Arc;
 
+use crate::answer_verifier::{Depth, Verification, Verifier};
 use crate::any_error::Error;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
@@ -33,7 +34,6 @@ use crate::solution::{
     TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
 };
 use crate::state::State;
-use crate::verify::{Depth, Verification, Verifier};
 use crate::warnings::{Bends, Observed, WarningMonitor};
 
 /// Step with inertia, s: the inner step of `fem`.

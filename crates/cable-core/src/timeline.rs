@@ -5,14 +5,14 @@
 //! common instants are equal to the bit. Instants are whole ticks of a third of a nanosecond: 1/240
 //! s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
 
-mod coarse;
-mod monitor;
+mod coarser_runs;
 mod motion_numbers;
 mod refinement;
-mod without_inertia;
+mod run_monitor;
+mod run_without_inertia;
 
-pub use self::monitor::RunMonitor;
 pub use self::refinement::{Refinement, refine_until_accurate};
+pub use self::run_monitor::RunMonitor;
 
 use crate::error::SolveError;
 use crate::model::Inertia;

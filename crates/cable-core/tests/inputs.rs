@@ -5,7 +5,7 @@
 
 use cable_core::error::SceneFault;
 use cable_core::model::Model;
-use cable_core::scene::scaled::Similarity;
+use cable_core::scene::similarity::Similarity;
 use cable_core::solution::{CableSolution, Solution, WarningKind};
 use cable_core::{Error, Scene, Simulation, Vec2};
 

@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use super::gauge::TensionGauge;
 use super::settings::Settings;
+use super::tension_gauge::TensionGauge;
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
 use crate::model_id::Model;
@@ -107,7 +107,7 @@ pub trait Mechanics: Send {
     }
 
     /// As [`Self::advance`]; every inner step with inertia passes the tension along the cable to
-    /// `gauge`.
+    /// `tension_gauge`.
     ///
     /// # Errors
     /// As [`Self::advance`].

@@ -4,7 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `mechanics.rs`, `settings.rs` | the trait and its reports; [`Settings`] |
-//! | `gauge/` | tensions of the inner steps |
+//! | `tension_gauge/` | tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs` | the choice of a model |
 //! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
@@ -20,7 +20,6 @@ pub mod auto;
 mod auxiliary_weight;
 pub mod catenary;
 pub mod fem;
-pub mod gauge;
 pub mod hand;
 pub(crate) mod initial_equilibrium;
 mod layers;
@@ -31,6 +30,7 @@ pub mod registry;
 pub mod settings;
 pub mod smoothed_target;
 pub mod spans;
+pub mod tension_gauge;
 
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
 pub use self::registry::{Capabilities, ModelInfo, ModelSource, build};

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::series::{Series, TIME_TOLERANCE_S, turn_between};
+use super::time_series::{Series, TIME_TOLERANCE_S, turn_between};
 use super::wheels_as_posts::WheelPost;
 use crate::contact::World;
-use crate::contact::outline::Outline;
+use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
-use crate::scene::scaled::Similarity;
+use crate::scene::similarity::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
 use crate::solution::{CableSolution, Warning};
 
@@ -45,7 +45,8 @@ pub struct Problem {
     pub loads: Vec<PointLoad>,
     /// Obstacles that it can touch and that stay where they are.
     pub world: Arc<World>,
-    /// All obstacles that stay where they are, if it can come to none of them (see `reach.rs`).
+    /// All obstacles that stay where they are, if it can come to none of them (see
+    /// `unreachable_obstacles.rs`).
     pub(crate) unreachable: Option<Arc<World>>,
     /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,

@@ -4,7 +4,7 @@
 use super::piece::Piece;
 use crate::breakage::rupture::{self, Rupture};
 use crate::error::SolveError;
-use crate::model::gauge::Limit;
+use crate::model::tension_gauge::Limit;
 use crate::model::{Inertia, StepReport};
 use crate::solution::TensionPeaks;
 use crate::state::State;

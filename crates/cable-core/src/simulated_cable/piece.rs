@@ -2,7 +2,7 @@
 
 use crate::breakage::CablePart;
 use crate::model::Mechanics;
-use crate::model::gauge::TensionGauge;
+use crate::model::tension_gauge::TensionGauge;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, MomentumAccount, TensionPeak, TensionPeaks};

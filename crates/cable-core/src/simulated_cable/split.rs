@@ -7,7 +7,7 @@ use super::break_search::BreakPoint;
 use super::piece::Piece;
 use crate::breakage::{Break, CablePart, Cut, rupture};
 use crate::error::SolveError;
-use crate::model::gauge::TensionGauge;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Settings};
 use crate::state::State;
 

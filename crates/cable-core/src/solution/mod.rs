@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, larger};
 use crate::model_id::Model;
-use crate::verification::Verification;
+use crate::verification_report::Verification;
 
 pub use self::energy::Energy;
 pub use self::energy_account::EnergyAccount;

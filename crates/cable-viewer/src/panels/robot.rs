@@ -13,9 +13,9 @@ use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, quantity};
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
-use crate::widgets::tick::checkbox;
 use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.

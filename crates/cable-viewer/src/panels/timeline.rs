@@ -7,8 +7,8 @@ use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::tick::checkbox;
 use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.

@@ -45,8 +45,8 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// As [`tick`]; the last number that is not cut by the end of its axis has the unit, so that no
-/// line of the graph is spent on it.
+/// As [`checkbox_and_radio`]; the last number that is not cut by the end of its axis has the unit,
+/// so that no line of the graph is spent on it.
 pub(super) fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
     let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
     let last = mark.value <= end && mark.value + mark.step_size > end;

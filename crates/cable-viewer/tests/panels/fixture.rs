@@ -253,7 +253,7 @@ pub fn with_pulley(state: &mut AppState) {
 pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
     cable_viewer::panels::scene::outline::ui(ui, state, commands);
     if state.selection.selected.is_some() {
-        cable_viewer::panels::selected::ui(ui, state, commands);
+        cable_viewer::panels::selected_item::ui(ui, state, commands);
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::report::{report, straight};
 use self::settings::CatenarySettings;
 use self::slide::Mode;
-use super::gauge::TensionGauge;
+use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};

@@ -63,7 +63,6 @@ use std::sync::Arc;
 use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
-use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::{
     Account, ChainState, Report, Rollback, SupportDrives, integrate, transaction,
 };
@@ -71,6 +70,7 @@ use crate::model::mass_spring::equilibrium::{Anchors, Estimate, Start, find_equi
 use crate::model::mass_spring::mesh::{Mesh, even_out, first_support_arc_lengths};
 use crate::model::mass_spring::xpbd::preview;
 pub use crate::model::settings::Stepping;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;

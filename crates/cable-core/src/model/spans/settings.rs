@@ -21,7 +21,7 @@ pub struct SpansSettings {
     /// Contacts that come and go.
     pub changes: ChangeSettings,
     /// Causes of failures, and corners passed through.
-    pub verify: VerifySettings,
+    pub acceptance: AcceptanceSettings,
 }
 
 /// Newton's method for a section, and the prediction of slip before it.
@@ -261,7 +261,7 @@ pub struct ChangeSettings {
 
 /// Causes of failures, and corners that a step passed through.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct VerifySettings {
+pub struct AcceptanceSettings {
     /// Force across the load, of the weight of a span, up to which it hangs in one line. Smaller: a
     /// fold is not reported. Larger: a span that sags is reported as a fold.
     pub fold_force_fraction: f64,
@@ -370,7 +370,7 @@ impl Default for ChangeSettings {
     }
 }
 
-impl Default for VerifySettings {
+impl Default for AcceptanceSettings {
     fn default() -> Self {
         Self { fold_force_fraction: 5e-3, tunnelling_points: 24, unchecked_move: 0.5 }
     }

@@ -7,7 +7,7 @@ use cable_core::scene::preset::RobotPreset;
 use cable_core::scene::robot::{Heading, Pose};
 use egui::{Color32, Mesh, Pos2, Stroke};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::robot::{robot_outline, robot_pose};
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};

@@ -11,9 +11,9 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
-use crate::widgets::tick::checkbox;
 
 const MIN_FRICTION: Quantity = Quantity {
     name: "Least friction",

@@ -8,7 +8,7 @@
 //! and sliding ends at the least that balances.
 
 use crate::contact::friction as friction_law;
-use crate::contact::pairs::Pair;
+use crate::contact::obstacle_pairs::Pair;
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
 use crate::model::mass_spring::equilibrium::system::System;
