@@ -28,7 +28,7 @@ use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::simulated_cable::SimulatedCable;
-use crate::solution::ErrorEstimates;
+use crate::solution::error_estimates::{ErrorEstimates, MIN_COMPARED_ELEMENTS};
 use crate::solution::{
     CableSolution, Cost, Energy, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node, SharedNodes, Solution,
     TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
@@ -49,9 +49,6 @@ const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
 const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
-
-/// Least number of elements of a coarser run: the errors of fewer say nothing about those of more.
-const MIN_ELEMENTS: usize = 4;
 
 /// A scene being solved.
 #[derive(Clone)]
@@ -526,7 +523,7 @@ impl Simulation {
         let mut scene = self.scene.clone();
         for (cable, answer) in scene.cables.iter_mut().zip(&self.answers) {
             let elements = (answer.nodes.len().saturating_sub(1) as f64 * times).floor() as usize;
-            if elements < MIN_ELEMENTS {
+            if elements < MIN_COMPARED_ELEMENTS {
                 return Ok(None);
             }
             cable.segments = Some(elements);

@@ -118,6 +118,10 @@ impl CableSolution {
 /// beyond, it is a corner or a fold.
 const MAX_TURN: f64 = 1.0;
 
+/// Least number of elements of a mesh with which a finer one is compared: the errors of fewer say
+/// nothing about those of more.
+pub(crate) const MIN_COMPARED_ELEMENTS: usize = 4;
+
 /// Curvatures of two neighbours on one curve differ by no more than this factor. Less: catenaries
 /// on few nodes are read as straighter than they are; more: what leaves a round is bent.
 const MAX_CURVATURE_RATIO: f64 = 3.0;

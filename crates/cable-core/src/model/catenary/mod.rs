@@ -26,7 +26,7 @@ pub mod settings;
 mod slide;
 mod wheel;
 
-use crate::numerics::HalvedSteps;
+use crate::numerics::{HalvedSteps, MAX_HALVINGS};
 use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, Start, solve};
@@ -41,6 +41,7 @@ use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::model::auxiliary_weight::slack_without_weight;
+use crate::model::settings::MAX_MOVE_FRACTION;
 use crate::problem::Problem;
 use crate::solution::{
     CableSolution, Cost, Histories, Node, SharedNodes, ShownEquilibrium, SupportReaction, Warning, WarningCause,
@@ -332,10 +333,9 @@ impl Mechanics for CatenaryModel {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
-        let pieces = (self.support_travel(start, end) / (self.tuned.max_move_fraction * self.problem.length))
-            .ceil()
-            .clamp(1.0, 1000.0);
-        let mut steps = HalvedSteps::new(end, dt_s / pieces, self.tuned.max_step_halvings, JOINED_FRACTION);
+        let pieces =
+            (self.support_travel(start, end) / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, 1000.0);
+        let mut steps = HalvedSteps::new(end, dt_s / pieces, MAX_HALVINGS, JOINED_FRACTION);
         let mut total = StepReport::default();
         while let Some(next) = steps.next(self.time_s) {
             match self.slow_step(next, if next >= end { StepStage::Final } else { StepStage::Intermediate }) {

@@ -292,7 +292,7 @@ impl CableEquilibrium {
         let size = to.load.norm();
         let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
-        for _ in 0..tuned.max_drag_steps {
+        for _ in 0..layout.settings.changes.max_changes {
             self.context.drag = drag;
             let result = self.step(layout, to, workspace);
             self.context.drag = 0.0;

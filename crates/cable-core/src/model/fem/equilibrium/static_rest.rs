@@ -66,7 +66,12 @@ impl Stepper {
         let rounding = self.rounding_of_bars();
         let mut all = found;
         let tuning = self.cable.mesh.tuning.equilibrium;
-        for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
+        let stages = [
+            (1.0, tuning.polish_iterations),
+            (tuning.polish_residual.sqrt(), tuning.max_iterations),
+            (tuning.polish_residual, tuning.max_iterations),
+        ];
+        for (part, iterations) in stages {
             self.rollback.save(&self.cable);
             prepare_way(&mut self.cable, [to, to], Some(dragged));
             self.cable.input.stopping.max_noise = exact;

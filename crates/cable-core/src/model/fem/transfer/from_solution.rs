@@ -139,7 +139,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
             / if many {
                 cable.mesh.tuning.remesh.max_marked_arc_rad
             } else {
-                cable.mesh.tuning.start.max_mark_turn_rad
+                2.0 * cable.mesh.tuning.remesh.max_tangent_half_turn_rad
             })
         .ceil()
         .max(bars);

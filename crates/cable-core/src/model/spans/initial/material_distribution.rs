@@ -46,7 +46,7 @@ pub(in crate::model::spans) fn measure(
 
 /// Keeps material in order, and some of it in each span.
 pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &SolveContext) {
-    let least = context.settings.initial.contact_spacing_fraction * (section.to - section.from);
+    let least = context.settings.changes.least_material_fraction * (section.to - section.from);
     let n = section.contacts.len();
     let mut before = section.from;
     for j in 0..n {
