@@ -3,10 +3,9 @@
 
 use cable_core::analysis::{Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::answer_verifier::Verification;
-use cable_core::solution::robot_report::RobotReport;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, InertiaEffect, ModelReason,
-    NextCheaper, Node, Pressure, Solution, SupportReaction, TensionPeaks, Warning,
+    NextCheaper, Node, Pressure, RobotReport, Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::CableSummary;
 use cable_core::timeline::RunPeaks;

@@ -28,20 +28,20 @@ use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::simulated_cable::SimulatedCable;
-use crate::solution::error_estimates::{ErrorEstimates, MIN_COMPARED_ELEMENTS};
+use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
 use crate::solution::{
-    CableSolution, Cost, Energy, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node, SharedNodes, Solution,
-    TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
+    CableSolution, Cost, Energy, ErrorEstimates, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node,
+    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
 };
 use crate::state::State;
 use crate::warnings::{Bends, Observed, WarningMonitor};
 
 /// Step with inertia, s: the inner step of `fem`.
-pub const STEP_S: f64 = 1.0 / 240.0;
+pub(crate) const STEP_S: f64 = 1.0 / 240.0;
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows
 /// time at 10 Hz.
-pub const MAX_FRAME_S: f64 = 0.1;
+const MAX_FRAME_S: f64 = 0.1;
 
 /// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen
 /// computes for hours without a word.

@@ -16,8 +16,7 @@ pub use self::run_monitor::RunMonitor;
 
 use crate::error::SolveError;
 use crate::model::Inertia;
-pub use crate::simulation::STEP_S;
-use crate::simulation::Simulation;
+use crate::simulation::{STEP_S, Simulation};
 use crate::solution::{InertiaEffect, Solution, TensionPeaks};
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60,
@@ -25,12 +24,12 @@ use crate::solution::{InertiaEffect, Solution, TensionPeaks};
 const TICKS_PER_S: f64 = 3e9;
 
 /// Step without inertia, s: that of a display.
-pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
+const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 
 /// Ends of a range of tensions that are no more than so many times each other are those of one
 /// tension that is known, if roughly. Less: peaks that any finer run has as well are called
 /// uncertain; more: a cable is chosen by a peak that another mesh does not have.
-pub const SMALL_DIFFERENCES_RATIO: f64 = 1.5;
+const SMALL_DIFFERENCES_RATIO: f64 = 1.5;
 
 /// An instant: a whole number of ticks after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]

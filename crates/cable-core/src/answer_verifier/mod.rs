@@ -35,7 +35,7 @@ mod supports;
 mod surroundings;
 #[cfg(test)]
 mod tests;
-pub mod tolerance;
+mod tolerance;
 
 use serde::{Deserialize, Serialize};
 

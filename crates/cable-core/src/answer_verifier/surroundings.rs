@@ -5,11 +5,10 @@
 //! nothing else is clever.
 
 use crate::contact::moving_outline::Outline;
-use crate::math::RigidPose;
-use crate::math::{Vec2, cross, vec2};
+use crate::math::{RigidPose, Vec2, cross, vec2};
 use crate::problem::robot_outline;
-use crate::robot::RobotReport;
 use crate::scene::{LineEnds, Obstacle, Scene, Shape};
+use crate::solution::RobotReport;
 
 /// An edge of an obstacle, or a round (both ends in its centre).
 #[derive(Clone, Copy, Debug)]

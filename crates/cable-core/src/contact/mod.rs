@@ -17,11 +17,11 @@
 //! sides.
 
 pub(crate) mod barrier;
-pub mod distance;
+pub(crate) mod distance;
 pub(crate) mod friction;
 mod gap;
 pub(crate) mod geometry;
-pub mod moving_outline;
+pub(crate) mod moving_outline;
 pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
 pub(crate) mod obstacle_pairs;
@@ -36,6 +36,7 @@ use crate::math::{RigidPose, Vec2};
 use crate::scene::Obstacle;
 
 pub use gap::Gap;
+pub use moving_outline::Outline;
 
 /// The obstacles of a scene, ready for queries by one cable.
 #[derive(Clone, Debug, Default)]

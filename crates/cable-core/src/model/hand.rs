@@ -42,7 +42,7 @@ pub fn default_hand_stiffness(problem: &Problem) -> f64 {
 
 /// A hand that holds a support by a spring with a damper beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub(crate) struct Hand {
     end: SmoothedTarget,
     /// N/m.
     stiffness: f64,
@@ -70,12 +70,6 @@ impl Hand {
     #[must_use]
     pub fn end(&self) -> &SmoothedTarget {
         &self.end
-    }
-
-    /// N/m.
-    #[must_use]
-    pub fn stiffness(&self) -> f64 {
-        self.stiffness
     }
 
     /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of

@@ -16,7 +16,7 @@
 //! never a guess.
 
 mod arc_nodes;
-pub mod auto;
+pub(crate) mod auto;
 mod auxiliary_weight;
 pub mod catenary;
 pub mod fem;
@@ -24,18 +24,20 @@ pub mod hand;
 pub(crate) mod initial_equilibrium;
 mod layers;
 pub mod mass_spring;
-pub mod mechanics;
+pub(crate) mod mechanics;
 mod mobilised_friction;
-pub mod registry;
-pub mod settings;
-pub mod smoothed_target;
+pub(crate) mod registry;
+pub(crate) mod settings;
+pub(crate) mod smoothed_target;
 pub mod spans;
 pub mod tension_gauge;
 
+pub use self::auto::Question;
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
-pub use self::registry::{Capabilities, ModelInfo, ModelSource, build};
+pub(crate) use self::registry::ModelSource;
+pub use self::registry::{Capabilities, ModelInfo, build};
 pub(crate) use self::settings::MIN_TOLERANCE;
-pub use self::settings::Settings;
+pub use self::settings::{Settings, Stepping};
 pub use crate::model_id::Model;
 
 /// Fastest motion in which masses move, m/s: supports that are faster are refused, and

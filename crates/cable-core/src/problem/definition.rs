@@ -174,7 +174,7 @@ impl Problem {
 
     /// The same for a model that knows nothing of obstacles that move.
     #[must_use]
-    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
+    pub(crate) fn without_outline(this: Arc<Self>) -> Arc<Self> {
         if this.outline.is_none() {
             return this;
         }
@@ -222,7 +222,7 @@ impl Problem {
     /// loads at the same place. At rest the tension just inside a free end is the size of it, and
     /// the cable pulls at it with the opposite of it.
     #[must_use]
-    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+    pub(crate) fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
         let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
         let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
@@ -233,7 +233,7 @@ impl Problem {
     /// A force that says how large forces are here, N: the whole distributed load, point loads and
     /// the weight of lumps, or EA·1e-6 without one.
     #[must_use]
-    pub fn force_scale(&self) -> f64 {
+    pub(crate) fn force_scale(&self) -> f64 {
         self.whole_load().max(1e-6 * self.axial_stiffness)
     }
 

@@ -42,7 +42,6 @@ mod table_reader;
 mod tables_tests;
 
 pub use columns::RobotColumns;
-pub use csv_records::WholeRecords;
 pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use manifest::MANIFEST_HEAD;

@@ -141,3 +141,20 @@ impl Similarity {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_similarity_is_none_where_solvers_are_at_home() {
+        assert!(Similarity::to_natural(12.0, Vec2::new(3.0, 5.0)).is_none());
+        for length in [1e-3, 0.5, 5e3, 1e6] {
+            let by = Similarity::to_natural(length, Vec2::new(3.0, 5.0)).unwrap();
+            // A long cable is made no shorter than it must be.
+            let copy = if length < 2.0 { 8.0..32.0 } else { 250.0..1000.0 };
+            assert!(copy.contains(&(length * by.length)) && by.length == by.time * by.time, "{length}: {by:?}");
+            assert_eq!(by.place_back(by.place(Vec2::new(7.25, -1.5))), Vec2::new(7.25, -1.5));
+        }
+    }
+}

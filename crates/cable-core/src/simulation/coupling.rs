@@ -19,10 +19,10 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
-use crate::robot::{self, Drive, Going, Pulls, Vehicle};
+use crate::robot::{self, Drive, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
 use crate::simulated_cable::SimulatedCable;
-use crate::solution::{Cost, Warning, WarningCause};
+use crate::solution::{Cost, Going, Warning, WarningCause};
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;

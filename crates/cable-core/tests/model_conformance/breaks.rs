@@ -2,9 +2,8 @@
 
 use super::measure::{FRAME_S, span};
 use cable_core::scene::{Motion, Scene};
-use cable_core::simulation::Simulation;
 use cable_core::solution::WarningKind;
-use cable_core::{Error, Model};
+use cable_core::{Error, Model, Simulation};
 
 /// The time at which the cable is as long as its breaking strain says, s.
 const BREAKS_AT_S: f64 = 2.0;

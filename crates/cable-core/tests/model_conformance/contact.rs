@@ -1,7 +1,7 @@
 //! These laws hold for a cable that lies on a smooth pipe.
 
-use super::measure::{reactions_n, settle, span, weight_n};
-use cable_core::math::{Vec2, larger};
+use super::measure::{larger, reactions_n, settle, span, weight_n};
+use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape};
 use cable_core::{Error, Model};
 

@@ -1,12 +1,11 @@
 //! These laws hold for cables that lie on something rough.
 
 use super::contact::{PIPE_AT, draped};
-use super::measure::{dead_load, settle, span, weight_n};
-use cable_core::math::{Vec2, larger, vec2};
+use super::measure::{dead_load, larger, settle, span, weight_n};
+use cable_core::math::{Vec2, vec2};
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support};
-use cable_core::simulation::Simulation;
 use cable_core::solution::Node;
-use cable_core::{Error, Model};
+use cable_core::{Error, Model, Simulation};
 
 /// Friction of everything rough here.
 const FRICTION: f64 = 0.3;

@@ -1,9 +1,8 @@
 //! This file holds scenes and measures that several laws share.
 
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
-use cable_core::simulation::Simulation;
 use cable_core::solution::Solution;
-use cable_core::{Error, Model};
+use cable_core::{Error, Model, Simulation};
 
 /// A display frame, s.
 pub(crate) const FRAME_S: f64 = 1.0 / 60.0;
@@ -48,4 +47,9 @@ pub(crate) fn reactions_n(s: &Solution) -> [f64; 2] {
 /// Returns whether two things differ, as an error.
 pub(crate) fn difference<T: PartialEq>(a: &T, b: &T) -> f64 {
     f64::from(u8::from(a != b))
+}
+
+/// The larger of two numbers; not a number if the second is not.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if b > a || b.is_nan() { b } else { a }
 }

@@ -1,11 +1,10 @@
 //! These laws hold for cables whose masses accelerate.
 
-use super::measure::{FRAME_S, base, difference, weight_n};
-use cable_core::math::{Vec2, larger};
+use super::measure::{FRAME_S, base, difference, larger, weight_n};
+use cable_core::math::Vec2;
 use cable_core::scene::{Scene, catalog};
-use cable_core::simulation::Simulation;
 use cable_core::solution::{Energy, Node, Solution};
-use cable_core::{Error, Model};
+use cable_core::{Error, Model, Simulation};
 
 /// Runs a scene from rest, and looks at every frame.
 fn run(scene: Scene, model: Model, frames: usize, mut look: impl FnMut(&Solution)) -> Result<(), Error> {

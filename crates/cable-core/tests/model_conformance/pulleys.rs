@@ -2,8 +2,7 @@
 
 use super::measure::{FRAME_S, base, dead_load, reactions_n, settle, span, weight_n};
 use cable_core::scene::{Motion, Scene, Support};
-use cable_core::simulation::Simulation;
-use cable_core::{Error, Model};
+use cable_core::{Error, Model, Simulation};
 
 /// Friction of the rough pulley.
 const FRICTION: f64 = 0.3;

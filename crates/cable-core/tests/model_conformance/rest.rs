@@ -1,7 +1,7 @@
 //! These laws hold for a cable that hangs at rest and touches nothing.
 
-use super::measure::{base, dead_load, difference, reactions_n, settle, span, weight_n};
-use cable_core::math::{Vec2, larger};
+use super::measure::{base, dead_load, difference, larger, reactions_n, settle, span, weight_n};
+use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Shape};
 use cable_core::solution::{Solution, SupportReaction};
 use cable_core::{Error, Model};

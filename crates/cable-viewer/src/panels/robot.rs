@@ -1,10 +1,9 @@
 //! The robot panel drives by hand, edits the path, and shows what the motion is made of.
 
 use cable_core::Robot;
-use cable_core::robot::RobotReport;
 use cable_core::scene::preset::robot_preset;
-use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
-use cable_core::scene::{RobotTask, SupportKind};
+use cable_core::scene::{ROLLING_RESISTANCE, RobotTask, SupportKind, TRACK_FRICTION};
+use cable_core::solution::RobotReport;
 use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use cable_core::robot::{Going, RobotReport, RobotWork};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning,
-    WarningCause, WarningKind,
+    CableSolution, ContactReport, ContactState, Cost, Energy, Going, ModelReason, Node, RobotReport, RobotWork,
+    Solution, SupportReaction, Warning, WarningCause, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;

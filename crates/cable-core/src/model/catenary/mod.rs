@@ -22,7 +22,7 @@ mod first_guess;
 mod layout;
 mod multiple_equilibria;
 pub(super) mod report;
-pub mod settings;
+mod settings;
 mod slide;
 mod wheel;
 
@@ -34,7 +34,7 @@ use self::first_guess::{first_arcs, nearest_along, spread};
 use self::layout::{AnchorLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::report::{report, straight};
-use self::settings::CatenarySettings;
+pub use self::settings::CatenarySettings;
 use self::slide::Mode;
 use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};

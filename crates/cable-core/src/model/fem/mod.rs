@@ -34,7 +34,7 @@ pub(in crate::model) mod newton;
 mod obstacle;
 mod remesh;
 mod results;
-pub mod settings;
+mod settings;
 mod settle;
 mod state;
 mod stepper;
@@ -53,7 +53,6 @@ use crate::math::{RigidPose, Vec2, larger};
 use crate::model::fem::contact_free::touches_nothing;
 use crate::model::fem::mesh_error::TwoMeshes;
 use crate::model::fem::obstacle::{outline_report, place_outline};
-use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::WorkBudget;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -61,6 +60,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, ErrorEstimates};
 use crate::state::State;
+
+pub use crate::model::fem::settings::Tuning;
 
 /// The part that holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,7 +133,7 @@ impl FemModel {
     /// The same without sliding nodes at corners and posts: every node stays with its material. For
     /// models that take over its nodes.
     #[must_use]
-    pub fn with_material_nodes(mut self) -> Self {
+    pub(in crate::model) fn with_material_nodes(mut self) -> Self {
         self.stepper.cable.meshing.slides = false;
         self
     }

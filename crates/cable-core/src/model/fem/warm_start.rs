@@ -5,11 +5,10 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::larger;
-use crate::model::Mechanics;
-use crate::model::Settings;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, Part};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
+use crate::model::{Mechanics, Settings};
 use crate::problem::Problem;
 use crate::solution::Warning;
 

@@ -55,7 +55,7 @@ mod forces;
 mod mesh;
 mod preview_choice;
 mod results;
-pub mod settings;
+mod settings;
 mod xpbd;
 
 use std::sync::Arc;
@@ -69,7 +69,6 @@ use crate::model::mass_spring::dynamics::{
 use crate::model::mass_spring::equilibrium::{Anchors, Estimate, Start, find_equilibrium, quasi_static_step};
 use crate::model::mass_spring::mesh::{Mesh, even_out, first_support_arc_lengths};
 use crate::model::mass_spring::xpbd::preview;
-pub use crate::model::settings::Stepping;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -80,7 +79,8 @@ use contact_memory::ContactMemory;
 use dynamics::{Clock, buried_nodes, hands};
 use forces::{nodal, tension};
 use preview_choice::is_preview;
-use settings::Tuning;
+
+pub use settings::{MeshTuning, PreviewTuning, SubStepTuning, Tuning};
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]

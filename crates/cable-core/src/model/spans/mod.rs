@@ -38,7 +38,7 @@ mod results;
 mod reversed;
 mod section;
 mod section_layout;
-pub mod settings;
+mod settings;
 mod slack;
 
 use std::sync::Arc;
@@ -53,13 +53,14 @@ use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Reversal;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
-use crate::model::spans::settings::SpansSettings;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
+
+pub use crate::model::spans::settings::SpansSettings;
 
 /// Part of the greatest tension within which two histories left the same. Larger: a cable that is
 /// held by little friction is said to have one rest; smaller: rounding is said to be another

@@ -177,14 +177,14 @@ impl TensionGauge {
 
     /// Returns whether its points are the nodes of a mesh (arc lengths, m).
     #[must_use]
-    pub fn knows(&self, arcs: &[f64]) -> bool {
+    pub(crate) fn knows(&self, arcs: &[f64]) -> bool {
         let by = self.scale[0];
         self.on && arcs.len() == self.points.len() && arcs.iter().zip(&self.points).all(|(s, p)| s * by == *p)
     }
 
     /// Room for the tensions (N) at a time (s) of a mesh that it [knows](Self::knows): as
     /// [`Self::note`].
-    pub fn room(&mut self, time_s: f64) -> &mut [f64] {
+    pub(crate) fn room(&mut self, time_s: f64) -> &mut [f64] {
         self.next_s = time_s * self.scale[1];
         &mut self.next
     }

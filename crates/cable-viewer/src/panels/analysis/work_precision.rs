@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cable_core::Model;
-use cable_core::summary::Setting;
+use cable_core::analysis::Setting;
 use egui::{ProgressBar, Rangef, RichText, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, Plot, PlotBounds, Points};
 
@@ -11,8 +11,7 @@ use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::work_precision::{Entry, Outcome};
 use crate::plot::TIME_MARK;
-use crate::render::colour;
-use crate::render::theme;
+use crate::render::{colour, theme};
 use crate::state::AppState;
 use crate::units::sentence::sentence;
 use crate::units::{format, labels};
