@@ -3,7 +3,7 @@
 
 mod dice;
 
-use cable_core::scene::{Motion, Obstacle, STANDARD_GRAVITY, Scene, Shape, Support, catalog};
+use cable_core::scene::{Motion, Obstacle, STANDARD_GRAVITY, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::{Model, Settings, Simulation};
 
 use self::dice::Dice;
@@ -90,5 +90,39 @@ fn the_tank_at_rest_does_not_ripple() {
             fastest(&sim)
         );
         assert!(most / least - 1.0 < 1e-3, "{model}: {least} to {most} N");
+    }
+}
+
+/// An end that stood on the ground had no gap there when it was let go, and no step was found: the
+/// cable lies where it lay, and on a slope it slides as a body does.
+#[test]
+fn an_end_let_go_on_the_ground_lies_there() {
+    const LET_GO: f64 = 0.1;
+    let radius = 0.01;
+    for (slope, friction) in [(0.0f64, 0.3), (30f64.to_radians(), 0.2)] {
+        let along = |s: f64, up: f64| [s * slope.cos() - up * slope.sin(), s * slope.sin() + up * slope.cos()];
+        let ends = [along(0.0, radius), along(3.0, radius)];
+        let supports = vec![
+            if slope > 0.0 { Support::new("a", SupportKind::Free) } else { Support::fixed("a", ends[0]) },
+            Support { release_s: Some(LET_GO), ..Support::fixed("b", ends[1]) },
+        ];
+        let mut scene = catalog::cable_alone([3.0, 0.5, 1e5], supports);
+        let c = &mut scene.cables[0];
+        (c.preset, c.diameter_m, c.segments, c.bending_stiffness_n_m2) = (None, 2.0 * radius, None, 0.0);
+        c.route_m = ends.to_vec();
+        let shape = Shape::Terrain { points_m: vec![along(-30.0, 0.0), along(40.0, 0.0)] };
+        scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape, friction: Some(friction) }];
+        let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+        sim.settle().unwrap();
+        let before = *sim.solution().cables[0].nodes.last().unwrap();
+        for _ in 0..120 {
+            sim.step(1.0 / 240.0).unwrap_or_else(|e| panic!("{:.1}°: {e}", slope.to_degrees()));
+        }
+        let after = *sim.solution().cables[0].nodes.last().unwrap();
+        let slid = (before.at() - after.at()).norm();
+        let pull = 9.80665 * (slope.sin() - friction * slope.cos());
+        let expected = if pull > 0.0 { 0.5 * pull * (0.5f64 - LET_GO).powi(2) } else { 0.0 };
+        println!("{:.0}°: slid {slid:.4} m, a body {expected:.4} m", slope.to_degrees());
+        assert!((slid - expected).abs() < 0.02 * expected + 2e-3, "{slid} m for {expected} m");
     }
 }

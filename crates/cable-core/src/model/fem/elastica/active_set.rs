@@ -200,7 +200,15 @@ impl Elastica {
                 return Some(true);
             }
         }
-        // A stretch that would have to pull, or that lies in another surface.
+        // A stretch that would have to pull where it begins or ends.
+        for j in 0..self.joints.len() {
+            let (Joint::ContactBegin(k) | Joint::ContactEnd(k)) = self.joints[j] else { continue };
+            let pulley = matches!(self.contacts[k].owner, Owner::Pulley(_));
+            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
+                return None;
+            }
+        }
+        // A stretch that would have to pull along its way, or that lies in another surface.
         for k in 0..self.pieces.len() {
             let Some(c) = self.pieces[k].contact.and_then(|c| self.contacts.get(c)) else { continue };
             let pulley = matches!(c.owner, Owner::Pulley(_));
@@ -256,6 +264,28 @@ impl Elastica {
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
     }
 
+    /// The friction that a new contact in a piece mobilises, and whether it slips: as the flexible
+    /// cable did there if it lay there, else as the contacts before and after it do in the mean.
+    fn friction_of_new(&self, new: &Contact, piece: usize, coefficient: f64) -> (f64, bool) {
+        let far = |c: &&Contact| (c.at - new.at).norm();
+        let on_it = self.contacts.iter().filter(|c| c.is_same_surface(new));
+        if let Some(known) = on_it.min_by(|a, b| far(a).total_cmp(&far(b))) {
+            return (known.mobilised, known.slips);
+        }
+        let contact_of = |joint: &Joint| match joint {
+            Joint::PointContact(k) | Joint::ContactBegin(k) | Joint::ContactEnd(k) => self.contacts.get(*k),
+            Joint::Held { .. } | Joint::Load { .. } => None,
+        };
+        let before = self.joints.iter().take(piece).rev().find_map(contact_of);
+        let after = self.joints.iter().skip(piece).find_map(contact_of);
+        let beside: Vec<&Contact> = before.into_iter().chain(after).collect();
+        if beside.is_empty() {
+            return (0.0, false);
+        }
+        let mean = beside.iter().map(|c| c.mobilised).sum::<f64>() / beside.len() as f64;
+        (mean.clamp(-coefficient, coefficient), beside.iter().all(|c| c.slips))
+    }
+
     /// Adds a point contact where free pieces are deepest in an obstacle; returns whether they are
     /// in any, None where a piece has no node at which it could be cut.
     fn add_deepest_contact(&mut self, problem: &Problem) -> Option<bool> {
@@ -295,10 +325,7 @@ impl Elastica {
         let x = gap.point + gap.normal * (gap.gap_m + self.contact_distance(problem, &gap));
         let mut contact = contact_at(problem, &gap, x, tangent(&u))?;
         if gap.friction > 0.0 {
-            // A contact on which the flexible cable did not lie slips as its neighbours do.
-            let known = self.contacts.iter().find(|c| c.slips).map_or(0.0, |c| c.mobilised.signum());
-            contact.mobilised = gap.friction * known;
-            contact.slips = known != 0.0;
+            (contact.mobilised, contact.slips) = self.friction_of_new(&contact, k, gap.friction);
         }
         self.contacts.push(contact);
         let (before, after) = split(&self.pieces[k], i);

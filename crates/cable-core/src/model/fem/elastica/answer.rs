@@ -2,7 +2,7 @@
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
-    ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
+    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
 };
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
@@ -34,6 +34,7 @@ const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 const MOST_ELEMENTS: usize = 4000;
 
 /// Raises the elastica to the whole stiffness and refines it; returns its answer with the error.
+/// None where that is not found.
 pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
     if !elastica.stiffen(problem) {
         return None;
@@ -44,14 +45,16 @@ pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: 
     Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
 }
 
-/// Halves the elements until the forces change by less than `tolerance` of the greatest;
-/// returns what error is left, in parts of the greatest tension.
+/// Halves the elements until the forces change by less than `tolerance` of the greatest, or until
+/// the next halving is not solved; returns what error is left, in parts of the greatest tension.
+/// None where the first halving is not solved: nothing is known of the error then.
 pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
+    let mut known = None;
     loop {
         let mut fine = elastica.halved();
         fine.regrid();
-        if !fine.settle(problem) {
-            return None;
+        if !fine.settle(problem) || !fine.is_sound() {
+            return known;
         }
         let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
         if fine.joints == elastica.joints {
@@ -68,12 +71,13 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
         let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
         let coarse = std::mem::replace(elastica, fine);
         let count: usize = elastica.pieces.iter().map(|p| p.nodes.len()).sum();
+        let answer = solution(elastica, problem);
+        let rounding = ErrorEstimates::rounding(&answer, problem);
+        let errors = ErrorEstimates::between(&solution(&coarse, problem), &answer).times(HALVING_ERROR_FRACTION);
+        let relative = estimate + rounding.relative(&answer)?;
+        known = relative.is_finite().then_some((relative, errors.plus(&rounding)));
         if estimate <= tolerance || count > MOST_ELEMENTS {
-            let answer = solution(elastica, problem);
-            let rounding = ErrorEstimates::rounding(&answer, problem);
-            let errors = ErrorEstimates::between(&solution(&coarse, problem), &answer).times(HALVING_ERROR_FRACTION);
-            let known = estimate + rounding.relative(&answer)?;
-            return known.is_finite().then_some((known, errors.plus(&rounding)));
+            return known;
         }
     }
 }
@@ -187,7 +191,7 @@ fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<Suppo
 }
 
 fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport> {
-    let mut out = Vec::new();
+    let mut out: Vec<ContactReport> = report_of_whole(elastica, problem).into_iter().collect();
     for (j, joint) in elastica.joints.iter().enumerate() {
         let (k, stretch) = match *joint {
             Joint::PointContact(k) => (k, None),
@@ -237,13 +241,7 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         r.set_samples(samples);
         let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
         if let Some(p) = stretch {
-            let l = p.nodes[0][LENGTH];
-            for (e, pair) in p.nodes.windows(2).enumerate() {
-                let half = elastica.state_in(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
-                let pressed =
-                    elastica.pressure(c, &pair[0]) + 4.0 * elastica.pressure(c, &half) + elastica.pressure(c, &pair[1]);
-                r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
-            }
+            r.normal_n += pressed_along(elastica, c, p);
             let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
             if let (Joint::ContactBegin(_), Some(next)) =
                 (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
@@ -266,6 +264,45 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         out.push(r);
     }
     out
+}
+
+/// Force along the normal of a contact on the piece that lies on it, N.
+fn pressed_along(elastica: &Elastica, contact: &Contact, piece: &Piece) -> f64 {
+    let Some(first) = piece.nodes.first() else { return 0.0 };
+    let of_element = |(u, g): (&[[f64; STATES]], &[f64])| {
+        let half = elastica.state_in(piece, 0.5 * (g[0] + g[1]));
+        let [from, middle, to] = [&u[0], &half, &u[1]].map(|u| elastica.pressure(contact, u));
+        (from + 4.0 * middle + to) * first[LENGTH] * (g[1] - g[0]) / 6.0
+    };
+    piece.nodes.windows(2).zip(piece.grid.windows(2)).map(of_element).sum()
+}
+
+/// The contact of a cable that lies on one surface from end to end; None where it does not.
+fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactReport> {
+    let [piece] = elastica.pieces.as_slice() else { return None };
+    let contact = elastica.contacts.get(piece.contact?)?;
+    let Owner::Obstacle(obstacle) = contact.owner else { return None };
+    let (first, last, middle) = (piece.nodes.first()?, piece.nodes.last()?, elastica.state_in(piece, 0.5));
+    let (at, normal) = (place(&middle), perp(tangent(&middle)) * -contact.sense);
+    let normal_n = pressed_along(elastica, contact, piece);
+    let mut report = ContactReport {
+        obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+        normal_n,
+        friction_n: contact.mobilised * normal_n,
+        tension_before_n: tension(first),
+        tension_after_n: tension(last),
+        begins_m: first[ARC],
+        ends_m: last[ARC],
+        arc_length_m: 0.5 * (first[ARC] + last[ARC]),
+        turn_deg: (last[ANGLE] - first[ANGLE]).to_degrees(),
+        x_m: at.x,
+        y_m: at.y,
+        normal: normal.into(),
+        state: if contact.slips || contact.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+        ..ContactReport::default()
+    };
+    report.set_samples(along(elastica, problem, piece));
+    Some(report)
 }
 
 /// A piece at as many places as it takes to draw it with straight lines.

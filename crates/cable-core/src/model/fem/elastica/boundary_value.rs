@@ -90,6 +90,13 @@ impl Contact {
         self.radius.filter(|r| *r > 0.0).map_or(0.0, |r| self.sense / r)
     }
 
+    /// True if two contacts are with one line or round.
+    pub(super) fn is_same_surface(&self, other: &Self) -> bool {
+        self.owner == other.owner
+            && self.radius == other.radius
+            && if self.radius.is_some() { self.at == other.at } else { (self.normal - other.normal).norm() < 1e-9 }
+    }
+
     /// True if it is a sharp corner: a cable slides over it, and none can lie on it.
     pub(super) fn is_point(&self) -> bool {
         self.radius == Some(0.0)

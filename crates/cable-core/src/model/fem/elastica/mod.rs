@@ -51,20 +51,22 @@ pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
-use crate::scene::SupportKind;
-use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
+use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use chain::{Chain, ChainInput, RestState, StabilityOutcome};
+use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
 
-/// Most of the tension somewhere by which that of a bent cable may fall for its flexible answer to
-/// be taken. Smaller: chains of bars for cables that they take for flexible ones; larger: the
-/// places where a slack cable bends sharply are those of a flexible one.
-const MAX_BEND_FRACTION: f64 = 1e-2;
+/// Layers of bending with which the continuation in EI begins, one after the other, in parts of the
+/// shortest free piece. Larger: the first guess, a flexible cable with layers, is too rough, and
+/// Newton's method ends nowhere or at a curl; smaller: more steps.
+const FIRST_LAYERS: [f64; 2] = [0.05, 0.005];
+
+/// Turn of a stretch in contact up to which it is straight, °. Larger: wraps are taken for struts.
+const MAX_STRAIGHT_TURN_DEG: f64 = 30.0;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
@@ -79,24 +81,41 @@ pub fn rest(
     flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    if let Some(limit) = flexible.and_then(|flexible| flexible_limit(problem, flexible, tolerance)) {
-        return Some((limit, Cost::default()));
-    }
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
-    let bent = flexible.and_then(|flexible| {
-        let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
-        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
-        keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
+    let bent = flexible.filter(|flexible| !chain::is_folded(problem, flexible)).and_then(|flexible| {
+        let bent_from_layer = |first_layer: f64| {
+            let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible, first_layer)?;
+            let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+            keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
+        };
+        FIRST_LAYERS.into_iter().find_map(bent_from_layer)
     });
+    let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
+    if crushed {
+        // What is pressed so bows, if anything lifts it.
+        let rest = rest_by_chain(chain_input, chain::rest_of_flexible(chain_input), tolerance);
+        return rest.filter(|(answer, _)| !lies_crushed(problem, answer)).or(bent);
+    }
     let chain = match &bent {
         // A cable may run away from an equilibrium: a chain that is let go there shows it.
         Some((answer, _)) => match chain::test_stability(chain_input, answer) {
             StabilityOutcome::Stays | StabilityOutcome::Unknown => return bent,
-            StabilityOutcome::Leaves(chain) => *chain,
+            StabilityOutcome::Leaves(chain) => Some(*chain),
             StabilityOutcome::Unstable => return None,
         },
-        None => chain::rest_of_flexible(chain_input)?,
+        None => chain::rest_of_flexible(chain_input),
     };
+    rest_by_chain(chain_input, chain, tolerance)
+}
+
+/// The resting place of a stiff cable from a chain of bars at rest: as an elastica where that is
+/// found, else as the chain on bars half as long.
+fn rest_by_chain(
+    chain_input: ChainInput<'_>,
+    chain: Option<Chain<'_>>,
+    tolerance: f64,
+) -> Option<(CableSolution, Cost)> {
+    let (problem, flexible, chain) = (chain_input.problem, chain_input.friction_source, chain?);
     let bent_from = |chain: &Chain<'_>| {
         let elastica = Elastica::from_chain(chain)?;
         let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
@@ -120,40 +139,22 @@ pub fn rest(
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
+/// True if an answer lies straight on a surface, pressed along itself with more than it bears if
+/// anything lifts it.
+fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
+    answer.contacts.iter().any(|contact| {
+        let [from, to] = contact.extent_m();
+        let lying = answer.nodes.iter().filter(|n| (from..=to).contains(&n.arc_length_m));
+        let push = lying.map(|n| -n.tension_n).reduce(smaller).unwrap_or(0.0);
+        let force = LYING_EULER * problem.bending_stiffness / ((to - from) * (to - from));
+        to > from && contact.turn_deg.abs() < MAX_STRAIGHT_TURN_DEG && push > force
+    })
+}
+
 /// Length over which a cable bends at the tension of an answer, √(EI/T), m.
 fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(f64::MIN_POSITIVE, larger);
     (problem.bending_stiffness / greatest).sqrt()
-}
-
-/// The answer for the flexible cable, where its stiffness changes less than the `tolerance`; None
-/// where it changes more, or where the flexible shape has angles, which stiffness rounds off.
-///
-/// A bend of curvature κ lowers the tension by EI κ²/2, and the cable leaves its support over a
-/// length √(EI/T) that is short beside 1/κ. The chain of bars knows neither on bars that are
-/// longer.
-fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
-    let has_angles = problem.supports.len() > 2
-        || !problem.loads.is_empty()
-        || problem.supports.iter().any(|s| s.angle.is_some() || s.kind == SupportKind::Pulley);
-    if has_angles || !flexible.breaks.is_empty() {
-        return None;
-    }
-    let greatest = flexible.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-    let fall = |n: &Node| problem.bending_stiffness * n.curvature_per_m * n.curvature_per_m;
-    let is_slight = |n: &Node| fall(n) <= smaller(MAX_BEND_FRACTION * n.tension_n, tolerance * greatest);
-    if !flexible.nodes.iter().all(is_slight) {
-        return None;
-    }
-    let force_n = flexible.nodes.iter().map(fall).fold(0.0, larger);
-    let bent = ErrorEstimates {
-        max_tension_n: Some(force_n),
-        support_force_n: Some(force_n),
-        contact_force_n: (!flexible.contacts.is_empty()).then_some(force_n),
-        position_m: Some(bend_length(problem, flexible)),
-    };
-    let assumptions = Assumptions { bending_stiffness_n_m2: problem.bending_stiffness, ..flexible.assumptions };
-    Some(CableSolution { assumptions, ..flexible.clone() }.known_to(flexible.errors.plus(&bent)))
 }
 
 /// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the

@@ -1,12 +1,21 @@
 //! The pieces of an elastica are read between their nodes, and get new nodes: where their layers
 //! ask for them, or at half the distance.
 
-use crate::model::fem::elastica::boundary_value::{Elastica, LENGTH, Piece, STATES, force};
+use crate::math::{Vec2, cross};
+use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, MOMENT, Piece, STATES, force, tangent};
 use crate::model::fem::free::places;
 
 /// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
 /// larger: its square is seen.
 const DIFFERENCE: f64 = 1e-2;
+
+/// Layers √(EI/T) to which an element shows how the cable bends. Smaller: states are read with less
+/// than their order; larger: errors of shear are seen as bends.
+const RESOLVED_LAYERS: f64 = 2.0;
+
+/// Turn of a layer (rad) that may be left at the node where elements become long beside it. Smaller:
+/// layers are refused that elements show well enough; larger: bends between nodes are not seen.
+const MAX_LEFT_TURN: f64 = 0.05;
 
 impl Elastica {
     /// Thickness λ of the layer in which bending fades beside a place with a tension (N), m; where
@@ -20,11 +29,17 @@ impl Elastica {
     /// The state at a place of a piece, on Hermite's quintic between its nodes. It is as exact
     /// there as the nodes are (the cubic is off by 3e-7 m where a cable is bent to 1 m within 10
     /// elements).
+    ///
+    /// An element that is longer than the layer λ does not see it: an error of a shear, δ, would
+    /// turn the quintic by (h/λ)² δ/T. Such an element is read as [`Self::outer_state`].
     pub(super) fn state_in(&self, piece: &Piece, x: f64) -> [f64; STATES] {
         let e = piece.grid.partition_point(|g| *g <= x).clamp(1, piece.grid.len() - 1) - 1;
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
         let h = piece.grid[e + 1] - piece.grid[e];
         let z = ((x - piece.grid[e]) / h).clamp(0.0, 1.0);
+        if piece.contact.is_none() && self.layer_of_long([a, b], h).is_some() {
+            return self.outer_state([a, b], z, h);
+        }
         let [(fa, ga), (fb, gb)] = [a, b].map(|u| {
             let f = self.slope(piece.contact, u);
             (f, self.second_slope(piece.contact, u, &f, h))
@@ -37,6 +52,44 @@ impl Elastica {
                 + h * (fa[i] * (z - 6.0 * z3 + 8.0 * z4 - 3.0 * z5) + fb[i] * (-4.0 * z3 + 7.0 * z4 - 3.0 * z5))
                 + 0.5 * h * h * (ga[i] * (z2 - 3.0 * z3 + 3.0 * z4 - z5) + gb[i] * (z3 - 2.0 * z4 + z5))
         })
+    }
+
+    /// The thickness √(EI/F) of the layer in a free element that is long beside it, m; None where
+    /// the element shows how the cable bends.
+    fn layer_of_long(&self, [a, b]: [&[f64; STATES]; 2], h: f64) -> Option<f64> {
+        let layer = (2.0 * self.bending / (force(a) + force(b)).norm()).sqrt();
+        (h * a[LENGTH] > RESOLVED_LAYERS * layer).then_some(layer)
+    }
+
+    /// True if no bend of a layer reaches an element that is long beside it: there the equations
+    /// carry it on without end, and a cable that turns back and forth from node to node balances.
+    pub(super) fn resolves_layers(&self) -> bool {
+        let is_resolved = |piece: &Piece| {
+            piece.contact.is_some()
+                || piece.nodes.windows(2).zip(piece.grid.windows(2)).all(|(u, g)| {
+                    let layer = self.layer_of_long([&u[0], &u[1]], g[1] - g[0]);
+                    let turn = |layer: f64| u.iter().all(|u| (u[MOMENT] * layer).abs() <= MAX_LEFT_TURN * self.bending);
+                    layer.is_none_or(turn)
+                })
+        };
+        self.pieces.iter().all(is_resolved)
+    }
+
+    /// The state at the part `z` of a free element that is long beside its layer. Its force changes
+    /// by its weight alone, so it is linear; the cable's direction is that of the force but for what
+    /// shear turns it by, which is small, as the moment is.
+    fn outer_state(&self, [a, b]: [&[f64; STATES]; 2], z: f64, h: f64) -> [f64; STATES] {
+        let mut u: [f64; STATES] = std::array::from_fn(|i| a[i] + z * (b[i] - a[i]));
+        let angle_between = |v: Vec2, w: Vec2| cross(v, w).atan2(v.dot(&w));
+        let sheared = [a, b].map(|u| angle_between(force(u), tangent(u)));
+        let turned = angle_between(force(a), force(&u));
+        u[ANGLE] = a[ANGLE] + turned + z * (sheared[1] - sheared[0]);
+        let slopes = [a, b].map(|u| self.slope(None, u));
+        for i in [0, 1] {
+            let [from, to] = slopes.map(|f| h * f[i] - (b[i] - a[i]));
+            u[i] += z * (1.0 - z) * (from * (1.0 - z) - to * z);
+        }
+        u
     }
 
     /// Change of the slope `f` of a state along a piece, by central differences over a part of an

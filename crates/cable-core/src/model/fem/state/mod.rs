@@ -6,7 +6,7 @@
 //! | `meshing.rs` | division into bars; the nodes of supports and loads |
 //! | `motion.rs` | positions, velocities and the past steps that BDF looks back to |
 //! | `step_setup.rs` | loads, support targets and wheels at an instant, into the step input |
-//! | `support_stop.rs` | a support driven into an obstacle stops in front of it |
+//! | `support_stop.rs` | a support driven into an obstacle stops in front of it; one that lets go there |
 //! | `outline_path.rs` | the robot's outline: its pose and the path it is led along in an advance |
 //! | `stick_slip.rs` | friction assumed at each sliding node against Coulomb's law at the solution |
 //! | `fold_imperfection.rs` | tiny offset of a collinear fold, a bifurcation point, so that it opens |
@@ -41,4 +41,4 @@ pub(in crate::model::fem) use stick_slip::{ChangedNodes, StickSlipChanges, Tried
 pub(in crate::model::fem) use stored_energy::{
     bending_energy, gravity_energy, kinetic_energy, kinetic_energy_of_step, stored_energy,
 };
-pub(in crate::model::fem) use support_stop::stopped_by_obstacles;
+pub(in crate::model::fem) use support_stop::{lay_down_released, stopped_by_obstacles};

@@ -1,7 +1,10 @@
-//! A support that is driven against an obstacle stops in front of it.
+//! A support that is driven against an obstacle stops in front of it, and one that stood on it
+//! leaves the cable there when it lets go.
 
 use crate::math::Vec2;
+use crate::model::fem::first_shape::PUSHED_OUT_REACHES;
 use crate::model::fem::mesh::Mesh;
+use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 
 /// Rounding of a gap, m.
@@ -34,4 +37,17 @@ pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh
         part *= 0.5;
     }
     from
+}
+
+/// Places the nodes of supports that let go between two times (s) on the surfaces on which they
+/// stood. A node that is held has no contact and may stand nearer than any force can press it.
+pub(in crate::model::fem) fn lay_down_released(cable: &mut CableState, [from, to]: [f64; 2]) {
+    let clear = PUSHED_OUT_REACHES * cable.contacts.barrier.reach;
+    for (support, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {
+        let Some(node) = node.filter(|_| support.holds_from(from) && !support.holds_from(to)) else { continue };
+        let at = cable.motion.positions[node];
+        if let Some(gap) = cable.problem.world.signed_gap(at, clear).filter(|g| g.gap_m < clear) {
+            cable.motion.positions[node] = at + gap.normal * (clear - gap.gap_m);
+        }
+    }
 }

@@ -6,7 +6,7 @@
 
 use crate::error::SolveError;
 use crate::model::fem::remesh::settle_down;
-use crate::model::fem::state::{CableState, renew_input};
+use crate::model::fem::state::{CableState, lay_down_released, renew_input};
 use crate::model::fem::stepper::{StepRequest, Stepper};
 use crate::model::fem::system::{Converged, Failure, FailureCause};
 use crate::model::tension_gauge::TensionGauge;
@@ -90,6 +90,7 @@ impl Stepper {
                     // feel them half a step late.
                     if self.cable.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
                         self.cable.motion.step_before = 0.0;
+                        lay_down_released(&mut self.cable, [start, to]);
                     }
                     if progress.finish(piece) {
                         return Ok(total);

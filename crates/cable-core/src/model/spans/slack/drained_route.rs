@@ -218,7 +218,7 @@ impl RouteDraining<'_> {
     /// above.
     fn is_below(&self, surface: usize, u: f64, v: f64) -> bool {
         let surface = &self.surfaces.all[surface];
-        if surface.height(u) <= v {
+        if surface.height(u) <= v + NONE_M {
             return true;
         }
         let Some(body) = self.bodies.get(surface.body) else { return false };

@@ -33,11 +33,12 @@ use crate::model::fem::first_shape::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
 pub(super) use contacts::ChainContact;
-pub(super) use relaxation::RestState;
+pub(super) use relaxation::{CLAMPED_EULER, LYING_EULER, RestState};
 
-/// A bar may be shorter than its material by this part in the answer of a flexible cable. A stiff
-/// cable has no folds: where the material lies closer, the chain is laid anew.
-const FOLDED_BAR_FRACTION: f64 = 0.5;
+/// Length of a bar in parts of its material below which an answer is folded there. Smaller: slack
+/// that a flexible cable lays down without a force crushes a stiff one; larger: chains are laid
+/// anew from shapes that would do.
+const FOLDED_BAR_FRACTION: f64 = 0.97;
 
 /// Shortest bar of an answer that is asked whether it is folded, in parts of the cable's length.
 const FOLDED_BAR_LENGTH_FRACTION: f64 = 1e-3;
@@ -135,8 +136,8 @@ fn nodes_along_route(problem: &Problem) -> Vec<Node> {
     leaning_way(problem).into_iter().map(node).collect()
 }
 
-/// True if material of an answer lies in folds.
-fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
+/// True if material of an answer lies in folds. A stiff cable has none.
+pub(super) fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
     let least = FOLDED_BAR_LENGTH_FRACTION * problem.length;
     answer.nodes.windows(2).any(|p| {
         let ds = p[1].arc_length_m - p[0].arc_length_m;
@@ -158,7 +159,12 @@ pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>>
         flexible.and_then(|l| Chain::along(ChainInput { friction_source: flexible, ..chain_input }, &l.nodes, 1.0));
     let of_route = || Chain::along(ChainInput { friction_source: None, ..chain_input }, &route, 1.0);
     let mut chain = of_flexible.or_else(of_route)?;
-    (chain.relax(1.0) == RestState::Stable).then_some(chain)
+    if chain.relax(1.0) != RestState::Stable {
+        return None;
+    }
+    let mut bowed = chain.clone();
+    let rests = bowed.bow_crushed() && bowed.relax(REDUCED_RESISTANCE_FACTOR) == RestState::Stable;
+    Some(if rests { bowed } else { chain })
 }
 
 /// Lets a chain go from an answer for the stiff cable, whose friction it keeps.

@@ -7,7 +7,7 @@
 //! resistance where it does not. Material that the first shape has no room for is paid out on the
 //! way. A chain that rests where it could give way is moved sideways and goes on.
 
-use crate::math::{Vec2, larger, perp};
+use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::elastica::chain::initial_mesh::PAY_OUT_RATE;
 use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
 use crate::model::fem::elastica::chain::{Chain, REDUCED_RESISTANCE_FACTOR};
@@ -61,6 +61,17 @@ const MAX_PERTURBATIONS: usize = 2;
 /// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put
 /// into obstacles.
 const PERTURBATION_FRACTION: f64 = 1e-2;
+
+/// Euler's force of a strut that is clamped at both ends, in EI/l².
+pub(in crate::model::fem::elastica) const CLAMPED_EULER: f64 = 4.0 * std::f64::consts::PI * std::f64::consts::PI;
+
+/// Push of a strut that lies on a surface, in EI/l², from which it bows away from it: Euler's force of
+/// one that is clamped at its middle too. Smaller: heavy struts that lie well are lifted, and come to
+/// one of several bows; larger: cables with slack are crushed along the ground.
+pub(in crate::model::fem::elastica) const LYING_EULER: f64 = 4.0 * CLAMPED_EULER;
+
+/// Cosine of the angle between two bars up to which a stretch is straight: half a radian.
+const STRAIGHT_COSINE: f64 = 0.88;
 
 /// The state in which a relaxation ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,6 +233,53 @@ impl Chain<'_> {
             let size = PERTURBATION_FRACTION * self.chain_input.problem.radius * phase.sin();
             self.positions[k] += perp(along) * (size / larger(along.norm(), 1e-300));
         }
+    }
+
+    /// Bows each straight stretch that is pressed with more than [`LYING_EULER`] away from what it
+    /// lies on, as far as its material wants; returns whether there was any that could
+    /// be. What lies on a surface is held by it and stays straight however much it is pressed, unless
+    /// something lifts it: no cable is laid as straight as that.
+    pub(super) fn bow_crushed(&mut self) -> bool {
+        let ei = self.chain_input.problem.bending_stiffness;
+        let mut bowed = false;
+        let mut first = 0;
+        while first < self.tension.len() {
+            let along = self.direction(first);
+            let is_of_it = |e: &usize| self.tension[*e] < 0.0 && along.dot(&self.direction(*e)) > STRAIGHT_COSINE;
+            let last = (first..self.tension.len()).take_while(is_of_it).last();
+            let Some(last) = last else {
+                first += 1;
+                continue;
+            };
+            let length: f64 = self.unstretched[first..=last].iter().sum();
+            let push = self.tension[first..=last].iter().fold(f64::INFINITY, |p, t| smaller(p, -t));
+            if push * length * length > LYING_EULER * ei {
+                bowed |= self.bow([first, last + 1], length, push);
+            }
+            first = last + 1;
+        }
+        bowed
+    }
+
+    /// Moves the nodes between two into half a wave that is longer than their chord by what the push
+    /// (N) has pressed out of their material; returns whether there is room for it.
+    fn bow(&mut self, [from, to]: [usize; 2], length: f64, push: f64) -> bool {
+        let chord = self.positions[to] - self.positions[from];
+        let normals = self.contacts.iter().filter(|t| (from..=to).contains(&t.node)).map(|t| t.gap.normal);
+        let up = normals.sum::<Vec2>() - self.body;
+        let across = perp(chord);
+        let across =
+            across * (if across.dot(&up) < 0.0 { -1.0 } else { 1.0 } / larger(chord.norm(), f64::MIN_POSITIVE));
+        let height = 2.0 * length / std::f64::consts::PI * (push / self.chain_input.problem.axial_stiffness).sqrt();
+        let mut moves = vec![Vec2::zeros(); self.positions.len()];
+        for k in (from + 1..to).filter(|&k| !self.held[k]) {
+            let part = (self.arc[k] - self.arc[from]) / (self.arc[to] - self.arc[from]);
+            moves[k] = across * (height * (std::f64::consts::PI * part).sin());
+        }
+        let Some((_, positions)) = self.clear_part(&moves, 1.0) else { return false };
+        self.positions = positions;
+        self.tension[from..to].fill(0.0);
+        true
     }
 
     /// Lets the bars grow to their material; returns whether all have it.

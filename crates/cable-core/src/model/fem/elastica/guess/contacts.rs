@@ -22,6 +22,10 @@ const CHAIN_CONTACT_BARS: f64 = 2.5;
 /// Length, in bars, from which a reported contact is a stretch.
 const REPORTED_STRETCH_BARS: f64 = 3.0;
 
+/// Distance, in bars, of a stretch of a chain's contacts from the cable's end up to which it reaches
+/// that end.
+const END_BARS: f64 = 2.0;
+
 /// Part of a wheel's friction from which it counts as slipping: the rest is rounding.
 const SLIPPING_FRACTION: f64 = 0.999;
 
@@ -47,13 +51,6 @@ pub(in crate::model::fem::elastica) fn contact_at(problem: &Problem, gap: &Gap, 
 /// The sense in which a cable of direction `t` passes a surface: +1 anticlockwise, −1 clockwise.
 fn sense_of(normal: Vec2, t: Vec2) -> f64 {
     if normal.dot(&perp(t)) > 0.0 { -1.0 } else { 1.0 }
-}
-
-/// True if two contacts are with one line or round.
-fn same_surface(a: &Contact, b: &Contact) -> bool {
-    a.owner == b.owner
-        && a.radius == b.radius
-        && (a.radius.is_some() && a.at == b.at || a.radius.is_none() && (a.normal - b.normal).norm() < 1e-9)
 }
 
 impl ElasticaGuess<'_> {
@@ -98,9 +95,23 @@ impl ElasticaGuess<'_> {
             let x = self.curve.position_at(first.arc);
             let direction = self.direction_at(middle, bar);
             let Some(contact) = contact_at(self.problem, &first.gap, x, direction) else { continue };
-            let extent = if is_stretch { [first.arc, to] } else { [middle, middle] };
+            let extent = if is_stretch { self.to_lying_ends([first.arc, to], bar) } else { [middle, middle] };
             self.attach_contact(contact, extent, middle);
         }
+    }
+
+    /// A stretch of contact, from the cable's end on or up to it where it comes within two bars of an
+    /// end that stands on a surface: a chain has no contact where it is held.
+    fn to_lying_ends(&self, [from, to]: [f64; 2], bar: f64) -> [f64; 2] {
+        let within = CONTACT_DISTANCE_FRACTION * self.problem.radius;
+        let lies = |s: f64| {
+            let gap = self.problem.world.signed_gap(self.curve.position_at(s), within);
+            gap.is_some_and(|g| g.gap_m <= within)
+        };
+        let length = self.elastica.length;
+        let begins = from < END_BARS * bar && lies(0.0);
+        let ends = length - to < END_BARS * bar && lies(length);
+        [if begins { 0.0 } else { from }, if ends { length } else { to }]
     }
 
     /// Attaches the contacts that the answer of a mesh reports.
@@ -137,7 +148,7 @@ impl ElasticaGuess<'_> {
                 .and_then(|g| contact_at(self.problem, &g, n.at(), direction))
                 .or_else(|| self.pulley_at(n.at(), direction, within));
             match (&mut open, touched) {
-                (Some((contact, [_, to])), Some(new)) if same_surface(contact, &new) => *to = n.arc_length_m,
+                (Some((contact, [_, to])), Some(new)) if contact.is_same_surface(&new) => *to = n.arc_length_m,
                 (_, new) => {
                     found.extend(open.take());
                     open = new.map(|c| (c, [n.arc_length_m; 2]));

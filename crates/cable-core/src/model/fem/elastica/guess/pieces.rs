@@ -1,10 +1,10 @@
 //! Contacts, holds and loads divide the cable of a first guess into pieces.
 
 use crate::math::Vec2;
-use crate::model::fem::elastica::boundary_value::{Elastica, Joint, Piece};
+use crate::model::fem::elastica::boundary_value::{Contact, Elastica, End, Joint, Piece};
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
-use crate::model::fem::free::places;
+use crate::model::fem::free::{nearest_turn, places};
 
 /// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts
 /// outside of where it converges; more: costs.
@@ -12,15 +12,14 @@ const FREE_ELEMENTS: usize = 32;
 /// See `FREE_ELEMENTS`.
 const LYING_ELEMENTS: usize = 8;
 
-/// Layer λ with which the continuation in EI begins, in parts of the shortest free piece. Larger:
-/// its first guess, a flexible cable with layers, is too rough; smaller: more steps.
-const FIRST_LAYER: f64 = 0.05;
-
 /// Shortest free piece that counts for that, in parts of the cable's length.
 const LEAST_FREE_PIECE_FRACTION: f64 = 1e-6;
 
 /// Length of a contact with a line, in layers, below which it is a point.
 const POINT_LAYERS: f64 = 4.0;
+
+/// Angle between a clamp and a surface, rad, below which they have one direction: rounding.
+const SAME_DIRECTION: f64 = 1e-9;
 
 /// Part of an arc that is given up where two contacts leave no cable between them.
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
@@ -31,8 +30,9 @@ fn turn_over(curve: &ReferenceCurve<'_>, a: &Attachment, length: f64) -> f64 {
 }
 
 impl ElasticaGuess<'_> {
-    /// Reduces the bending stiffness to the one with which the continuation begins.
-    pub(super) fn reduce_stiffness(&mut self) {
+    /// Reduces the bending stiffness to the one with which the continuation begins: that of a layer
+    /// of so many parts of the shortest free piece.
+    pub(super) fn reduce_stiffness(&mut self, first_layer: f64) {
         let elastica = &mut self.elastica;
         let (mut last, mut shortest) = (0.0, elastica.length);
         for a in &self.attachments {
@@ -42,7 +42,11 @@ impl ElasticaGuess<'_> {
             }
             last = a.to;
         }
-        let layer = FIRST_LAYER * shortest;
+        let free = elastica.length - last;
+        if free > LEAST_FREE_PIECE_FRACTION * elastica.length && free < shortest {
+            shortest = free;
+        }
+        let layer = first_layer * shortest;
         let soft = elastica.scale * layer * layer;
         if soft < elastica.bending {
             elastica.bending = soft;
@@ -52,6 +56,7 @@ impl ElasticaGuess<'_> {
     /// Divides the cable at its attachments; None where two of them leave no cable between them.
     pub(super) fn divide(&mut self) -> Option<()> {
         self.make_short_contacts_points();
+        self.leave_ends_to_their_holds();
         self.drop_lifted_lines();
         self.part_neighbours()?;
         self.make_pieces()
@@ -76,6 +81,37 @@ impl ElasticaGuess<'_> {
             if is_point {
                 let middle = 0.5 * (a.from + a.to);
                 *a = Attachment { from: middle, to: middle, joint: Joint::PointContact(k) };
+            }
+        }
+    }
+
+    /// Leaves some free cable at an end that cannot lie from its support on: where a clamp has
+    /// another direction than the surface, or a hinge stands on a round, which would bend the cable
+    /// there.
+    fn leave_ends_to_their_holds(&mut self) {
+        let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
+        let lies_from = |end: &End, contact: &Contact, s: f64| match end {
+            End::Held(_, Some(angle)) => {
+                let along = curve.angle_at(s, [0.0, length]);
+                let off = (nearest_turn(*angle, along) - along).abs();
+                off < SAME_DIRECTION && contact.curvature() == 0.0
+            }
+            End::Held(_, None) => contact.curvature() == 0.0,
+            End::Loaded(_) => true,
+        };
+        for a in &mut self.attachments {
+            let Joint::ContactBegin(k) = a.joint else { continue };
+            let contact = &elastica.contacts[k];
+            let part = |s: f64| {
+                (POINT_LAYERS * elastica.layer_thickness(curve.tension_at(s)))
+                    .min(SURRENDERED_ARC_FRACTION * (a.to - a.from))
+            };
+            let (first, last) = (part(a.from), part(a.to));
+            if a.from <= SAME_PLACE_FRACTION * length && !lies_from(&elastica.ends[0], contact, a.from) {
+                a.from += first;
+            }
+            if a.to >= (1.0 - SAME_PLACE_FRACTION) * length && !lies_from(&elastica.ends[1], contact, a.to) {
+                a.to -= last;
             }
         }
     }

@@ -111,24 +111,28 @@ impl Beam {
         let clear = |x: &f64| places.iter().chain(&[0.0, 1.0]).all(|y| (x - y).abs() > PLACE_SPACING);
         places.extend(self.peak(e, starts).filter(clear));
         places.sort_by(f64::total_cmp);
-        let mut from = 0.0;
+        places.push(1.0);
+        let per_moment = self.material.thermal_stretch / self.bending;
+        let (first, mut from, mut bent) = (out.len(), 0.0, 0.0);
         for x in places {
             let step = x - from;
             for (part, weight) in GAUSS_3 {
                 let x = from + part * step;
-                let t = self.tangent(self.angle(e, x));
-                let stretched = 1.0 + self.force(bar, x, starts).dot(&t) / self.material.axial_stiffness;
-                at += t * (weight * step * self.rest(e) * stretched);
+                let (t, force) = (self.tangent(self.angle(e, x)), self.force(bar, x, starts));
+                let length = weight * step * self.rest(e) * (1.0 + force.dot(&t) / self.material.axial_stiffness);
+                at += t * length;
+                bent -= per_moment * force.dot(&perp(t)) * length;
             }
             let force = self.force(bar, x, starts);
-            out.push(Point {
-                arc_length: bar.start + x * bar.ds,
-                at,
-                force,
-                tension: force.dot(&self.tangent(self.angle(e, x))),
-                curvature: curvatures[0] + x * (curvatures[1] - curvatures[0]),
-            });
+            let tension = force.dot(&self.tangent(self.angle(e, x)));
+            out.push(Point { arc_length: bar.start + x * bar.ds, at, force, tension, curvature: bent });
             from = x;
+        }
+        // The shear says how the curvature changes along the bar, its nodes from what to what.
+        out.pop();
+        let left = curvatures[1] - curvatures[0] - bent;
+        for point in &mut out[first..] {
+            point.curvature += curvatures[0] + left * (point.arc_length - bar.start) / bar.ds;
         }
     }
 
