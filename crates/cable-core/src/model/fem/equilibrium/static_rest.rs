@@ -4,7 +4,8 @@
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::relaxation::moved_away;
-use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, bow, depenetrate};
+use crate::model::fem::first_shape::{bow, depenetrate};
+use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way, put_outline};
 use crate::model::fem::results;
 use crate::model::fem::state::{CableState, prepare_input};

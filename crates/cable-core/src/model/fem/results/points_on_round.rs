@@ -2,8 +2,8 @@
 //! from halfway to the sliding node before, to where it leaves it, or halfway to the next.
 //!
 //! Their tension is what the weight of the cable makes of it, and friction that is mobilised
-//! evenly; where no friction leads from the tension at one end to that at the other it goes straight
-//! between them.
+//! evenly; where no friction leads from the tension at one end to that at the other it goes
+//! straight between them.
 
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
@@ -136,8 +136,8 @@ impl<'a> Round<'a> {
         };
         let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
         let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
-        // A last mark that the cable has come off, to be taken out after the step, is drawn with the
-        // round up to it.
+        // A last mark that the cable has come off, to be taken out after the step, is drawn with
+        // the round up to it.
         let came_off = before + after <= 0.0 && (self.shared[0] || self.shared[1]);
         if came_off { [before, after].map(|arc| larger(arc, 0.0)) } else { [before, after] }
     }

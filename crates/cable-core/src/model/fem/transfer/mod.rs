@@ -10,7 +10,8 @@ pub(in crate::model::fem) mod from_state;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, depenetrate, thread_pulleys};
+use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
+use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::state::renew_input;
 use crate::model::fem::stepper::Stepper;

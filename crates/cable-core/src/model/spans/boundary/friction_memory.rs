@@ -508,8 +508,8 @@ impl TensionProfile {
         }
     }
 
-    /// Takes a contact that slid from end to end, with friction `m`, as the new past. If its tension
-    /// ends before the end that is not drawn, the rest lies loose.
+    /// Takes a contact that slid from end to end, with friction `m`, as the new past. If its
+    /// tension ends before the end that is not drawn, the rest lies loose.
     fn commit_slip(&mut self, contact_path: &ContactPath<'_>, e: &Ends, [first, last]: [Breakpoint; 2], m: f64) {
         let drawn = e.drawn_side(m);
         let [from, to] = [[first, last][drawn], [first, last][1 - drawn]];
@@ -543,8 +543,8 @@ impl TensionProfile {
         }
     }
 
-    /// Takes a contact that slid from its ends up to two slip fronts, and stuck between them, as the
-    /// new past: between the fronts it keeps its `old` memory.
+    /// Takes a contact that slid from its ends up to two slip fronts, and stuck between them, as
+    /// the new past: between the fronts it keeps its `old` memory.
     fn commit_stick(
         &mut self,
         contact_path: &ContactPath<'_>,

@@ -56,8 +56,8 @@ impl CrestTensions {
 
 impl SlackSolver<'_> {
     /// The stretches between two points without tension, or from or to a support. Where a support
-    /// hangs nearby and the crest draws the cable tight there, a span bridges to it; returns whether
-    /// that was done at the end.
+    /// hangs nearby and the crest draws the cable tight there, a span bridges to it; returns
+    /// whether that was done at the end.
     ///
     /// # Errors
     /// On which side it is drawn tight, if that is it.
