@@ -498,7 +498,7 @@ impl Simulation {
         nodes.map(|n| n.tension_n).fold(0.0, larger)
     }
 
-    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run
+    /// Advances by a display frame: at most 0.1 s, so a stalled picture makes time run
     /// slower instead of a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is
     /// the speed to show.
     ///

@@ -180,7 +180,7 @@ impl TensionRanges {
 
     /// True if the runs beside this one part from it so far that its greatest tension depends on
     /// small differences, of mesh and step and so of how it began: the ends of a range are more
-    /// than [`SMALL_DIFFERENCES_RATIO`] times apart.
+    /// than `SMALL_DIFFERENCES_RATIO` times apart.
     #[must_use]
     pub fn depend_on_small_differences(&self) -> bool {
         [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > SMALL_DIFFERENCES_RATIO * from)
@@ -217,8 +217,8 @@ impl std::fmt::Debug for Timeline {
 }
 
 impl Timeline {
-    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or
-    /// [`QUASI_STATIC_STEP_S`] where that is None.
+    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): 1/240 s or
+    /// 1/60 s where that is None.
     ///
     /// # Errors
     /// [`SolveError::TimeStep`]: a step that is not positive, is no number, or is longer than

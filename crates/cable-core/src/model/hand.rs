@@ -8,7 +8,7 @@
 //! pulled harder and harder, not reached. The support is a node of the cable like any other. With
 //! both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again,
 //! of stiffness κ = k + c/Δt to a place p, so it is one more term of the energy that a step
-//! minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
+//! minimises, convex, and needs no exchange of forces and no limit of the step (`Hand::pull`).
 
 use super::smoothed_target::SmoothedTarget;
 use crate::math::{Vec2, larger};

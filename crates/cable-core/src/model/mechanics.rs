@@ -150,7 +150,7 @@ pub trait Mechanics: Send {
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
     /// From now on a hand at `hand_m` (m) holds a support by a spring
-    /// ([`super::hand::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// (`model/hand.rs`) in `Dynamic` steps, its free end no faster than
     /// [`super::Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A
     /// support without a node of its own (a pulley), and one of a robot, is dragged.
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {

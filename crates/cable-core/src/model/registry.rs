@@ -243,7 +243,7 @@ impl ModelSource {
     }
 }
 
-/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see `auto::choose`); where it
 /// chooses `spans`, `fem` stands behind it (`spans_then_fem.rs`).
 ///
 /// # Errors

@@ -33,7 +33,7 @@
 //!
 //! The work of the ground where it tips the vehicle over a corner takes nothing from its speed: on
 //! such ground its weight and the hitch do work that is not along the way, and
-//! [`RobotWork::ground_j`] is that.
+//! `RobotWork::ground_j` is that.
 //!
 //! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
 //! and jerk; `speed_balance.rs` solves for the speed that drive, tracks and cable leave of it.

@@ -18,7 +18,7 @@ pub(super) const HALVINGS: usize = 60;
 pub(in crate::model::spans) enum LooseShapes {
     /// Any.
     AnyTension,
-    /// Only those in which no cable that lies has tension ([`LooseSection::spreads`]). Then a crest
+    /// Only those in which no cable that lies has tension (`LooseSection::spreads`). Then a crest
     /// that draws ends the search, before the spans that it would hold are looked for.
     NoTension,
 }
