@@ -183,27 +183,24 @@ pub struct Figures {
     pub compared: Vec<ComparedEntry>,
 }
 
-/// Something of one cable, which is named where there are several.
+/// Something of one cable, which is named also where it is the only one.
 #[derive(Debug, Serialize)]
 pub struct OfCable<'a, T> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cable: Option<&'a str>,
+    pub cable: &'a str,
     #[serde(flatten)]
     pub of: T,
 }
 
 #[derive(Debug, Serialize)]
 pub struct Support<'a> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cable: Option<&'a str>,
+    cable: &'a str,
     #[serde(flatten)]
     support: &'a SupportReaction,
 }
 
 #[derive(Debug, Serialize)]
 pub struct NodeEntry<'a> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cable: Option<&'a str>,
+    cable: &'a str,
     arc_length_m: f64,
     x_m: f64,
     y_m: f64,
@@ -216,8 +213,7 @@ pub struct NodeEntry<'a> {
 
 #[derive(Debug, Serialize)]
 pub struct Contact<'a> {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    cable: Option<&'a str>,
+    cable: &'a str,
     obstacle: &'a str,
     x_m: f64,
     y_m: f64,
@@ -262,8 +258,7 @@ pub fn answer<'a>(
 ) -> Result<Answer<'a>, String> {
     check_finite(s)?;
     let top = s.max_tension();
-    let several = s.cables.len() > 1;
-    let name = |c: &'a CableSolution| several.then_some(c.name.as_str());
+    let name = |c: &'a CableSolution| c.name.as_str();
     let bends = s.cables.iter().filter_map(|c| c.tightest_bend.map(|of| OfCable { cable: name(c), of }));
     let pressures = s.cables.iter().filter_map(|c| c.sidewall_pressure.map(|of| OfCable { cable: name(c), of }));
     let mut out = Answer {
@@ -313,7 +308,7 @@ fn summary<'a>(of: &'a CableSummary, figures: &'a Figures) -> Summary<'a> {
     Summary { figures: of, end_stiffness: figures.stiffness.as_ref().map(own), neglected_bending }
 }
 
-fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {
+fn node<'a>(cable: &'a str, n: &Node) -> NodeEntry<'a> {
     NodeEntry {
         cable,
         arc_length_m: n.arc_length_m,
@@ -327,7 +322,7 @@ fn node<'a>(cable: Option<&'a str>, n: &Node) -> NodeEntry<'a> {
     }
 }
 
-fn contact<'a>(cable: Option<&'a str>, k: &'a ContactReport) -> Contact<'a> {
+fn contact<'a>(cable: &'a str, k: &'a ContactReport) -> Contact<'a> {
     Contact {
         cable,
         obstacle: &k.obstacle,

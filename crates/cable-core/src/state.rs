@@ -62,15 +62,15 @@ impl State {
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
     }
 
-    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if
-    /// nothing does.
+    /// Arc lengths between which it lies on a round of a radius (m); those of the place nearest to
+    /// its centre if it does not.
     #[must_use]
-    pub(crate) fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
+    pub(crate) fn on_round(&self, center: Vec2, radius: f64) -> Option<[f64; 2]> {
         let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;
         let (first, last) = (self.position_m.iter().position(on), self.position_m.iter().rposition(on));
         match (first.and_then(|k| self.arc_length_m.get(k)), last.and_then(|k| self.arc_length_m.get(k))) {
-            (Some(a), Some(b)) => Some(0.5 * (a + b)),
-            _ => self.nearest(center),
+            (Some(a), Some(b)) => Some([*a, *b]),
+            _ => self.nearest(center).map(|s| [s; 2]),
         }
     }
 

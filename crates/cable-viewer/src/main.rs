@@ -97,10 +97,12 @@ fn run(arguments: Arguments) -> Result<(), String> {
         ..eframe::NativeOptions::default()
     };
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
-        if let Some(software) = cc.wgpu_render_state.as_ref().and_then(SoftwarePainter::of) {
-            cc.egui_ctx.add_plugin(software);
-        }
+        let software = cc.wgpu_render_state.as_ref().and_then(SoftwarePainter::of);
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
+        if let Some(software) = software {
+            cc.egui_ctx.add_plugin(software);
+            app.draw_in_software();
+        }
         app.state.view.theme = theme;
         if let Some(path) = autosave::default_path() {
             app.enable_autosave(path);

@@ -8,6 +8,7 @@ use crate::geometry::handles;
 use crate::panels::robot;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, OpenPanels};
+use crate::widgets::field;
 
 /// Ctrl or ⌘ with a key.
 const fn with_command(key: Key) -> KeyboardShortcut {
@@ -108,8 +109,8 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     if (plain(Key::Delete) || plain(Key::Backspace)) && state.selection.selected.is_some() {
         commands.push(Command::Scene(SceneCommand::RemoveAll(state.selection.selected_items())));
     }
-    // An open menu or list closes first, and only it.
-    if !egui::Popup::is_any_open(ctx) && plain(Key::Escape) {
+    // An open menu or list closes first, and only it; what is typed is dropped first.
+    if !egui::Popup::is_any_open(ctx) && !field::was_typed_in(ctx) && plain(Key::Escape) {
         commands.push(Command::View(ViewCommand::Select(None)));
     }
 }

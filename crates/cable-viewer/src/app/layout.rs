@@ -333,7 +333,11 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
     let bar = &mut ui.spacing_mut().scroll;
     (bar.floating_allocated_width, bar.bar_width) = (SCROLL_BAR_WIDTH, SCROLL_BAR_WIDTH);
     // Contents that are too wide scroll: they must not push the canvas aside.
-    ScrollArea::both().id_salt(column.id()).auto_shrink(false).show(ui, |ui| {
+    let area = ScrollArea::both().id_salt(column.id()).auto_shrink(false);
+    // Another scene is read from its first figure on.
+    let is_opened = is_new(ui, Id::unique((column.id(), "opened")), state.ui.scenes_opened);
+    let area = if is_opened { area.scroll_offset(egui::Vec2::ZERO) } else { area };
+    area.show(ui, |ui| {
         let width = ui.available_width();
         for &section in column.sections() {
             let title = section.title();

@@ -171,6 +171,9 @@ fn file(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ("Quit", Some(&keys::QUIT), FileCommand::Quit),
     ] {
         let opens = command == FileCommand::AskOpen;
+        if ["Save", "Import map…", "Open run…", "Quit"].contains(&text) {
+            ui.separator();
+        }
         if entry(ui, text, shortcut) {
             commands.push(Command::File(command));
         }

@@ -4,7 +4,8 @@
 //!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `welcome_dialog`: the hints of the first minute, and what to begin with
-//! - `early_clicks`: clicks that come before the first frame
+//! - `frame_pacing`: fewer frames where there is no GPU
+//! - `held_clicks`: clicks that come before the first frame, or are over within one
 //! - `analysis_tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
@@ -14,9 +15,10 @@ pub mod analysis_tools;
 mod canvas_picture;
 mod dialogs;
 pub mod documentation_pictures;
-mod early_clicks;
 mod feedback_form;
 mod first_steps;
+mod frame_pacing;
+mod held_clicks;
 mod keys;
 mod layout;
 mod menu;
@@ -34,6 +36,7 @@ use std::time::{Duration, Instant};
 
 use cable_core::Scene;
 
+use crate::app::frame_pacing::{FramePacing, SOFTWARE_FRAME_INTERVAL};
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::{Autosave, Changes};
@@ -43,6 +46,7 @@ use crate::render::theme;
 use crate::state::analysis::hold;
 use crate::state::dialog::Dialog;
 use crate::state::job_questions::{bending_query_fits, friction_query, friction_query_fits};
+use crate::state::live::RestartCause;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::system;
 use crate::worker::Worker;
@@ -61,6 +65,7 @@ pub struct ViewerApp {
     pub state: AppState,
     worker: Worker,
     threaded: bool,
+    frame_pacing: FramePacing,
     /// As last sent to the window.
     title: String,
     /// Keeps unsaved changes on disk, in a window.
@@ -101,14 +106,16 @@ impl ViewerApp {
 
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
         theme::install(ctx);
-        ctx.add_plugin(early_clicks::EarlyClicks::default());
+        ctx.add_plugin(held_clicks::HeldClicks::default());
         // A press that stays where it is is a click, however long a frame takes meanwhile.
         ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
-        let worker = new_worker(ctx, threaded);
+        let frame_pacing = FramePacing::default();
+        let worker = new_worker(ctx, threaded, &frame_pacing);
         let mut app = Self {
             state: AppState::new(scene, path),
             worker,
             threaded,
+            frame_pacing,
             title: String::new(),
             autosave: None,
             pending_edits: VecDeque::new(),
@@ -125,6 +132,11 @@ impl ViewerApp {
         submit_new_scene(&mut app.state, &mut effects);
         app.perform_effects(ctx, effects);
         app
+    }
+
+    /// From now on the window is drawn without a GPU.
+    pub fn draw_in_software(&mut self) {
+        self.frame_pacing.every(SOFTWARE_FRAME_INTERVAL);
     }
 
     /// From now on unsaved changes are kept in a file; if there are some from a window that died,
@@ -226,7 +238,7 @@ impl ViewerApp {
                 scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
-            self.worker = new_worker(ctx, self.threaded);
+            self.worker = new_worker(ctx, self.threaded, &self.frame_pacing);
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
@@ -370,6 +382,8 @@ impl ViewerApp {
             commands.push(Command::File(command::FileCommand::Quit));
         }
         self.apply(&ctx, commands);
+        let runs = !self.state.live.playback.paused && self.pending_edits.is_empty();
+        self.frame_pacing.drawn(Instant::now(), runs);
         self.update_autosave(&ctx);
         if let Some((list, written)) = &mut self.recent_list
             && *written != self.state.ui.recent
@@ -402,8 +416,9 @@ impl ViewerApp {
             let of = state.live.latest.scene.as_deref();
             let [back, forward] = state.document.undo.neighbours();
             let scene = if forward == of { of } else { back.or(of) };
-            let scene = scene.cloned();
-            state.live.end_run(scene);
+            if let Some(scene) = scene.cloned() {
+                state.live.end_run(RestartCause::Edit(scene));
+            }
         }
         if let (Some(wall_s), false) = (&mut state.live.recording.solve_wall_s, report.answers.is_empty()) {
             *wall_s += report.snapshot.solve_wall_s;
@@ -446,10 +461,10 @@ impl ViewerApp {
     }
 }
 
-fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
+fn new_worker(ctx: &egui::Context, threaded: bool, frame_pacing: &FramePacing) -> Worker {
     if threaded {
-        let ctx = ctx.clone();
-        Worker::thread(move || ctx.request_repaint())
+        let (ctx, frame_pacing) = (ctx.clone(), frame_pacing.clone());
+        Worker::thread(move || ctx.request_repaint_after(frame_pacing.wait(Instant::now())))
     } else {
         Worker::inline()
     }

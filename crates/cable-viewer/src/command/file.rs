@@ -275,12 +275,13 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
         state.ui.add_recent(path.clone());
     }
     state.document = Document::new(scene, path);
+    state.ui.scenes_opened += 1;
     (state.selection.selected, state.selection.also_selected) = (None, Vec::new());
     (state.selection.hovered, state.analysis.tension_marker) = (None, None);
     state.live.playback.paused = true;
     state.live.robot_speed_command = None;
     state.live.reopened_run = None;
-    (state.live.earlier_run, state.live.reset_is_last, state.live.restart_is_reset) = (None, false, false);
+    (state.live.earlier_run, state.live.reset_is_last, state.live.reset_asked) = (None, false, None);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);

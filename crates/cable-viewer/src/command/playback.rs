@@ -2,6 +2,7 @@
 
 use crate::command::effects::{Effects, next_number, submit_edit};
 use crate::command::resume::{resume_from_shown, undo_restart};
+use crate::state::live::ResetOrigin;
 use crate::state::{AppState, Playback};
 use crate::worker::request::Request;
 
@@ -77,7 +78,8 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         PlaybackCommand::Reset => {
             state.live.playback.paused = true;
             state.live.show_time(None);
-            (state.live.restart_is_reset, state.live.robot_speed_command) = (true, None);
+            let (scene, robot_speed_command) = (state.document.scene.clone(), state.live.robot_speed_command.take());
+            state.live.reset_asked = Some(ResetOrigin { scene, robot_speed_command });
             let number = next_number(state);
             effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
         }

@@ -5,22 +5,47 @@ use cable_core::scene::SupportKind;
 use crate::command::effects::{Effects, next_number, submit_undone};
 use crate::state::AppState;
 use crate::state::dialog::Dialog;
-use crate::state::live::MIN_MOVE_M;
+use crate::state::live::{MIN_MOVE_M, ResetOrigin, RestartCause};
 use crate::state::undo::EditKind;
 use crate::worker::request::{Edit, EditStart, Request, Resume};
 
 /// Takes the last restart back.
 pub(super) fn undo_restart(state: &mut AppState, effects: &mut Effects) {
-    let scene = state.live.earlier_run.as_ref().and_then(|run| run.scene.clone());
-    if let Some(scene) = scene {
-        let present = state.document.scene.clone();
-        state.document.scene = state.document.undo.go_to(present, &scene);
+    let Some(run) = &state.live.earlier_run else { return };
+    let by_edit = matches!(run.cause, RestartCause::Edit(_));
+    let robot_speed_command = state.live.robot_speed_command;
+    let present = ResetOrigin { scene: state.document.scene.clone(), robot_speed_command };
+    if present.scene != *run.scene() {
+        state.document.scene = state.document.undo.go_to(present.scene.clone(), run.scene());
         state.document.validate();
+    }
+    if by_edit {
         submit_undone(state, effects);
     }
-    if state.live.undo_restart() {
-        resume_from_shown(state, effects);
+    match state.live.undo_restart(present) {
+        Some(RestartCause::Edit(_)) => resume_from_shown(state, effects),
+        Some(RestartCause::Reset(origin)) => undo_reset(state, origin, effects),
+        None => {}
     }
+}
+
+/// The run that a reset ended goes on, broken or not: the worker has kept it.
+fn undo_reset(state: &mut AppState, origin: ResetOrigin, effects: &mut Effects) {
+    state.live.playback.paused = true;
+    state.live.robot_speed_command = origin.robot_speed_command;
+    let edit = edit_of(state);
+    effects.request.merge(Request {
+        undo_reset: Some(Box::new(edit)),
+        robot: Some(origin.robot_speed_command),
+        number: next_number(state),
+        ..Request::default()
+    });
+}
+
+/// The scene, to be solved from where the cables are.
+fn edit_of(state: &AppState) -> Edit {
+    let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);
+    Edit { scene, model, settings, start: EditStart::PresentState }
 }
 
 /// Takes the answer shown as the present one: supports stand where they stood then.
@@ -47,12 +72,6 @@ pub(super) fn resume_from_shown(state: &mut AppState, effects: &mut Effects) {
     }
     state.document.validate();
     state.live.show_time(None);
-    let edit = Edit {
-        scene: state.document.scene.clone(),
-        model: state.solver.model,
-        settings: state.solver.settings,
-        start: EditStart::PresentState,
-    };
-    let resume = Some(Box::new(Resume { edit, answer }));
+    let resume = Some(Box::new(Resume { edit: edit_of(state), answer }));
     effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });
 }

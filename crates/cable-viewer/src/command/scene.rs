@@ -14,6 +14,7 @@ use crate::command::unique_name::unique;
 use crate::command::waypoint::add_waypoint;
 use crate::command::{blocked_route, clipboard};
 use crate::geometry::supports::is_broken;
+use crate::state::live::RestartCause;
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
 use crate::worker::engine::is_quasi_static;
@@ -205,7 +206,10 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
 /// Returns whether an undo or redo leads to the scene of the run that an edit ended, with nothing
 /// run since.
 fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
-    let scene = state.live.earlier_run.as_ref().and_then(|run| run.scene.as_ref());
+    let scene = state.live.earlier_run.as_ref().and_then(|run| match &run.cause {
+        RestartCause::Edit(scene) => Some(scene),
+        RestartCause::Reset(_) => None,
+    });
     let [back, forward] = state.document.undo.neighbours();
     let to = if *command == SceneCommand::Undo { back } else { forward };
     scene.is_some() && to == scene && !state.live.has_run()

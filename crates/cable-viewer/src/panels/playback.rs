@@ -1,6 +1,6 @@
 //! The playback panel pauses, steps and resets time and sets its speed.
 
-use egui::{Button, Ui};
+use egui::{Button, Color32, Label, RichText, TextStyle, Ui};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Freshness, Playback};
@@ -18,12 +18,16 @@ const MIN_REAL_TIME_FRACTION: f64 = 0.9;
 /// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to
 /// “Play”.
 const BUTTON_WIDTH: f32 = 72.0;
+/// Narrowest row with a slider of the speed, points: below, the time and how it runs stand in its
+/// place, and the speed is typed.
+const MIN_SLIDER_ROW_WIDTH: f32 = 740.0;
 /// Width of the typed speed, points.
 const SPEED_WIDTH: f32 = 56.0;
 
-/// Draws it.
+/// Draws it, in one row at every width: a second one would move all above it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
+        let with_slider = ui.available_width() >= MIN_SLIDER_ROW_WIDTH;
         let mut button = |ui: &mut Ui, (icon, text): (Icon, &str), help: &str, command: PlaybackCommand| {
             if icon::text_button(ui, icon, text, BUTTON_WIDTH).on_hover_text(help).clicked() {
                 commands.push(Command::Playback(command));
@@ -37,25 +41,90 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         button(ui, (Icon::Step, "Step"), "One sixtieth of a second, then pause", PlaybackCommand::Step);
         ui.separator();
-        speed(ui, state, commands);
+        speed(ui, state, with_slider, commands);
         ui.separator();
-        let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
-        ui.label(format!("Time {time_s:.3} s")).on_hover_text("Simulated time since the start");
-        real_time(ui, state);
-        ui.separator();
-        status(ui, state);
+        show_status(ui, status(state));
     });
 }
 
-fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let label = ui.label("Speed").id;
-    let rail = SliderRange { ends: [Playback::MIN_SPEED, Playback::MAX_SPEED], logarithmic: true };
-    let slid = slider::ui(ui, state.live.playback.speed, rail);
-    field::name(&slid.response, "Speed slider");
-    if let Some(speed) = slid.value {
-        commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
+/// A part of the status, which is told on hover only where the row has no room for it.
+struct StatusItem {
+    text: String,
+    help: String,
+    tone: Tone,
+    importance: Importance,
+}
+
+#[derive(Clone, Copy)]
+enum Tone {
+    Plain,
+    Weak,
+    Warning,
+}
+
+/// The order in which parts of the status get their room.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Importance {
+    Fault,
+    Time,
+    Answer,
+    File,
+    Model,
+}
+
+/// Room of a line between two parts and of the space around it, points.
+const SEPARATOR_WIDTH: f32 = 22.0;
+/// Room of the sign for what is told on hover only, points.
+const ELLIPSIS_WIDTH: f32 = 20.0;
+
+fn show_status(ui: &mut Ui, items: Vec<StatusItem>) {
+    let font = TextStyle::Body.resolve(ui.style());
+    let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
+    let widths: Vec<f32> = items.iter().map(|item| width(&item.text).ceil() + SEPARATOR_WIDTH).collect();
+    let mut by_importance: Vec<usize> = (0..items.len()).collect();
+    by_importance.sort_by_key(|&k| items[k].importance);
+    let all: f32 = widths.iter().sum();
+    let room = ui.available_width() + SEPARATOR_WIDTH;
+    let mut left = if all <= room { room } else { room - ELLIPSIS_WIDTH };
+    let mut fits = vec![false; items.len()];
+    for k in by_importance {
+        fits[k] = widths[k] <= left;
+        left -= if fits[k] { widths[k] } else { 0.0 };
     }
-    slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::drag_help(true)));
+    let mut left_out = Vec::new();
+    let mut is_first = true;
+    for (item, fits) in items.into_iter().zip(fits) {
+        if !fits {
+            left_out.push(item.text);
+            continue;
+        }
+        if !std::mem::take(&mut is_first) {
+            ui.separator();
+        }
+        let visuals = ui.visuals();
+        let colour = match item.tone {
+            Tone::Plain => visuals.text_color(),
+            Tone::Weak => visuals.weak_text_color(),
+            Tone::Warning => visuals.warn_fg_color,
+        };
+        ui.add(Label::new(RichText::new(item.text).color(colour)).extend()).on_hover_text(item.help);
+    }
+    if !left_out.is_empty() {
+        ui.label("…").on_hover_text(left_out.join("\n"));
+    }
+}
+
+fn speed(ui: &mut Ui, state: &AppState, with_slider: bool, commands: &mut Vec<Command>) {
+    let label = ui.label("Speed").id;
+    if with_slider {
+        let rail = SliderRange { ends: [Playback::MIN_SPEED, Playback::MAX_SPEED], logarithmic: true };
+        let slid = slider::ui(ui, state.live.playback.speed, rail);
+        field::name(&slid.response, "Speed slider");
+        if let Some(speed) = slid.value {
+            commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
+        }
+        slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::drag_help(true)));
+    }
     let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
@@ -75,55 +144,60 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn real_time(ui: &mut Ui, state: &AppState) {
-    // The last frame keeps the speed that it was reached at.
-    let Some(reached) = state.live.snapshot.real_speed.filter(|_| !state.live.playback.paused) else {
-        ui.weak(if state.live.playback.paused { "Paused" } else { "Starting…" });
-        return;
-    };
-    let asked = state.live.playback.speed;
-    let text = format!("Runs at {}", format::times(reached));
-    let help = "Simulated seconds per second actually reached";
-    if reached < MIN_REAL_TIME_FRACTION * asked {
-        let slow = format!("{text} of {}", format::times(asked));
-        ui.colored_label(ui.visuals().warn_fg_color, slow)
-            .on_hover_text(format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help"));
-    } else {
-        ui.label(text).on_hover_text(help);
-    }
-}
-
-/// How the solver is doing, beside the transport.
-fn status(ui: &mut Ui, state: &AppState) {
+/// How time runs and how the solver is doing.
+fn status(state: &AppState) -> Vec<StatusItem> {
+    let plain = |text: String, help: String, importance| StatusItem { text, help, tone: Tone::Plain, importance };
+    let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
+    let mut items = vec![
+        plain(format!("Time {time_s:.3} s"), "Simulated time since the start".to_owned(), Importance::Time),
+        pace(state),
+    ];
     if let Some(solution) = &state.live.snapshot.solution {
-        ui.label(format!("{} model", labels::model(solution.model))).on_hover_text(sentence(&solution.reason));
-        ui.separator();
+        let model = format!("{} model", labels::model(solution.model));
+        items.push(plain(model, sentence(&solution.reason), Importance::Model));
     }
     let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);
-    match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
-        (Some(seconds), ..) => {
-            ui.label(labels::solving(seconds)).on_hover_text("The answer to the last edits is being sought");
-        }
+    let (text, help) = match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
+        (Some(seconds), ..) => (labels::solving(seconds), "The answer to the last edits is being sought".to_owned()),
         (None, Freshness::Outdated, _) => {
-            ui.label("Not solved");
+            ("Not solved".to_owned(), "The scene has no answer: see the warnings".to_owned())
         }
         (None, _, Some(latency)) => {
             let help = format!("From the last edit to the first frame that shows it. {solved}");
-            ui.label(format!("Updated in {:.0} ms", latency * 1e3)).on_hover_text(help);
+            (format!("Updated in {:.0} ms", latency * 1e3), help)
         }
-        (None, _, None) => {
-            ui.label(solved);
-        }
-    }
+        (None, _, None) => (solved, "Wall time of the last answer".to_owned()),
+    };
+    items.push(plain(text, help, Importance::Answer));
     if let Some(path) = &state.ui.written {
-        ui.separator();
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.clone());
-        let label = ui.add(egui::Label::new(format!("Saved {name}")).truncate());
-        label.on_hover_text(whole.display().to_string());
+        items.push(plain(format!("Saved {name}"), whole.display().to_string(), Importance::File));
     }
     if let Some(fault) = &state.ui.autosave_fault {
-        ui.separator();
-        ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
+        let (text, help) = ("Changes are not kept for recovery".to_owned(), fault.clone());
+        items.push(StatusItem { text, help, tone: Tone::Warning, importance: Importance::Fault });
+    }
+    items
+}
+
+/// How fast time runs.
+fn pace(state: &AppState) -> StatusItem {
+    let item = |text: String, help: String, tone| StatusItem { text, help, tone, importance: Importance::Time };
+    // The last frame keeps the speed that it was reached at.
+    let Some(reached) = state.live.snapshot.real_speed.filter(|_| !state.live.playback.paused) else {
+        return match state.live.playback.paused {
+            true => item("Paused".to_owned(), "Time stands still".to_owned(), Tone::Weak),
+            false => item("Starting…".to_owned(), "The first step is being made".to_owned(), Tone::Weak),
+        };
+    };
+    let asked = state.live.playback.speed;
+    let text = format!("Runs at {}", format::times(reached));
+    let help = "Simulated seconds per second actually reached".to_owned();
+    if reached < MIN_REAL_TIME_FRACTION * asked {
+        let help = format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help");
+        item(format!("{text} of {}", format::times(asked)), help, Tone::Warning)
+    } else {
+        item(text, help, Tone::Plain)
     }
 }

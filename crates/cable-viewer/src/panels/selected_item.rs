@@ -15,7 +15,6 @@ use crate::panels::scene::{self, loads, obstacles, supports};
 use crate::panels::{cable, environment, robot, solver};
 use crate::state::{AppState, Item};
 use crate::units::format;
-use crate::units::unit::Unit;
 use crate::widgets::{field, readout};
 
 /// Draws it.
@@ -116,14 +115,12 @@ fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize)
         ("Force on it", format::force(s.reaction_x_n.hypot(s.reaction_y_n)), "Force of the cable on the support"),
         ("  to the right", format::force(s.reaction_x_n), "Its horizontal component"),
         ("  upwards", format::force(s.reaction_y_n), "Its vertical component"),
-        ("Place", format::position(place), "Where it is now"),
+        ("Now at", format::position(place), "Where it is at this time; the position above is where it is sent"),
     ];
     if torn_off {
         rows.push(("Holds", "nothing, torn off".to_owned(), "The cable broke away from it"));
         return rows;
     }
-    let help = "Unstretched length from the start of the cable";
-    rows.push(("On the cable", Unit::COORDINATE.text(s.arc_length_m), help));
     for (name, tension, help) in [
         ("Tension before", s.tension_before_n, "On the side of the start of the cable"),
         ("Tension after", s.tension_after_n, "On the side of the end of the cable"),
@@ -161,7 +158,7 @@ fn of_load(state: &AppState, answer: &Solution, k: usize) -> Vec<Figure> {
     let steady = load.force_n.map(|[x, y]| ("Force", format::force(x.hypot(y)), "The same at every time"));
     let there = [
         ("Tension there", format::force(node.tension_n), "Tension of the cable beside it"),
-        ("Place", format::position([node.x_m, node.y_m]), "Where it acts now"),
+        ("Now at", format::position([node.x_m, node.y_m]), "Where it acts at this time"),
     ];
     steady.into_iter().chain(there).collect()
 }

@@ -5,6 +5,7 @@ use egui::{Color32, Label, Rect, RectAlign, RichText, Sense, Slider, Stroke, Tex
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
+use crate::state::live::RestartCause;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::widgets::checkbox_and_radio::checkbox;
@@ -63,9 +64,14 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     if let Some(run) = &state.live.earlier_run {
-        let help = match &run.scene {
-            None => "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)",
-            Some(_) => "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)",
+        let help = match &run.cause {
+            RestartCause::Reset(_) if state.live.reset_is_last => {
+                "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
+            }
+            RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
+            RestartCause::Edit(_) => {
+                "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)"
+            }
         };
         if ui.button("Undo restart").on_hover_text(help).clicked() {
             push(PlaybackCommand::UndoRestart);

@@ -146,13 +146,22 @@ pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         icon::sign(ui, sign, colour);
-        let text = if entries.len() == 1 { "1 warning".to_owned() } else { format!("{} warnings", entries.len()) };
+        let text = count(&entries);
         let row = ui.add(Button::selectable(false, text));
         if row.on_hover_text(format!("The first: {}. Click: zooms on it", worst.title)).clicked() {
             show(worst, commands);
             commands.push(Command::View(ViewCommand::ShowPanels(OpenPanels { results: true, ..state.ui.panels })));
         }
     });
+}
+
+/// “2 warnings, 1 note”: a note asks nothing of anyone.
+fn count(entries: &[Entry]) -> String {
+    let notes = entries.iter().filter(|e| e.severity == Severity::Note).count();
+    let counted = [(entries.len() - notes, "warning"), (notes, "note")];
+    let named = counted.into_iter().filter(|(n, _)| *n > 0);
+    let words: Vec<String> = named.map(|(n, word)| format!("{n} {word}{}", if n == 1 { "" } else { "s" })).collect();
+    words.join(", ")
 }
 
 /// Their titles with their number, and what leads to the place of each or to their list.

@@ -13,8 +13,12 @@ use crate::units::format::round_step;
 const LIMIT_IN_VIEW_FROM: f64 = 0.5;
 /// Free room above the data, as a share of their range.
 const HEADROOM: f64 = 0.12;
-/// Part of an axis at its end in which a number with its unit would be cut.
-const UNIT_MARGIN: f64 = 0.03;
+/// Room (points) that half of a number with its unit takes on the horizontal axis: nearer to the
+/// end it would be cut there, so it is drawn before the end instead.
+const HALF_LABEL_WIDTH: f32 = 18.0;
+/// Room (points) at the start of that axis in which a number would lie on the lowest one of the
+/// vertical axis.
+const LEFT_END_WIDTH: f32 = 5.0;
 
 /// Lowest and highest value in view, SI.
 pub(super) fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f64; 2] {
@@ -45,18 +49,45 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// As [`checkbox_and_radio`]; the last number that is not cut by the end of its axis has the unit,
-/// so that no line of the graph is spent on it.
+/// As [`tick`]; the last number of an axis has the unit, so that no line of the graph is spent on
+/// it.
 pub(super) fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
-    let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
-    let last = mark.value <= end && mark.value + mark.step_size > end;
+    let last = mark.value + mark.step_size > *shown.end();
     if last { format!("{} {symbol}", tick(mark)) } else { tick(mark) }
 }
 
-/// As [`tick_with_unit`] on the horizontal axis, whose end cuts a number that stands there.
-pub(super) fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
-    let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
-    if mark.value > end { String::new() } else { tick_with_unit(mark, shown, symbol) }
+/// As [`tick_with_unit`] on a horizontal axis of so many points; [`ends_across`] stand in the place
+/// of numbers at its ends.
+pub(super) fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str, width: f32) -> String {
+    if end_at(mark.value, shown, width).is_some() { String::new() } else { tick_with_unit(mark, shown, symbol) }
+}
+
+/// The numbers at the ends of a horizontal axis, to be written inside of the ends: the right one
+/// would be cut there, and the left one would lie on the lowest number of the other axis. `parts`:
+/// as of its [`grid_marks`].
+pub(super) fn ends_across(shown: RangeInclusive<f64>, parts: f64, symbol: &str, width: f32) -> [Option<String>; 2] {
+    let input = GridInput { bounds: (*shown.start(), *shown.end()), base_step_size: 1.0 };
+    let marks = grid_marks(input, parts);
+    [(AxisEnd::Left, marks.first()), (AxisEnd::Right, marks.last())].map(|(end, mark)| {
+        let mark = mark.filter(|m| end_at(m.value, &shown, width) == Some(end))?;
+        Some(tick_with_unit(*mark, &shown, symbol))
+    })
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum AxisEnd {
+    Left,
+    Right,
+}
+
+fn end_at(value: f64, shown: &RangeInclusive<f64>, width: f32) -> Option<AxisEnd> {
+    let (start, end) = (*shown.start(), *shown.end());
+    let per_point = (end - start) / f64::from(width.max(1.0));
+    if value > end - f64::from(HALF_LABEL_WIDTH) * per_point {
+        Some(AxisEnd::Right)
+    } else {
+        (value < start + f64::from(LEFT_END_WIDTH) * per_point).then_some(AxisEnd::Left)
+    }
 }
 
 #[cfg(test)]
@@ -75,11 +106,20 @@ mod tests {
         assert!(wide[1] > 200.0, "the ribbon is in view: {wide:?}");
     }
 
-    /// The 3.0 at the end of a cable of 3 m was cut in half by the edge of its graph.
+    /// The 3.0 at the end of a cable of 3 m was cut in half by the edge of its graph; then it was
+    /// left out, and the unit stood at the 2.5. The 0 at its start lay on that of the other axis.
     #[test]
-    fn no_number_stands_where_the_end_of_its_axis_cuts_it() {
-        let texts = [2.0, 2.5, 3.0].map(|value| tick_across(GridMark { value, step_size: 0.5 }, &(0.0..=3.0), "m"));
-        assert_eq!(texts, ["2.0", "2.5 m", ""]);
+    fn the_last_number_of_an_axis_is_whole_and_has_the_unit() {
+        let across = |end: f64| {
+            let text = |value| tick_across(GridMark { value, step_size: 0.5 }, &(0.0..=end), "m", 300.0);
+            ([0.0, 2.5, 3.0].map(text), ends_across(0.0..=end, 6.0, "m", 300.0))
+        };
+        let three = |a: &str, b: &str, c: &str| [a.to_owned(), b.to_owned(), c.to_owned()];
+        let (first, last) = (Some("0.0".to_owned()), Some("3.0 m".to_owned()));
+        assert_eq!(across(3.0), (three("", "2.5", ""), [first.clone(), last]));
+        assert_eq!(across(3.4), (three("", "2.5", "3.0 m"), [first, None]));
+        let up = |value| tick_with_unit(GridMark { value, step_size: 50.0 }, &(0.0..=101.0), "N");
+        assert_eq!([50.0, 100.0].map(up), ["50", "100 N"]);
     }
 
     #[test]

@@ -2,19 +2,21 @@
 //!
 //! - `along_cable`, `over_time`: what each graph shows
 //! - `axes`: ranges, and the numbers along them
+//! - `corners`: the pieces that a line is drawn in
 //! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along_cable;
 mod axes;
+mod corners;
 mod cursors;
 mod keys;
 pub mod over_time;
 
-use egui::{Align2, Color32, Id, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
-use egui_plot::{HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
+use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
-use crate::plot::axes::{grid_marks, tick_across, tick_with_unit, vertical_range};
+use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
 use crate::record::plotted_quantity::Measure;
 use crate::record::series::{Series, line_style, value_at};
@@ -44,6 +46,8 @@ const MIN_HEIGHT: f32 = 42.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
 /// to touch.
 const X_TICK_SPACING: f32 = 66.0;
+/// Width of the numbers beside a graph, points.
+const VALUES_WIDTH: f32 = 44.0;
 /// Height of the numbers below a graph, points.
 const TICK_LABELS_HEIGHT: f32 = 18.0;
 /// Distance of numbers on the vertical axis, points.
@@ -163,12 +167,18 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(MIN_HEIGHT);
     let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
+    let width = ui.available_width() - VALUES_WIDTH;
     let rows = f64::from((height - TICK_LABELS_HEIGHT) / Y_TICK_SPACING).max(1.0);
+    // Numbers are as far apart as they are asked to be: none of them is faint.
+    let axis = |hints: AxisHints<'static>| hints.label_spacing(Rangef::new(1.0, 2.0));
+    let across_axis = axis(AxisHints::new_x());
+    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, across_symbol, width));
+    let up_axis = axis(AxisHints::new_y()).min_thickness(VALUES_WIDTH);
+    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, symbol));
     let plot = Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
-        .y_axis_min_width(44.0)
         // As fine as that of the canvas: lines of data stand off it.
         .grid_color(theme::palette(ui.visuals()).grid_zero)
         .allow_drag(!follow)
@@ -179,8 +189,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .allow_axis_zoom_drag(!follow)
         .x_grid_spacer(|input| grid_marks(input, columns))
         .y_grid_spacer(|input| grid_marks(input, rows))
-        .x_axis_formatter(|mark, shown| tick_across(mark, shown, across_symbol))
-        .y_axis_formatter(|mark, shown| tick_with_unit(mark, shown, symbol))
+        .custom_x_axes(vec![across_axis])
+        .custom_y_axes(vec![up_axis])
         .label_formatter(|at| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
             Some(read(position.x))
@@ -207,7 +217,14 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
                 plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
                 continue;
             }
-            plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
+            let transform = *plot.transform();
+            let to_screen = |p: [f64; 2]| transform.position_from_point(&p.into());
+            let pieces =
+                if style == LineStyle::Solid { corners::pieces(&points, to_screen) } else { vec![&points[..]] };
+            for piece in pieces {
+                let piece = egui_plot::Line::new(line.name.clone(), piece.to_vec());
+                plot.line(piece.color(colour).width(width).style(style));
+            }
         }
         draw_limits(plot, graph, high, si);
         if let Some(hint) = graph.hint {
@@ -221,6 +238,16 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     name_limits(ui, graph, &response.transform, high, si);
+    let in_view = response.transform.bounds();
+    let in_view = in_view.min()[0]..=in_view.max()[0];
+    let frame = *response.transform.frame();
+    let ends = [(frame.left_bottom(), Align2::LEFT_TOP), (frame.right_bottom(), Align2::RIGHT_TOP)];
+    for ((at, align), number) in ends.into_iter().zip(ends_across(in_view, columns, across_symbol, width)) {
+        let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+        if let Some(number) = number {
+            ui.painter().text(at, align, number, font, colour);
+        }
+    }
     let asked = response.inner;
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];

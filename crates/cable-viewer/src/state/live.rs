@@ -30,12 +30,13 @@ pub struct Live {
     pub history: History,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Option<ReopenedRun>,
-    /// The run that the last restart ended, until the next one or another scene.
+    /// The run that the last restart ended, until the next one or another scene; or the run since,
+    /// where a reset was taken back.
     pub earlier_run: Option<Box<EarlierRun>>,
     /// The reset is the last thing that was done: undo takes it back.
     pub reset_is_last: bool,
-    /// The next history that restarts is that of a reset.
-    pub restart_is_reset: bool,
+    /// A reset whose answer has not come yet: the next history that restarts is its.
+    pub reset_asked: Option<ResetOrigin>,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_speed_command: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
@@ -51,24 +52,31 @@ impl Live {
 
     /// Begins recording anew, for another scene or after a reset; what a reset ends is kept.
     pub fn restart_history(&mut self) {
-        if std::mem::take(&mut self.restart_is_reset) {
-            self.reset_is_last = self.end_run(None);
-        } else {
-            self.end_run(None);
-            self.earlier_run = None;
+        match self.reset_asked.take() {
+            // A second reset finds nothing that has run, and the first can still be taken back.
+            Some(origin) => self.reset_is_last |= self.end_run(RestartCause::Reset(origin)),
+            None => {
+                self.forget_run();
+                self.earlier_run = None;
+            }
         }
     }
 
     /// Puts the run so far away, if there is one, and begins recording anew; whether there was one.
-    /// `scene`: the scene that it was of, where an edit ends it.
-    pub fn end_run(&mut self, scene: Option<Scene>) -> bool {
-        let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
-        self.recording.looped = recording.looped;
-        let moved = recording.span_s().is_some_and(|[first, last]| last > first);
+    pub fn end_run(&mut self, cause: RestartCause) -> bool {
+        let moved = self.has_run();
+        let (recording, history) = self.forget_run();
         if moved {
-            self.earlier_run = Some(Box::new(EarlierRun { recording, history, scene }));
+            self.earlier_run = Some(Box::new(EarlierRun { recording, history, cause }));
         }
         moved
+    }
+
+    /// Begins recording anew; returns what was recorded.
+    fn forget_run(&mut self) -> (Recording, History) {
+        let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
+        self.recording.looped = recording.looped;
+        (recording, history)
     }
 
     /// True if time has run since the last start.
@@ -77,19 +85,30 @@ impl Live {
         self.recording.span_s().is_some_and(|[first, last]| last > first)
     }
 
-    /// Puts back what was recorded before the last restart and shows its end; whether there was
-    /// any. After an edit the end is that of the scene before it, while the cable was whole.
-    pub fn undo_restart(&mut self) -> bool {
+    /// Puts back what was recorded before the last restart and shows its end; returns what had
+    /// ended it. After an edit the end is that of the scene before it, while the cable was whole;
+    /// after a reset it is the present, to which the worker goes back, and what has run since is
+    /// kept in its place. `present`: the window as it is.
+    pub fn undo_restart(&mut self, present: ResetOrigin) -> Option<RestartCause> {
         self.reset_is_last = false;
-        let Some(before) = self.earlier_run.take() else { return false };
-        (self.recording, self.history) = (before.recording, before.history);
-        let mut last_s = self.recording.span_s().map(|[_, last]| last);
-        if let Some(scene) = &before.scene {
-            let of_scene = |a: &&Solution| a.cables.iter().all(|c| c.breaks.is_empty()) && supports_as_in(a, scene);
-            last_s = self.recording.answers().iter().rev().find(of_scene).map(|a| a.time_s).or(last_s);
+        let before = self.earlier_run.take()?;
+        if matches!(before.cause, RestartCause::Reset(_)) {
+            self.end_run(RestartCause::Reset(present));
         }
-        self.show_time(last_s);
-        last_s.is_some()
+        (self.recording, self.history) = (before.recording, before.history);
+        match &before.cause {
+            RestartCause::Edit(scene) => {
+                let last_s = self.recording.span_s().map(|[_, last]| last);
+                let of_scene = |a: &&Solution| a.cables.iter().all(|c| c.breaks.is_empty()) && supports_as_in(a, scene);
+                let of_scene_s = self.recording.answers().iter().rev().find(of_scene).map(|a| a.time_s);
+                self.show_time(of_scene_s.or(last_s));
+            }
+            RestartCause::Reset(_) => {
+                self.latest.solution = self.recording.answers().last().map(|a| Arc::new(a.clone()));
+                self.refresh();
+            }
+        }
+        Some(before.cause)
     }
 
     /// Adds an instant to the recording and to the graphs.
@@ -136,8 +155,37 @@ pub struct ReopenedRun {
 pub struct EarlierRun {
     recording: Recording,
     history: History,
-    /// The scene that it was of, where an edit ended it; None: a reset did.
-    pub scene: Option<Scene>,
+    /// The command that ended it.
+    pub cause: RestartCause,
+}
+
+impl EarlierRun {
+    /// The scene that it was of.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        match &self.cause {
+            RestartCause::Reset(origin) => &origin.scene,
+            RestartCause::Edit(scene) => scene,
+        }
+    }
+}
+
+/// The command that ended a run.
+#[derive(Clone, Debug)]
+pub enum RestartCause {
+    /// A reset.
+    Reset(ResetOrigin),
+    /// An edit of this scene, after which nothing goes on from where the cable was.
+    Edit(Scene),
+}
+
+/// The state of the window when a reset was asked for.
+#[derive(Clone, Debug)]
+pub struct ResetOrigin {
+    /// The scene.
+    pub scene: Scene,
+    /// Speed of the robot by hand, m/s; None: along its path.
+    pub robot_speed_command: Option<f64>,
 }
 
 /// Supports that stay where they are stand in an answer where the scene has them: the answer to the

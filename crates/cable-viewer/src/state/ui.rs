@@ -79,6 +79,8 @@ pub struct Ui {
     pub graph_request: (u64, Option<GraphRequest>),
     /// The section that was asked for last elsewhere than in it, and the count of all requests.
     pub section_request: (u64, Option<ToolSection>),
+    /// Number of scenes opened so far.
+    pub scenes_opened: u64,
     /// The user agreed to close the window without saving.
     pub closing: bool,
 }

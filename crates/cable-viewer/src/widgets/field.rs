@@ -38,7 +38,8 @@ pub fn name(response: &Response, label: &str) {
 /// Escape drops it.
 pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> FieldOutput<f64> {
     let shown = [unit.text(value), unit.exact(value)];
-    let entry = text_field(ui, label, &shown, width, Align2::RIGHT_CENTER, |text| unit.parse(text));
+    let format = FieldFormat { width, align: Align2::RIGHT_CENTER, unit: unit.display().symbol };
+    let entry = text_field(ui, label, &shown, format, |text| unit.parse(text));
     // Text shown with fewer digits than the value has must not round it when it is entered
     // unchanged.
     let value = entry.value.filter(|&v| unit.exact(v) != shown[1]);
@@ -52,8 +53,18 @@ pub fn text(ui: &mut Ui, label: &str, value: &str, width: f32) -> FieldOutput<St
         "" => Err("a name must not be empty".to_owned()),
         name => Ok(name.to_owned()),
     };
-    let entry = text_field(ui, label, &shown, width, Align2::LEFT_CENTER, read);
+    let entry = text_field(ui, label, &shown, FieldFormat { width, align: Align2::LEFT_CENTER, unit: "" }, read);
     FieldOutput { value: entry.value.filter(|v| v != value), ..entry }
+}
+
+/// The size and form of a field.
+#[derive(Clone, Copy, Debug)]
+struct FieldFormat {
+    /// Points.
+    width: f32,
+    align: Align2,
+    /// The unit that a number without one is taken to be in; empty for text.
+    unit: &'static str,
 }
 
 /// `shown`: the value at rest, and to be edited.
@@ -61,8 +72,7 @@ fn text_field<T>(
     ui: &mut Ui,
     label: &str,
     shown: &[String; 2],
-    width: f32,
-    align: Align2,
+    format: FieldFormat,
     read: impl FnOnce(&str) -> Result<T, String>,
 ) -> FieldOutput<T> {
     let id = ui.scope_id().with(("field", label));
@@ -74,13 +84,22 @@ fn text_field<T>(
         select_all(ui, id, exact);
     }
     let mut text = draft.as_ref().map_or_else(|| at_rest.clone(), |d| d.text.clone());
-    let mut edit =
-        TextEdit::singleline(&mut text).id(id).desired_width(width).align(align).margin(Margin::symmetric(4, 2));
+    // “60” typed over “10.00 kN” would not say any more whether it is kilonewtons.
+    let is_bare = draft.is_some() && text.trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    let mut edit = TextEdit::singleline(&mut text).id(id).desired_width(format.width).align(format.align);
+    edit = edit.margin(Margin::symmetric(4, 2));
+    if is_bare && !format.unit.is_empty() {
+        edit = edit.suffix(egui::RichText::new(format.unit).weak());
+    }
     if draft.as_ref().is_some_and(|d| d.fault.is_some()) {
         edit = edit.text_color(ui.visuals().error_fg_color);
     }
     let response = ui.add(edit);
     name(&response, label);
+    if response.has_focus() {
+        let pass = ui.ctx().cumulative_pass_nr();
+        ui.data_mut(|d| d.insert_temp(typing_id(), pass));
+    }
     let mut entered = None;
     if response.lost_focus() {
         let dropped = ui.input(|i| i.key_pressed(Key::Escape));
@@ -105,6 +124,17 @@ fn text_field<T>(
         }
     });
     FieldOutput { value: entered, fault, response }
+}
+
+fn typing_id() -> Id {
+    Id::unique("pass in which a field was typed in")
+}
+
+/// Returns whether a field was being typed in until this frame: egui takes its focus away before
+/// the keys of the frame are read, and Escape is the field's.
+pub fn was_typed_in(ctx: &egui::Context) -> bool {
+    let pass: Option<u64> = ctx.data(|d| d.get_temp(typing_id()));
+    pass.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
 
 /// Forgets what was typed into a field of this `ui`.

@@ -151,7 +151,7 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     }
 }
 
-/// A text in the column of names, and the widget it names beside it; `unique_name` is what tests
+/// A text in the column of names, and the widget it names beside it; `name` is what tests
 /// and screen readers call it.
 pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
     // In a narrow panel the name gives way: what is typed must be read.

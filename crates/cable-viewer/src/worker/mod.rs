@@ -51,7 +51,7 @@ enum Backend {
 }
 
 impl Worker {
-    /// Starts the thread; `snapshot` is called whenever there is something new to show.
+    /// Starts the thread; `shown` is called whenever there is something new to show.
     #[must_use]
     pub fn thread(shown: impl Fn() + Send + Sync + 'static) -> Self {
         let (shared, shown): (_, UpdateCallback) = (Arc::new(Shared::default()), Arc::new(shown));

@@ -21,6 +21,8 @@ pub struct Request {
     pub resume: Option<Box<Resume>>,
     /// Back to the start.
     pub reset: bool,
+    /// Takes the last reset back: the run that it ended goes on, with this scene and model.
+    pub undo_reset: Option<Box<Edit>>,
     /// Give up what is being solved: the scene stays, without an answer.
     pub cancel: bool,
     /// Time runs or stands still.
@@ -93,7 +95,7 @@ impl Request {
         if let Some(edit) = later.edit {
             let follows_new_scene = self.edit.as_ref().is_some_and(|e| e.start == EditStart::NewScene);
             if edit.start == EditStart::NewScene {
-                self.reset = false;
+                (self.reset, self.undo_reset) = (false, None);
                 self.steps = 0;
             }
             self.drag = None;
@@ -112,6 +114,10 @@ impl Request {
             (self.edit, self.drag, self.reset, self.steps) = (None, None, false, 0);
             self.resume = later.resume;
         }
+        if later.undo_reset.is_some() {
+            (self.edit, self.drag, self.resume, self.reset, self.steps) = (None, None, None, false, 0);
+            self.undo_reset = later.undo_reset;
+        }
         if later.reset {
             self.reset = true;
             self.steps = 0;
@@ -126,13 +132,14 @@ impl Request {
     /// It asks for an answer that takes the place of the one being sought.
     #[must_use]
     pub fn solves(&self) -> bool {
-        self.edit.is_some() || self.resume.is_some() || self.reset
+        self.edit.is_some() || self.resume.is_some() || self.undo_reset.is_some() || self.reset
     }
 
     /// It leads back to what was, or to another scene: no answer of the way there is waited for.
     #[must_use]
     pub fn goes_back(&self) -> bool {
-        self.edit.as_ref().is_some_and(|e| e.start != EditStart::PresentState) || self.resume.is_some() || self.reset
+        let goes_elsewhere = self.edit.as_ref().is_some_and(|e| e.start != EditStart::PresentState);
+        goes_elsewhere || self.resume.is_some() || self.undo_reset.is_some() || self.reset
     }
 
     /// Nothing is asked.
@@ -142,6 +149,7 @@ impl Request {
             && !self.cancel
             && self.drag.is_none()
             && self.resume.is_none()
+            && self.undo_reset.is_none()
             && !self.reset
             && self.playback.is_none()
             && self.robot.is_none()

@@ -46,3 +46,33 @@ fn issue_020_a_click_before_the_first_frame_counts() {
     }
     assert!(!app.state.live.playback.paused);
 }
+
+/// The tap of a finger is over within a frame, and a slider that asks whether the button is down
+/// never saw it.
+#[test]
+fn a_tap_on_the_rail_of_a_slider_or_of_the_timeline_moves_it() {
+    let mut harness = open(catalog::tank_robot());
+    harness.key_press(egui::Key::Space);
+    harness.run_steps(60);
+    harness.key_press(egui::Key::Space);
+    harness.run_steps(2);
+    let end_s = harness.state().state.live.now_s();
+    for label in ["Timeline", "Speed slider"] {
+        let rail = harness.get_by_label(label).rect();
+        let at = rail.left_center() + Vec2::new(0.4 * rail.width(), 0.0);
+        harness.hover_at(at);
+        harness.step();
+        let events = [true, false].map(|pressed| Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.input_mut().events.extend(events);
+        harness.run_steps(4);
+    }
+    let live = &harness.state().state.live;
+    let shown_s = live.recording.shown_s.expect("an earlier time is shown");
+    assert!(shown_s > 0.3 * end_s && shown_s < 0.5 * end_s, "{shown_s} of {end_s}");
+    assert!(live.playback.speed < 0.2, "{}", live.playback.speed);
+}

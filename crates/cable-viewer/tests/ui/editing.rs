@@ -12,7 +12,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, drag, open, open_span, support};
+use crate::{apply, drag, open, open_span, select, support};
 
 fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
     &harness.state().state
@@ -59,6 +59,25 @@ fn centre(harness: &Harness<'_, ViewerApp>, k: usize) -> [f64; 2] {
         Shape::Circle { center_m, .. } => *center_m,
         Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => points_m[0],
     }
+}
+
+/// Escape was taken for the selection, and what had been typed was entered as the form went.
+#[test]
+fn escape_drops_what_was_typed_and_then_the_selection() {
+    let mut harness = open(catalog::hanging_span());
+    select(&mut harness, Item::Cable(0));
+    let before = harness.state().state.document.scene.clone();
+    harness.get_by_label("Breaking tension").focus();
+    harness.run_steps(2);
+    harness.get_by_label("Breaking tension").type_text("60");
+    harness.run_steps(2);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert_eq!((&state.document.scene, state.selection.selected), (&before, Some(Item::Cable(0))));
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().state.selection.selected, None);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use cable_core::analysis::tension_budget::StartEnd;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::{FirstSteps, Item, OpenPanels, TensionMarker};
 use cable_viewer::units::system::System;
 use egui::{Key, Vec2};
@@ -435,4 +435,47 @@ fn issue_020_a_step_of_a_guide_is_one_row() {
             assert!(end.bottom() < 54.0 && end.right() <= 1024.0, "{}, step {step}: {end}", guide.title);
         }
     }
+}
+
+/// In small windows the status took a second row, and all above it moved as its words changed.
+#[test]
+fn transport_and_status_stand_in_one_row_at_every_width() {
+    for width in [640.0, 800.0, 1024.0, 1280.0] {
+        let mut harness = open(catalog::tank_robot());
+        harness.set_size(Vec2::new(width, 600.0));
+        harness.run_steps(4);
+        let canvas = harness.get_by_label("Canvas").rect();
+        let row = harness.get_by_label("Reset").rect();
+        assert!(600.0 - row.bottom() < 6.0, "{width}: {row}");
+        harness.state_mut().state.ui.written = Some("a/long/name/of-a-picture-that-was-exported.png".into());
+        crate::apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        harness.run_steps(4);
+        assert_eq!(harness.get_by_label("Canvas").rect(), canvas, "{width}");
+        for told in ["Time 0", "Runs at"] {
+            assert!(harness.get_by_label_contains(told).rect().right() <= width, "{width}: {told}");
+        }
+    }
+}
+
+/// Another scene was shown from where the results of the one before had been scrolled to.
+#[test]
+fn another_scene_is_read_from_its_first_figure_on() {
+    let mut harness = open(catalog::tank_robot());
+    let top = |harness: &Harness<'_, ViewerApp>| harness.get_by_label("Readouts").rect().top();
+    let first = top(&harness);
+    let panel = harness.get_by_label("Canvas").rect().right() + 100.0;
+    harness.hover_at(egui::pos2(panel, 500.0));
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, -300.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: egui::Modifiers::NONE,
+    });
+    harness.run_steps(30);
+    assert!(top(&harness) < first - 100.0, "scrolled from {first} to {}", top(&harness));
+    crate::apply(&mut harness, Command::File(FileCommand::OpenCatalogue("robot-drive".to_owned())));
+    harness.run_steps(3);
+    assert_eq!(top(&harness), first);
 }

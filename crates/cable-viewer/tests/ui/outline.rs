@@ -40,7 +40,7 @@ fn the_outline_begins_the_left_panel_and_selects() {
         }
         // Warnings are the last of it, and lead to the worst.
         let before = harness.state().state.view.camera.points_per_m;
-        click(&mut harness, "2 warnings");
+        click(&mut harness, "1 warning, 1 note");
         assert!(harness.state().state.view.camera.points_per_m > 1.5 * before, "{size:?}");
     }
     let mut harness = open(catalog::robot_drive());
@@ -76,7 +76,7 @@ fn a_support_that_the_scene_moves_is_not_called_fixed() {
 #[test]
 fn the_right_panel_follows_the_selection() {
     for (scene, row, title, figures) in [
-        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "On the cable"][..]),
+        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "Arc length"][..]),
         (
             catalog::pulley_waypoints(),
             "Select wheel",

@@ -2,8 +2,8 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
-use egui::{Rect, Vec2};
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
+use egui::{Key, Modifiers, Rect, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -50,6 +50,93 @@ fn a_view_that_was_not_moved_follows_what_falls_and_a_reset_brings_it_back() {
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     harness.run_steps(4);
     assert!(ends_in_view(&harness));
+}
+
+/// After a break a reset could not be undone: the recording was back, with a refusal in a dialog,
+/// and what the solver held was the start.
+#[test]
+fn a_reset_after_a_break_is_taken_back_whole() {
+    let mut harness = weak();
+    harness.key_press(Key::Space);
+    harness.run_steps(60);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let shown = |harness: &Harness<'_, ViewerApp>| harness.state().state.live.snapshot.solution.clone().unwrap();
+    let (end, span) = (shown(&harness), harness.state().state.live.recording.span_s());
+    assert!(!end.cables[0].breaks.is_empty());
+    // Twice: the second reset of a run that stands at its start changes nothing.
+    for _ in 0..2 {
+        harness.key_press(Key::R);
+        harness.run_steps(3);
+        assert!(shown(&harness).time_s == 0.0 && shown(&harness).cables[0].breaks.is_empty());
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert!(state.ui.dialog.is_none(), "{:?}", state.ui.dialog);
+    assert_eq!((state.live.recording.span_s(), state.live.recording.shown_s), (span, None), "the present is shown");
+    assert_eq!(*shown(&harness), *end, "bit for bit");
+    // Time goes on as if nobody had asked for a reset.
+    let mut straight = weak();
+    straight.key_press(Key::Space);
+    straight.run_steps(60);
+    straight.key_press(Key::Space);
+    straight.run_steps(2);
+    for harness in [&mut harness, &mut straight] {
+        harness.key_press(Key::Space);
+        harness.run_steps(20);
+    }
+    assert!(shown(&harness).time_s > end.time_s);
+    assert_eq!(shown(&harness).cables, shown(&straight).cables);
+}
+
+/// What was edited after a reset belonged to the run that the undo of the reset brought back.
+#[test]
+fn the_undo_of_a_reset_brings_its_scene_back_too() {
+    let mut harness = open(catalog::hanging_span());
+    harness.key_press(Key::Space);
+    harness.run_steps(30);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let (scene, end_s) = {
+        let state = &harness.state().state;
+        (state.document.scene.clone(), state.live.now_s())
+    };
+    harness.key_press(Key::R);
+    harness.run_steps(3);
+    let mut cable = scene.cables[0].clone();
+    cable.length_m += 0.5;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    harness.get_by_label("Undo restart").click();
+    harness.run_steps(3);
+    let state = &harness.state().state;
+    assert_eq!((&state.document.scene, state.live.now_s()), (&scene, end_s));
+    assert_eq!(state.live.latest.scene.as_deref(), Some(&scene));
+    assert_eq!(state.freshness(), cable_viewer::state::Freshness::Current);
+}
+
+/// To take a reset back dropped what had run since.
+#[test]
+fn the_run_since_a_reset_is_kept_when_it_is_taken_back() {
+    let mut harness = weak();
+    let run = |harness: &mut Harness<'_, ViewerApp>, frames: usize| {
+        harness.key_press(Key::Space);
+        harness.run_steps(frames);
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        (harness.state().state.live.snapshot.solution.clone().unwrap(), harness.state().state.live.recording.span_s())
+    };
+    let first = run(&mut harness, 60);
+    harness.key_press(Key::R);
+    harness.run_steps(3);
+    let second = run(&mut harness, 20);
+    assert_ne!(first, second);
+    for then in [&first, &second, &first] {
+        harness.get_by_label("Undo restart").click();
+        harness.run_steps(3);
+        let live = &harness.state().state.live;
+        assert_eq!((&live.snapshot.solution, live.recording.span_s()), (&Some(then.0.clone()), then.1));
+    }
 }
 
 #[test]

@@ -53,3 +53,29 @@ fn warnings_and_refusals_are_read_in_us_units() {
     apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Si)));
     harness.run_steps(2);
 }
+
+/// “60” typed over “10.00 kN” said nothing of kilonewtons while it was typed.
+#[test]
+fn a_number_that_is_typed_has_its_unit_beside_it() {
+    let mut harness = open(catalog::hanging_span());
+    crate::select(&mut harness, cable_viewer::state::Item::Cable(0));
+    for (field, unit) in [("Breaking tension", "kN"), ("Service tension", "N"), ("Damping", "%")] {
+        let told = |harness: &egui_kittest::Harness<'_, cable_viewer::ViewerApp>| {
+            let rect = harness.get_by_label(field).rect();
+            let mut texts = Vec::new();
+            harness.output().shapes.iter().for_each(|s| crate::warnings::galleys(&s.shape, &mut texts));
+            texts.iter().any(|(text, r, _)| text == unit && rect.contains_rect(*r))
+        };
+        harness.get_by_label(field).focus();
+        harness.run_steps(2);
+        assert!(!told(&harness), "{field}: the value has its unit itself");
+        harness.get_by_label(field).type_text("6");
+        harness.run_steps(2);
+        assert!(told(&harness), "{field}");
+        harness.get_by_label(field).type_text("0 kN");
+        harness.run_steps(2);
+        assert!(!told(&harness), "{field}: a unit was typed");
+        harness.key_press(egui::Key::Escape);
+        harness.run_steps(2);
+    }
+}

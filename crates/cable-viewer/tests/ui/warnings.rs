@@ -266,3 +266,12 @@ fn issue_020_a_tension_above_its_limit_comes_first_among_equals() {
     let row = harness.get_by_label_contains("Above service tension at").rect();
     assert!(row.y_range().contains(first), "{row} beside {first}");
 }
+
+/// A remark on how the cable was laid was counted as a warning.
+#[test]
+fn notes_are_counted_as_notes() {
+    let harness = open(catalog::over_beam());
+    let notes = &harness.state().state.live.snapshot.solution.as_ref().unwrap().warnings;
+    assert!(notes.len() == 1 && notes[0].kind == WarningKind::NotUnique, "{notes:?}");
+    harness.get_by_label("1 note");
+}

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cable_core::summary::sag;
 use cable_core::{Model, Scene, Solution};
-use egui::{Grid, Id, ProgressBar, RichText, Ui};
+use egui::{Grid, Id, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
@@ -13,15 +13,16 @@ use crate::panels::readouts::DIMMED;
 use crate::record::kept_run::Peak;
 use crate::record::plotted_quantity::Measure;
 use crate::render::colour::{CableQuantity, LINES};
-use crate::render::theme;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
 use crate::units::sentence::sentence;
 use crate::units::{format, labels};
-use crate::widgets::{field, highlight, readout};
+use crate::widgets::{field, highlight, progress, readout};
 
 /// Narrowest column of the table, points: the cross and the number of a pin fit.
 const MIN_COLUMN_WIDTH: f32 = 28.0;
+/// Width of the panel from which columns stand apart, points: below, they have no room to.
+const MIN_WIDE_TABLE: f32 = 300.0;
 /// Size of its figures, points. Larger: the last column is cut in US units.
 const FIGURES: f32 = 12.0;
 /// Most lines of difference told; more are counted.
@@ -64,7 +65,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let present = answer.map(|s| Figures::of(s, solved, state.live.snapshot.solve_wall_s));
     let compared = present.as_ref().filter(|_| state.is_current());
     readout::wide(ui, "compare", |ui| {
-        let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
+        let gap = if ui.available_width() < MIN_WIDE_TABLE { 4.0 } else { 14.0 };
+        let grid = Grid::new("compare").num_columns(5).spacing([gap, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
         grid.striped(true).show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
@@ -123,12 +125,7 @@ fn dimmed_row_if_old(ui: &mut Ui, state: &AppState, cells: impl FnOnce(&mut Ui))
 /// Asks every model at once, and tells why some have no answer.
 fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Progress::Running(share, _) = state.analysis.models {
-        let bar = ui.add(
-            ProgressBar::new(share as f32)
-                .show_percentage()
-                .desired_height(16.0)
-                .fill(theme::palette(ui.visuals()).bars[0]),
-        );
+        let bar = progress::bar(ui, share);
         field::name(&bar, "Progress of the comparison");
         if ui.button("Cancel comparison").on_hover_text("Stops it; nothing is pinned").clicked() {
             commands.push(Command::View(ViewCommand::CompareModels(false)));
@@ -265,11 +262,16 @@ fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
             && present != 0.0
             && value.is_finite()
         {
-            let share = format!("{:+.2} %", 100.0 * (value / present - 1.0)).replace('-', "−");
-            let share = egui::Label::new(RichText::new(share).small().weak()).extend();
+            let share = egui::Label::new(RichText::new(change(value / present - 1.0)).small().weak()).extend();
             ui.add(share).on_hover_text("Against the present answer");
         }
     });
+}
+
+/// A relative change in per cent; one that rounds to nothing has no sign.
+fn change(ratio: f64) -> String {
+    let text = format!("{:+.2} %", 100.0 * ratio).replace('-', "−");
+    if ["+0.00 %", "−0.00 %"].contains(&text.as_str()) { "0.00 %".to_owned() } else { text }
 }
 
 /// What two scenes and models differ in.

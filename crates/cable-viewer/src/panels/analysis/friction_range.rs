@@ -1,19 +1,18 @@
 //! This panel asks how much less and more friction there may be, and shows what that does to the
 //! tension.
 
-use egui::{Grid, ProgressBar, Ui};
+use egui::{Grid, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::friction_range;
-use crate::render::theme;
 use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::checkbox_and_radio::checkbox;
-use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::{field, progress};
 
 const MIN_FRICTION: Quantity = Quantity {
     name: "Least friction",
@@ -57,12 +56,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             ui.weak("Begins once time stands still");
         }
         Progress::Running(share, _) => {
-            let bar = ui.add(
-                ProgressBar::new(*share as f32)
-                    .show_percentage()
-                    .desired_height(16.0)
-                    .fill(theme::palette(ui.visuals()).bars[0]),
-            );
+            let bar = progress::bar(ui, *share);
             field::name(&bar, "Progress of the friction range");
         }
         Progress::Failed(why) => field::fault(ui, &format!("No range: {why}")),

@@ -5,17 +5,16 @@ use std::time::Duration;
 
 use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
-use egui::{ComboBox, ProgressBar, Slider, Ui};
+use egui::{ComboBox, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::safe_reach::{self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions};
-use crate::render::theme;
 use crate::state::AppState;
 use crate::state::job_questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::checkbox_and_radio::radio_button;
-use crate::widgets::{field, highlight};
+use crate::widgets::{field, highlight, progress};
 
 /// Width of a slider's value beside it, points.
 const SPIN_WIDTH: f32 = 72.0;
@@ -38,12 +37,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     ui.add_enabled_ui(running.is_none(), |ui| choices(ui, state, moved, commands));
     if let Some(share) = running {
-        let bar = ui.add(
-            ProgressBar::new(share as f32)
-                .show_percentage()
-                .desired_height(16.0)
-                .fill(theme::palette(ui.visuals()).bars[0]),
-        );
+        let bar = progress::bar(ui, share);
         field::name(&bar, "Progress of the safe reach");
         // A place may take a minute without a word: the time left goes on being counted meanwhile.
         ui.ctx().request_repaint_after(COUNTING_REPAINT);

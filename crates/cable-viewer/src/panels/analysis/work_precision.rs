@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 
 use cable_core::Model;
 use cable_core::analysis::Setting;
-use egui::{ProgressBar, Rangef, RichText, Ui};
+use egui::{Rangef, RichText, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, Plot, PlotBounds, Points};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::work_precision::{Entry, Outcome};
 use crate::plot::TIME_MARK;
-use crate::render::{colour, theme};
+use crate::render::colour;
 use crate::state::AppState;
 use crate::units::sentence::sentence;
 use crate::units::{format, labels};
-use crate::widgets::field;
+use crate::widgets::{field, progress};
 
 /// Name of the chart.
 const TITLE: &str = "Error over cost";
@@ -31,12 +31,7 @@ const MIN_DIFFERENCE: f64 = 1e-10;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let progress = &state.analysis.work_precision;
     if let Progress::Running(share, _) = progress {
-        let bar = ui.add(
-            ProgressBar::new(*share as f32)
-                .show_percentage()
-                .desired_height(16.0)
-                .fill(theme::palette(ui.visuals()).bars[0]),
-        );
+        let bar = progress::bar(ui, *share);
         field::name(&bar, "Progress of the chart");
         if ui.button("Cancel chart").on_hover_text("Stops it after the model that is being asked").clicked() {
             commands.push(Command::View(ViewCommand::ChartWorkPrecision(false)));

@@ -163,12 +163,12 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
     head(ui, state, row, commands, &mut faults);
     place_apart(ui, state, row);
     if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
-        let text = ["Sits at", "Where on the cable it grips, m of unstretched length from the start"];
+        let text = ["Arc length", "Where on the cable it grips, m of unstretched length from the start"];
         if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
             row.changed(commands, |s| s.arc_length_m = Some(v));
         }
     } else {
-        labelled(ui, "Sits at", "Place on the cable", |ui| {
+        labelled(ui, "Arc length", "Place on the cable", |ui| {
             let help = "Unstretched length from the start of the cable, as it is now";
             ui.label(Unit::COORDINATE.text(row.now.1)).on_hover_text(help)
         });

@@ -51,7 +51,7 @@ impl Engine {
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
         if edit.start == EditStart::NewScene {
-            self.run = None;
+            (self.run, self.ended_run) = (None, None);
             self.outbox.restart();
         }
         let before = self.run.take();

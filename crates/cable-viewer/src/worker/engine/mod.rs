@@ -22,7 +22,7 @@ use self::outbox::Outbox;
 pub use self::outbox::Report;
 pub use self::run::is_quasi_static;
 use self::run::{MOTION, Run, RunStart};
-use crate::state::{NoAnswer, Playback};
+use crate::state::{NoAnswer, Playback, Snapshot};
 use crate::worker::draft;
 use crate::worker::request::{Edit, EditStart, Request, Resume};
 use crate::worker::timing::FRAME_S;
@@ -33,6 +33,8 @@ pub struct Engine {
     run: Option<Run>,
     /// The last edit, for rebuilding.
     edit: Option<Edit>,
+    /// The run that the last reset ended, until another scene: the reset can be taken back.
+    ended_run: Option<Box<EndedRun>>,
     /// The state of `run` relative to the last edit.
     phase: Phase,
     playback: Playback,
@@ -107,6 +109,26 @@ impl Refinement {
     }
 }
 
+/// A run that a reset ended, as it was on screen.
+#[derive(Debug)]
+struct EndedRun {
+    run: Run,
+    edit: Option<Edit>,
+    phase: Phase,
+    snapshot: Snapshot,
+}
+
+impl EndedRun {
+    fn checkpoint(&self) -> Self {
+        Self {
+            run: self.run.checkpoint(),
+            edit: self.edit.clone(),
+            phase: self.phase.clone(),
+            snapshot: self.snapshot.clone(),
+        }
+    }
+}
+
 /// Wall times, s.
 #[derive(Clone, Copy, Debug, Default)]
 struct WallTimes {
@@ -140,6 +162,7 @@ impl Engine {
         Self {
             run: self.run.as_ref().map(Run::checkpoint),
             edit: self.edit.clone(),
+            ended_run: self.ended_run.as_ref().map(|ended| Box::new(ended.checkpoint())),
             phase: self.phase.clone(),
             outbox: self.outbox.clone(),
             ..*self
@@ -182,6 +205,11 @@ impl Engine {
         let dragging = request.drag.is_some() && request.edit.is_none() && request.resume.is_none() && !request.reset;
         let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
+        if let Some(edit) = request.undo_reset {
+            let changed = self.undo_reset(*edit);
+            solved |= changed.is_some();
+            result = changed.unwrap_or(Ok(()));
+        }
         if request.cancel {
             self.cancel(request.edit);
             solved = true;
@@ -303,6 +331,7 @@ impl Engine {
         let mut then = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, MOTION)?;
         then.resume(&answer)?;
         self.run = Some(Run::new(then, RunStart::Lost));
+        self.ended_run = None;
         self.refinement.put_off(false);
         self.edit = Some(edit);
         self.phase = Phase::Answer;
@@ -311,7 +340,34 @@ impl Engine {
         Ok(())
     }
 
+    /// Keeps the run so far, which a reset ends, and leaves a copy of it in its place.
+    fn keep_ended_run(&mut self) {
+        let Some(run) = self.run.take_if(|run| run.simulation().time_s() > 0.0) else { return };
+        let copy = run.checkpoint();
+        let (edit, phase, snapshot) = (self.edit.clone(), self.phase.clone(), self.outbox.snapshot.clone());
+        self.ended_run = Some(Box::new(EndedRun { run, edit, phase, snapshot }));
+        self.run = Some(copy);
+    }
+
+    /// Goes on from where the last reset was asked for, as if it had not been; nothing is solved
+    /// unless the scene, the model or the mesh is another than then, which is an edit of then.
+    fn undo_reset(&mut self, edit: Edit) -> Option<Result<(), Error>> {
+        let EndedRun { run, edit: before, phase, snapshot } = *self.ended_run.take()?;
+        // What has run since takes its place.
+        self.keep_ended_run();
+        let of = |e: &Edit| (e.scene.clone(), e.model, e.settings);
+        let is_same = before.as_ref().is_some_and(|before| of(before) == of(&edit));
+        (self.run, self.edit, self.phase) = (Some(run), before, phase);
+        self.refinement.put_off(false);
+        self.playback.paused = true;
+        self.outbox.answers.clear();
+        self.outbox.snapshot = Snapshot { real_speed: None, ..snapshot };
+        self.outbox.keep_answer();
+        (!is_same).then(|| self.take_edit(edit))
+    }
+
     fn reset(&mut self) -> Result<(), Error> {
+        self.keep_ended_run();
         self.outbox.history_restarts = true;
         if self.coarse() {
             self.phase = Phase::Answer;

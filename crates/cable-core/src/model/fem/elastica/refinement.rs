@@ -68,8 +68,11 @@ impl Elastica {
             piece.contact.is_some()
                 || piece.nodes.windows(2).zip(piece.grid.windows(2)).all(|(u, g)| {
                     let layer = self.layer_of_long([&u[0], &u[1]], g[1] - g[0]);
-                    let turn = |layer: f64| u.iter().all(|u| (u[MOMENT] * layer).abs() <= MAX_LEFT_TURN * self.bending);
-                    layer.is_none_or(turn)
+                    // The outer cable turns as its force does.
+                    let left = |u: &[f64; STATES]| {
+                        u[MOMENT] / self.bending - cross(force(u), -self.body) / force(u).norm_squared()
+                    };
+                    layer.is_none_or(|layer| u.iter().all(|u| (left(u) * layer).abs() <= MAX_LEFT_TURN))
                 })
         };
         self.pieces.iter().all(is_resolved)

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::math::Vec2;
 use crate::model::fem::free::{Restraint, StationLayout};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
+use crate::model::fem::remesh::clear_of_nodes;
 use crate::model::fem::remesh::{even_out, insert};
 use crate::model::fem::state::{CableState, renew_input};
 use crate::problem::wheel_passage::facing;
@@ -18,15 +19,22 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
     let layout = StationLayout::new(&problem, cable.motion.time, &[], &[]);
     for station in &layout.stations {
         let (Restraint::Pulley(wheel), Some(support)) = (station.restraint, station.support) else { continue };
-        let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(station.arc_length);
+        let lies = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or([station.arc_length; 2]);
+        // Nodes that lay on the wheel would touch nothing there.
+        clear_of_nodes(cable, lies);
+        let s = 0.5 * (lies[0] + lies[1]);
         let k = cable.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, cable.mesh.nodes() - 1);
         let room = 0.05 * problem.length / cable.meshing.even_bars as f64;
         let (low, high) = (cable.mesh.arc_length[k - 1] + room, cable.mesh.arc_length[k] - room);
         let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
-        let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
+        let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
         let sense = -facing(wheel.side, passing);
-        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense };
+        // Its material is counted where the state has it: beside that the cable would be fed over
+        // the wheel, and friction would hold it there.
+        let outward = state.and_then(|state| (state.position_at(at)? - wheel.center).try_normalize(0.0));
+        let mark = outward.filter(|_| wheel.radius > 0.0).unwrap_or(up);
+        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark, sense };
         insert(cable, k, at, Some(SlidingNode::new(end, wheel.friction, SlideOver::Pulley(support))));
     }
     even_out(cable);

@@ -11,7 +11,7 @@
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, angle_between, rotate, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::{insert, remove};
+use crate::model::fem::remesh::{clear_of_nodes, insert, remove};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::ContactPair;
 use crate::solution::Node;
@@ -167,19 +167,6 @@ fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
     let k = cable.mesh.arc_length.partition_point(|&a| a <= s);
     if k > 0 && k < cable.mesh.nodes() {
         insert(cable, k, s, Some(node));
-    }
-}
-
-/// Takes the plain nodes out that would lie on a round, between two material points (m).
-fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
-    let mut k = 1;
-    while k + 1 < cable.mesh.nodes() {
-        let s = cable.mesh.arc_length[k];
-        if s >= from && s <= to && cable.meshing.removable(&cable.mesh, k) && cable.mesh.sliding[k].is_none() {
-            remove(cable, k);
-        } else {
-            k += 1;
-        }
     }
 }
 

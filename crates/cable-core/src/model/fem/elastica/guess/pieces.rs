@@ -4,7 +4,7 @@ use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Contact, Elastica, End, Joint, Piece};
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
-use crate::model::fem::free::{nearest_turn, places};
+use crate::model::fem::free::places;
 
 /// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts
 /// outside of where it converges; more: costs.
@@ -18,7 +18,7 @@ const LEAST_FREE_PIECE_FRACTION: f64 = 1e-6;
 /// Length of a contact with a line, in layers, below which it is a point.
 const POINT_LAYERS: f64 = 4.0;
 
-/// Angle between a clamp and a surface, rad, below which they have one direction: rounding.
+/// Sine of the angle between a clamp and a surface below which they have one direction: rounding.
 const SAME_DIRECTION: f64 = 1e-9;
 
 /// Part of an arc that is given up where two contacts leave no cable between them.
@@ -90,11 +90,12 @@ impl ElasticaGuess<'_> {
     /// there.
     fn leave_ends_to_their_holds(&mut self) {
         let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
-        let lies_from = |end: &End, contact: &Contact, s: f64| match end {
-            End::Held(_, Some(angle)) => {
-                let along = curve.angle_at(s, [0.0, length]);
-                let off = (nearest_turn(*angle, along) - along).abs();
-                off < SAME_DIRECTION && contact.curvature() == 0.0
+        // `out`: +1 where the cable leaves the end, −1 where it comes to it.
+        let lies_from = |end: &End, contact: &Contact, out: f64| match end {
+            // A clamp that points into the surface cannot turn the cable there.
+            End::Held(at, Some(angle)) => {
+                let rises = out * Vec2::new(angle.cos(), angle.sin()).dot(&contact.gap(*at).1);
+                rises < SAME_DIRECTION && contact.curvature() == 0.0
             }
             End::Held(_, None) => contact.curvature() == 0.0,
             End::Loaded(_) => true,
@@ -107,10 +108,10 @@ impl ElasticaGuess<'_> {
                     .min(SURRENDERED_ARC_FRACTION * (a.to - a.from))
             };
             let (first, last) = (part(a.from), part(a.to));
-            if a.from <= SAME_PLACE_FRACTION * length && !lies_from(&elastica.ends[0], contact, a.from) {
+            if a.from <= SAME_PLACE_FRACTION * length && !lies_from(&elastica.ends[0], contact, 1.0) {
                 a.from += first;
             }
-            if a.to >= (1.0 - SAME_PLACE_FRACTION) * length && !lies_from(&elastica.ends[1], contact, a.to) {
+            if a.to >= (1.0 - SAME_PLACE_FRACTION) * length && !lies_from(&elastica.ends[1], contact, -1.0) {
                 a.to -= last;
             }
         }

@@ -1,0 +1,55 @@
+//! A window that is drawn without a GPU shows fewer frames while time runs: each costs as much
+//! processor as several steps of the simulation, and what is recorded is the same.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Time between two frames of a running simulation that is drawn without a GPU, s. Shorter: drawing
+/// takes more of a core than the simulation; longer: motion is seen to jerk.
+pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(33);
+
+/// The time before which no frame is drawn for the sake of a step, shared with the solver thread.
+#[derive(Clone, Debug, Default)]
+pub(super) struct FramePacing {
+    interval: Duration,
+    next: Arc<Mutex<Option<Instant>>>,
+}
+
+impl FramePacing {
+    /// At least so long from frame to frame while time runs.
+    pub fn every(&mut self, interval: Duration) {
+        self.interval = interval;
+    }
+
+    /// A frame has been drawn. `runs`: the next one shows a step, and nobody waits for an answer.
+    pub fn drawn(&self, now: Instant, runs: bool) {
+        let next = (runs && self.interval > Duration::ZERO).then(|| now + self.interval);
+        *self.next.lock().unwrap_or_else(PoisonError::into_inner) = next;
+    }
+
+    /// The wait until what the solver has found is to be drawn.
+    pub fn wait(&self, now: Instant) -> Duration {
+        let next = *self.next.lock().unwrap_or_else(PoisonError::into_inner);
+        next.map_or(Duration::ZERO, |next| next.saturating_duration_since(now))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_wait_for_the_next_frame_and_answers_to_edits_do_not() {
+        let (mut pacing, now) = (FramePacing::default(), Instant::now());
+        let solver = pacing.clone();
+        pacing.drawn(now, true);
+        assert_eq!(solver.wait(now), Duration::ZERO, "with a GPU each step is shown");
+        pacing.every(SOFTWARE_FRAME_INTERVAL);
+        pacing.drawn(now, true);
+        let later = now + Duration::from_millis(13);
+        assert_eq!(solver.wait(later), Duration::from_millis(20));
+        assert_eq!(solver.wait(now + Duration::from_secs(1)), Duration::ZERO);
+        pacing.drawn(later, false);
+        assert_eq!(solver.wait(later), Duration::ZERO);
+    }
+}
