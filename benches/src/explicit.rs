@@ -8,9 +8,8 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use cable_core::model::Mechanics;
-use cable_core::model::mass_spring::settings::{MeshTuning, SubStepTuning, Tuning};
-use cable_core::model::mass_spring::{MassSpringModel, Stepping};
+use cable_core::model::mass_spring::{MassSpringModel, MeshTuning, SubStepTuning, Tuning};
+use cable_core::model::{Mechanics, Stepping};
 use cable_core::scene::{Support, catalog};
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
 

@@ -8,8 +8,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use cable_core::catenary::{Catenary, Span};
-use cable_core::model::mass_spring::MassSpringModel;
-use cable_core::model::mass_spring::settings::{PreviewTuning, Tuning};
+use cable_core::model::mass_spring::{MassSpringModel, PreviewTuning, Tuning};
 use cable_core::model::{Inertia, Mechanics};
 use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{Warning, WarningKind};

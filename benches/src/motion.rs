@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use cable_core::model::mass_spring::settings::Tuning;
-use cable_core::model::mass_spring::{MassSpringModel, Stepping};
+use cable_core::model::Stepping;
+use cable_core::model::mass_spring::{MassSpringModel, Tuning};
 use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::state::State;
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};

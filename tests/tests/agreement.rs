@@ -10,8 +10,7 @@
 
 use cable_core::model::{Inertia, Mechanics, Settings, build};
 use cable_core::problem::{Problem, problems};
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{Scene, Support, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::solution::CableSolution;
 use cable_core::{Model, Vec2};
 use proptest::prelude::*;

@@ -5,9 +5,9 @@
 use allocation_counter::measure;
 use cable_core::Vec2;
 use cable_core::model::fem::FemModel;
-use cable_core::model::gauge::{Limit, TensionGauge};
 use cable_core::model::mass_spring::MassSpringModel;
 use cable_core::model::spans::SpansModel;
+use cable_core::model::tension_gauge::{Limit, TensionGauge};
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};

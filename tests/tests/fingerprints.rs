@@ -15,8 +15,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::record::Fingerprint;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene, Settings, Simulation, Solution};

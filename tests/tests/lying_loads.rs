@@ -6,7 +6,7 @@
 use cable_core::math::Vec2;
 use cable_core::model::{Inertia, Mechanics, Settings, build};
 use cable_core::problem::problems;
-use cable_core::scene::obstacle::Shape;
+use cable_core::scene::Shape;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
 use cable_core::{Model, Scene, Simulation, SolveError};
 

@@ -8,7 +8,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use cable_tests::without_unit_tests;
@@ -119,13 +119,79 @@ fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
     }
 }
 
+/// The files below a folder, without those of tests.
+fn sources_below(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path());
+    let mut found = Vec::new();
+    for path in entries {
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        match path.is_dir() {
+            _ if name.ends_with("tests") => {}
+            true => found.extend(sources_below(&path)),
+            false => found.push(path),
+        }
+    }
+    found
+}
+
+/// Public methods that another file than that of their type gives it: a private room may hand out
+/// nothing and extend a type all the same.
+fn list_methods_of_other_files(sources: &Path, out: &mut BTreeSet<String>) {
+    let is_type =
+        |name: &str| name.starts_with(|c: char| c.is_uppercase()) && name.contains(|c: char| c.is_lowercase());
+    let mut paths: BTreeMap<String, String> = BTreeMap::new();
+    for item in out.iter().filter(|item| !item.contains(": use ")) {
+        if let Some(name) = item.rsplit("::").next().filter(|name| is_type(name)) {
+            paths.entry(name.to_owned()).or_insert_with(|| item.clone());
+        }
+    }
+    // A type of a private module has the path by which it is handed out.
+    let mut handed_out = BTreeSet::new();
+    for (module, used) in out.iter().filter_map(|item| item.split_once(": use ")) {
+        let names = used.rsplit("::").next().unwrap_or_default().trim_matches(['{', '}']);
+        for name in names.split(", ").filter(|name| is_type(name)) {
+            if !paths.contains_key(name) {
+                paths.insert(name.to_owned(), format!("{module}::{name}"));
+                handed_out.insert(name.to_owned());
+            }
+        }
+    }
+    let mut methods = BTreeSet::new();
+    for file in sources_below(sources) {
+        let text = without_unit_tests(&std::fs::read_to_string(&file).expect("a source"));
+        let mut owner = None;
+        for line in text.lines() {
+            if let Some(head) = line.strip_prefix("impl") {
+                let name = without_parameters(head.trim_end_matches([' ', '{'])).trim();
+                let name = name.split(['<', ' ']).next().unwrap_or_default();
+                // What the file itself defines under that name is listed, or private, unless it is
+                // handed out from elsewhere.
+                let is_head =
+                    |line: &str| line.contains(&format!("struct {name} ")) || line.contains(&format!("enum {name} "));
+                let defines = !handed_out.contains(name) && text.lines().any(is_head);
+                owner = paths.get(name).filter(|_| !defines);
+            }
+            for keyword in ["fn", "const", "const fn"] {
+                if let (Some(owner), Some(name)) =
+                    (owner, line.strip_prefix("    pub ").and_then(|l| name_after(l, keyword)))
+                {
+                    methods.insert(format!("{owner}::{name}"));
+                }
+            }
+        }
+    }
+    out.extend(methods);
+}
+
 #[test]
 fn the_list_of_public_items_is_that_of_the_crate() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let sources = root.join("crates/cable-core/src");
     let mut found = BTreeSet::new();
     list("cable_core", &sources.join("lib.rs"), &sources, &mut found);
-    assert!(found.contains("cable_core::simulation::Simulation::settle"), "methods are seen");
+    list_methods_of_other_files(&sources, &mut found);
+    assert!(found.contains("cable_core::Simulation::settle"), "methods are seen");
+    assert!(found.contains("cable_core::scene::Scene::from_toml"), "so are those of other files than their type's");
     let path = root.join("docs/public-api.txt");
     let text: String = found.iter().map(|item| item.clone() + "\n").collect();
     if std::env::var_os("UPDATE_PUBLIC_API").is_some() {

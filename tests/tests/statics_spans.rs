@@ -6,8 +6,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
+use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{ContactReport, ContactState};
 use cable_core::{Model, Simulation, Solution, SolveError};
 use serde_json::Value;

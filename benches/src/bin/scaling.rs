@@ -11,7 +11,7 @@ use std::time::Instant;
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::machine::{Clock, measured_now};
 use cable_benches::ridges::{arched, ridges};
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::Stepping;
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::{Model, Scene, Settings, Simulation};
 

@@ -13,12 +13,10 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use cable_core::model::catenary::CatenaryModel;
-use cable_core::model::catenary::settings::CatenarySettings;
+use cable_core::model::catenary::{CatenaryModel, CatenarySettings};
 use cable_core::model::fem::{self, FemModel};
 use cable_core::model::mass_spring::{self, MassSpringModel};
-use cable_core::model::spans::SpansModel;
-use cable_core::model::spans::settings::SpansSettings;
+use cable_core::model::spans::{SpansModel, SpansSettings};
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
 use cable_core::scene::{Shape, Support, SupportKind, catalog};
@@ -71,7 +69,7 @@ fn tuned_models() -> Result<Vec<Tuned>, Box<dyn Error>> {
         },
         Tuned {
             model: Model::Fem,
-            constants: serde_json::to_value(fem::settings::Tuning::default())?,
+            constants: serde_json::to_value(fem::Tuning::default())?,
             build: |problem, c| {
                 let tuning = Arc::new(serde_json::from_value(c)?);
                 Ok(Box::new(FemModel::with_tuning(problem, Settings::default(), tuning)?))
@@ -79,7 +77,7 @@ fn tuned_models() -> Result<Vec<Tuned>, Box<dyn Error>> {
         },
         Tuned {
             model: Model::MassSpring,
-            constants: serde_json::to_value(mass_spring::settings::Tuning::default())?,
+            constants: serde_json::to_value(mass_spring::Tuning::default())?,
             build: |problem, c| {
                 Ok(Box::new(MassSpringModel::with_tuning(
                     problem,

@@ -2,14 +2,13 @@
 //! not finite.
 
 use cable_core::analysis::{Compared, EndStiffness, NeglectedBending, Setting};
-use cable_core::solution::robot_report::RobotReport;
+use cable_core::answer_verifier::Verification;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, EnergyAccount, InertiaEffect, ModelReason,
-    NextCheaper, Node, Pressure, Solution, SupportReaction, TensionPeaks, Warning,
+    NextCheaper, Node, Pressure, RobotReport, Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::CableSummary;
 use cable_core::timeline::RunPeaks;
-use cable_core::verify::Verification;
 use cable_core::{ErrorEstimates, Model, SolveError, UnitSystem};
 use serde::Serialize;
 

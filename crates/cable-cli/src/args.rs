@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use cable_core::analysis::Bending;
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::Stepping;
 use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
 use cable_core::scene::FrictionMobilised;
 use cable_core::{Model, Settings};

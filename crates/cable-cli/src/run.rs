@@ -11,8 +11,7 @@ use std::time::{Duration, Instant};
 
 use cable_core::analysis::{neglected_bending, scene_with_bending};
 use cable_core::files::{RunEnd, RunFolder};
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{
     EnergyAccount, InertiaEffect, LikelyBending, ModelReason, Solution, TensionPeak, TensionPeaks, Warning, WarningKind,

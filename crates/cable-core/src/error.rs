@@ -1,21 +1,23 @@
 //! The errors of a scene and of a solve are data, by operation, with their numbers;
 //! [`crate::wording`] makes the sentences.
 
+mod document_fault;
 mod equilibrium_fault;
+mod failure_cause;
 mod no_equilibrium;
-mod shape_fault;
-mod span;
+mod span_error;
 mod unsupported;
 
 use crate::math::Vec2;
 use crate::model_id::Model;
 use crate::units::Quantity;
-use crate::verification::Finding;
+use crate::verification_report::Finding;
 
+pub use self::document_fault::DocumentFault;
 pub use self::equilibrium_fault::EquilibriumFault;
-pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
-pub use self::shape_fault::ShapeFault;
-pub use self::span::SpanError;
+pub use self::failure_cause::FailureCause;
+pub use self::no_equilibrium::NoEquilibrium;
+pub use self::span_error::SpanError;
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// The reason why a scene is refused.
@@ -86,7 +88,7 @@ pub enum SceneFault {
         nearest: Option<String>,
     },
     /// A key, a name or a line that must be there, or must not.
-    Shape(ShapeFault),
+    Document(DocumentFault),
     /// More elements than a scene may have.
     TooMany {
         /// Their number.
@@ -353,7 +355,7 @@ pub enum SolveError {
         /// Its place, m.
         at_m: Vec2,
     },
-    /// The answer breaks a law: see [`crate::verify`].
+    /// The answer breaks a law: see [`crate::answer_verifier`].
     Unsound {
         /// The model.
         model: Model,

@@ -21,16 +21,16 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, as a test checks; those of one step do not know
-//! each other:
-//! `math, numerics, model_id, units → energy, verification → error → catenary, scene, solution
-//! → contact, robot → problem, state → model, record, verify → breakage, files
-//! → warnings, wording → any_error → simulation → analysis, conformance, summary, timeline`.
+//! each other: `math, numerics, model_id, units → energy, verification_report
+//! → error → catenary, scene, solution → contact, robot → problem,
+//! state → answer_verifier, breakage, model, record → files, simulated_cable
+//! → warnings, wording → any_error → simulation → analysis, summary, timeline`.
 
 pub mod analysis;
+pub mod answer_verifier;
 mod any_error;
 mod breakage;
 pub mod catenary;
-pub mod conformance;
 pub mod contact;
 mod energy;
 pub mod error;
@@ -41,24 +41,24 @@ mod model_id;
 mod numerics;
 pub mod problem;
 pub mod record;
-pub mod robot;
+mod robot;
 pub mod scene;
-pub mod simulation;
+mod simulated_cable;
+mod simulation;
 pub mod solution;
 pub mod state;
 pub mod summary;
 pub mod timeline;
 pub mod units;
-pub mod verification;
-pub mod verify;
+mod verification_report;
 mod warnings;
 pub mod wording;
 
 pub use any_error::Error;
-pub use cable_linalg as linalg;
+pub(crate) use cable_linalg as linalg;
 pub use error::{SceneError, SolveError};
 pub use files::FileError;
-pub use math::{Mat2, Vec2};
+pub use math::Vec2;
 pub use model::{Model, Settings};
 pub use scene::{Cable, Load, Obstacle, Robot, Scene, Support};
 pub use simulation::Simulation;

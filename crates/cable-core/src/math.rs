@@ -8,7 +8,7 @@ pub use rigid_pose::RigidPose;
 /// A plane vector or point, in the unit the field says.
 pub type Vec2 = nalgebra::Vector2<f64>;
 /// A 2×2 matrix.
-pub type Mat2 = nalgebra::Matrix2<f64>;
+pub(crate) type Mat2 = nalgebra::Matrix2<f64>;
 /// A point as a scene file writes it: `[x, y]`.
 pub type Point = [f64; 2];
 
@@ -36,14 +36,14 @@ pub fn vec2(p: Point) -> Vec2 {
 /// The vector turned by +90° (counter-clockwise).
 #[inline]
 #[must_use]
-pub fn perp(v: Vec2) -> Vec2 {
+pub(crate) fn perp(v: Vec2) -> Vec2 {
     Vec2::new(-v.y, v.x)
 }
 
 /// The z component of the cross product `a × b`.
 #[inline]
 #[must_use]
-pub fn cross(a: Vec2, b: Vec2) -> f64 {
+pub(crate) fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
@@ -56,7 +56,7 @@ const MAX_SERIES_TANGENT: f64 = 0.05;
 /// wins.
 #[inline]
 #[must_use]
-pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
+pub(crate) fn bounded(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };
     if above > high { high } else { above }
 }
@@ -64,7 +64,7 @@ pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
 /// The angle from `a` to `b`, rad in (−π, π]. Neighbouring elements turn little: there a series, as
 /// arctangents are dear.
 #[must_use]
-pub fn angle(a: Vec2, b: Vec2) -> f64 {
+pub(crate) fn angle(a: Vec2, b: Vec2) -> f64 {
     let (sin, cos) = (cross(a, b), a.dot(&b));
     if !(sin.abs() < MAX_SERIES_TANGENT * cos) {
         return sin.atan2(cos);
@@ -88,7 +88,7 @@ const QUARTER_TURN: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10
 /// library is dear.
 #[must_use]
 #[inline]
-pub fn sin_cos(angle: f64) -> (f64, f64) {
+pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     if !(angle.abs() <= MAX_SHORT_SERIES_ANGLE) {
         return sin_cos_of_more(angle);
     }
@@ -135,7 +135,7 @@ const MAX_SERIES_EXPONENT: f64 = 0.1;
 /// call of the library is dear.
 #[must_use]
 #[inline]
-pub fn exp(x: f64) -> f64 {
+pub(crate) fn exp(x: f64) -> f64 {
     if !(x.abs() <= MAX_SERIES_EXPONENT) {
         return x.exp();
     }
@@ -146,14 +146,14 @@ pub fn exp(x: f64) -> f64 {
 /// The larger of two numbers; NaN once one of them is, unlike `f64::max`.
 #[inline]
 #[must_use]
-pub fn larger(a: f64, b: f64) -> f64 {
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
     if b <= a || a.is_nan() { a } else { b }
 }
 
 /// The smaller of two numbers; NaN once one of them is, unlike `f64::min`.
 #[inline]
 #[must_use]
-pub fn smaller(a: f64, b: f64) -> f64 {
+pub(crate) fn smaller(a: f64, b: f64) -> f64 {
     if b >= a || a.is_nan() { a } else { b }
 }
 

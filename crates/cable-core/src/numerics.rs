@@ -29,6 +29,10 @@ pub(crate) fn backtrack<T>(longest: f64, tries: usize, mut accepted: impl FnMut(
     None
 }
 
+/// Most halvings of a step of a model: one of which a thousandth part fails, fails. Fewer: a step
+/// fails where a corner or a pulley has to be met first; more: a failure costs more.
+pub(crate) const MAX_HALVINGS: u32 = 10;
+
 /// Even steps from a place to an end (times in s, or parts of a way). Where one fails all that
 /// follow are half as long.
 #[derive(Clone, Copy, Debug)]

@@ -18,8 +18,8 @@ mod speed_search;
 
 use std::sync::Arc;
 
+use crate::answer_verifier::{Depth, Verification, Verifier};
 use crate::any_error::Error;
-use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
@@ -27,21 +27,21 @@ use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settin
 use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
-use crate::solution::ErrorEstimates;
+use crate::simulated_cable::SimulatedCable;
+use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
 use crate::solution::{
-    CableSolution, Cost, Energy, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node, SharedNodes, Solution,
-    TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
+    CableSolution, Cost, Energy, ErrorEstimates, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node,
+    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
 };
 use crate::state::State;
-use crate::verify::{Depth, Verification, Verifier};
 use crate::warnings::{Bends, Observed, WarningMonitor};
 
 /// Step with inertia, s: the inner step of `fem`.
-pub const STEP_S: f64 = 1.0 / 240.0;
+pub(crate) const STEP_S: f64 = 1.0 / 240.0;
 
 /// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows
 /// time at 10 Hz.
-pub const MAX_FRAME_S: f64 = 0.1;
+const MAX_FRAME_S: f64 = 0.1;
 
 /// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen
 /// computes for hours without a word.
@@ -49,9 +49,6 @@ const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
 const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
-
-/// Least number of elements of a coarser run: the errors of fewer say nothing about those of more.
-const MIN_ELEMENTS: usize = 4;
 
 /// A scene being solved.
 #[derive(Clone)]
@@ -65,8 +62,8 @@ pub struct Simulation {
     model: Model,
     reason: ModelReason,
     settings: Settings,
-    cables: Vec<BreakableCable>,
-    start: Option<Vec<BreakableCable>>,
+    cables: Vec<SimulatedCable>,
+    start: Option<Vec<SimulatedCable>>,
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
@@ -222,9 +219,9 @@ impl Simulation {
     /// Builds every cable by the model that was chosen.
     fn from_choice(scene: Scene, problems: &[Arc<Problem>], settings: Settings, choice: Choice) -> Result<Self, Error> {
         let Choice { model, source, reason } = choice;
-        let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
+        let cables = problems.iter().map(|p| SimulatedCable::new(source.clone(), p.clone(), settings));
         let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
-        let answers = cables.iter().map(BreakableCable::answer).collect();
+        let answers = cables.iter().map(SimulatedCable::answer).collect();
         Ok(Self {
             vehicle: Vehicle::of(&scene),
             verifier: Arc::new(Verifier::new(&scene)),
@@ -255,7 +252,7 @@ impl Simulation {
 
     /// Reads the answers of the cables, which are not judged yet.
     fn read_answers(&mut self) {
-        self.answers = self.cables.iter().map(BreakableCable::answer).collect();
+        self.answers = self.cables.iter().map(SimulatedCable::answer).collect();
     }
 
     /// Finds displacements, bends, energy and warnings of the answers, and verifies them.
@@ -268,7 +265,7 @@ impl Simulation {
                 }
             }
         }
-        self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
+        self.model = self.cables.iter().map(SimulatedCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
         for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
             let found = Bends::of(cable.problem(), answer);
@@ -315,12 +312,12 @@ impl Simulation {
     }
 
     #[cfg(test)]
-    pub(crate) fn cables(&self) -> &[BreakableCable] {
+    pub(crate) fn cables(&self) -> &[SimulatedCable] {
         &self.cables
     }
 
     #[cfg(test)]
-    pub(crate) fn cables_mut(&mut self) -> &mut [BreakableCable] {
+    pub(crate) fn cables_mut(&mut self) -> &mut [SimulatedCable] {
         &mut self.cables
     }
 
@@ -362,13 +359,13 @@ impl Simulation {
         if self.reason == ModelReason::Requested {
             return &self.reason;
         }
-        self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
+        self.cables.iter().find_map(SimulatedCable::reason).unwrap_or(&self.reason)
     }
 
     /// Time reached, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
-        self.cables.first().map_or(0.0, BreakableCable::time_s)
+        self.cables.first().map_or(0.0, SimulatedCable::time_s)
     }
 
     /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`]
@@ -387,7 +384,7 @@ impl Simulation {
         found?;
         self.warn_not_unique();
         if self.requested.is_automatic() && self.settings.histories {
-            let problems = self.cables.iter().map(BreakableCable::problem);
+            let problems = self.cables.iter().map(SimulatedCable::problem);
             let cables = problems.zip(&self.answers).filter(|_| self.time_s() == 0.0);
             self.next_cheaper = next_cheaper::next_cheaper(cables, self.reason(), self.settings);
         }
@@ -485,7 +482,7 @@ impl Simulation {
     /// See [`Mechanics::advance`].
     pub(crate) fn advance_unjudged(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
         Self::check_step(dt_s, inertia)?;
-        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
+        self.cables.iter_mut().for_each(SimulatedCable::begin_step);
         let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
             false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
@@ -501,7 +498,7 @@ impl Simulation {
         nodes.map(|n| n.tension_n).fold(0.0, larger)
     }
 
-    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run
+    /// Advances by a display frame: at most 0.1 s, so a stalled picture makes time run
     /// slower instead of a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is
     /// the speed to show.
     ///
@@ -526,7 +523,7 @@ impl Simulation {
         let mut scene = self.scene.clone();
         for (cable, answer) in scene.cables.iter_mut().zip(&self.answers) {
             let elements = (answer.nodes.len().saturating_sub(1) as f64 * times).floor() as usize;
-            if elements < MIN_ELEMENTS {
+            if elements < MIN_COMPARED_ELEMENTS {
                 return Ok(None);
             }
             cable.segments = Some(elements);
@@ -567,7 +564,7 @@ impl Simulation {
     /// none is a step ahead. (A single cable stays where it came to, see [`Mechanics::advance`].)
     fn for_each_cable(
         &mut self,
-        mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
+        mut f: impl FnMut(&mut SimulatedCable) -> Result<StepReport, SolveError>,
     ) -> Result<(), SolveError> {
         let (mut cost, mut warnings) = (Cost::default(), Vec::new());
         let several = self.cables.len() > 1;
@@ -634,7 +631,7 @@ impl Simulation {
 
     /// From now on no cable breaks, whatever pulls it.
     pub(crate) fn prevent_breaks(&mut self) {
-        self.cables.iter_mut().for_each(BreakableCable::prevent_breaks);
+        self.cables.iter_mut().for_each(SimulatedCable::prevent_breaks);
     }
 
     /// Drags a support to a place (m), whatever force that takes: see [`Mechanics::drag_support`].
@@ -676,7 +673,7 @@ impl Simulation {
     /// length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
-        self.cables.iter().map(BreakableCable::state).collect()
+        self.cables.iter().map(SimulatedCable::state).collect()
     }
 
     /// Goes on where `old`, a simulation of the same cables, is: broken where that one broke.
@@ -689,7 +686,7 @@ impl Simulation {
         }
         self.set_robot_pose();
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
-            new.carry(old)?;
+            new.continue_from(old)?;
         }
         self.refresh(RunPhase::AtRest);
         Ok(())

@@ -47,7 +47,7 @@ impl State {
 
     /// The first node with a number that is not finite.
     #[must_use]
-    pub fn first_non_finite(&self) -> Option<usize> {
+    pub(crate) fn first_non_finite(&self) -> Option<usize> {
         (0..self.position_m.len()).find(|&i| {
             !(self.position_m[i].iter().all(|v| v.is_finite())
                 && self.velocity_m_per_s.get(i).is_none_or(|v| v.iter().all(|c| c.is_finite())))
@@ -56,7 +56,7 @@ impl State {
 
     /// The refusal of a state that holds a number that is not finite.
     #[must_use]
-    pub fn refuse_non_finite(&self) -> Option<SolveError> {
+    pub(crate) fn refuse_non_finite(&self) -> Option<SolveError> {
         let node = self.first_non_finite()?;
         let arc_length_m = self.arc_length_m.get(node).copied().unwrap_or(f64::NAN);
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
@@ -65,7 +65,7 @@ impl State {
     /// Arc lengths between which it lies on a round of a radius (m); those of the place nearest to
     /// its centre if it does not.
     #[must_use]
-    pub fn on_round(&self, center: Vec2, radius: f64) -> Option<[f64; 2]> {
+    pub(crate) fn on_round(&self, center: Vec2, radius: f64) -> Option<[f64; 2]> {
         let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;
         let (first, last) = (self.position_m.iter().position(on), self.position_m.iter().rposition(on));
         match (first.and_then(|k| self.arc_length_m.get(k)), last.and_then(|k| self.arc_length_m.get(k))) {
@@ -76,7 +76,7 @@ impl State {
 
     /// Arc length where the cable is nearest to a point, m.
     #[must_use]
-    pub fn nearest(&self, to: Vec2) -> Option<f64> {
+    pub(crate) fn nearest(&self, to: Vec2) -> Option<f64> {
         let mut best: Option<(f64, f64)> = None;
         for (p, s) in self.position_m.windows(2).zip(self.arc_length_m.windows(2)) {
             let f = crate::contact::distance::nearest_fraction(to, p[0], p[1]);

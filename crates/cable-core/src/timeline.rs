@@ -5,19 +5,18 @@
 //! common instants are equal to the bit. Instants are whole ticks of a third of a nanosecond: 1/240
 //! s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
 
-mod coarse;
-mod monitor;
+mod coarser_runs;
 mod motion_numbers;
 mod refinement;
-mod without_inertia;
+mod run_monitor;
+mod run_without_inertia;
 
-pub use self::monitor::RunMonitor;
 pub use self::refinement::{Refinement, refine_until_accurate};
+pub use self::run_monitor::RunMonitor;
 
 use crate::error::SolveError;
 use crate::model::Inertia;
-pub use crate::simulation::STEP_S;
-use crate::simulation::Simulation;
+use crate::simulation::{STEP_S, Simulation};
 use crate::solution::{InertiaEffect, Solution, TensionPeaks};
 
 /// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60,
@@ -25,12 +24,12 @@ use crate::solution::{InertiaEffect, Solution, TensionPeaks};
 const TICKS_PER_S: f64 = 3e9;
 
 /// Step without inertia, s: that of a display.
-pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
+const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 
 /// Ends of a range of tensions that are no more than so many times each other are those of one
 /// tension that is known, if roughly. Less: peaks that any finer run has as well are called
 /// uncertain; more: a cable is chosen by a peak that another mesh does not have.
-pub const SMALL_DIFFERENCES_RATIO: f64 = 1.5;
+const SMALL_DIFFERENCES_RATIO: f64 = 1.5;
 
 /// An instant: a whole number of ticks after the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -181,7 +180,7 @@ impl TensionRanges {
 
     /// True if the runs beside this one part from it so far that its greatest tension depends on
     /// small differences, of mesh and step and so of how it began: the ends of a range are more
-    /// than [`SMALL_DIFFERENCES_RATIO`] times apart.
+    /// than `SMALL_DIFFERENCES_RATIO` times apart.
     #[must_use]
     pub fn depend_on_small_differences(&self) -> bool {
         [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > SMALL_DIFFERENCES_RATIO * from)
@@ -218,8 +217,8 @@ impl std::fmt::Debug for Timeline {
 }
 
 impl Timeline {
-    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or
-    /// [`QUASI_STATIC_STEP_S`] where that is None.
+    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): 1/240 s or
+    /// 1/60 s where that is None.
     ///
     /// # Errors
     /// [`SolveError::TimeStep`]: a step that is not positive, is no number, or is longer than

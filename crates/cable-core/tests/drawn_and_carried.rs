@@ -3,9 +3,9 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_core::answer_verifier::{Depth, Verifier};
 use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, View, catalog};
 use cable_core::solution::CableSolution;
-use cable_core::verify::{Depth, Verifier};
 use cable_core::{Model, Settings, Simulation};
 use proptest::prelude::*;
 

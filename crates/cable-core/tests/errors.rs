@@ -20,7 +20,6 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use cable_core::scene::{Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog};
-use cable_core::solution::error_estimates::place;
 use cable_core::solution::{CableSolution, ContactReport, Node, SupportReaction};
 use cable_core::{Error, Load, Model, Settings, Simulation, SolveError, Vec2};
 
@@ -359,7 +358,7 @@ fn errors(found: &CableSolution, exact: &CableSolution) -> [f64; 4] {
     let names: std::collections::BTreeSet<_> = a.keys().chain(b.keys()).collect();
     let of = |m: &std::collections::BTreeMap<&str, Vec2>, n: &str| m.get(n).copied().unwrap_or_else(Vec2::zeros);
     let contacts = names.iter().map(|n| (of(&a, n) - of(&b, n)).norm());
-    let shape = found.nodes.iter().filter_map(|n| Some((place(&exact.nodes, n.arc_length_m)? - n.at()).norm()));
+    let shape = found.nodes.iter().filter_map(|n| Some((exact.position_at(n.arc_length_m)? - n.at()).norm()));
     [
         (greatest(found) - greatest(exact)).abs(),
         supports.fold(0.0, f64::max),

@@ -9,7 +9,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::Stepping;
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::{Model, Settings, Simulation};
 

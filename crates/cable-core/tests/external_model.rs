@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use cable_core::error::SolveError;
-use cable_core::model::gauge::TensionGauge;
+use cable_core::model::tension_gauge::TensionGauge;
 use cable_core::model::{Inertia, Mechanics, StepReport};
 use cable_core::problem::{Problem, SupportPoint};
 use cable_core::scene::{Scene, Support, SupportKind, catalog};

@@ -9,9 +9,9 @@ mod fold_scenes;
 
 use std::time::Instant;
 
+use cable_core::analysis::{Bending, settle_with_bending};
 use cable_core::scene::{Obstacle, Scene, Shape, Support, View, catalog};
 use cable_core::solution::{Solution, WarningCause};
-use cable_core::summary::{Bending, settle_with_bending};
 use cable_core::{Model, Settings, Simulation};
 
 use fold_scenes::{FAMILIES, GRAVITY, RADIUS, height, scene};

@@ -7,8 +7,7 @@
 
 mod dice;
 
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, catalog};
 use cable_core::solution::{InertiaEffect, NeglectedEffect};
 use cable_core::timeline::{Instant, Timeline};

@@ -5,9 +5,8 @@
 
 use cable_core::error::SceneFault;
 use cable_core::model::Model;
-use cable_core::scene::scaled::Similarity;
 use cable_core::solution::{CableSolution, Solution, WarningKind};
-use cable_core::{Error, Scene, Simulation, Vec2};
+use cable_core::{Error, Scene, Simulation};
 
 const SOLVERS: [Model; 3] = [Model::Auto, Model::Fem, Model::MassSpring];
 
@@ -260,18 +259,6 @@ fn one_millimetre_of_cable_five_metres_up_weighs_what_it_weighs() {
     for model in SOLVERS {
         let s = rest(&scene(&text), model).unwrap();
         assert!((s.max_tension().tension_n / 0.009174 - 1.0).abs() < 1e-3, "{model}: {}", s.max_tension().tension_n);
-    }
-}
-
-#[test]
-fn a_similarity_is_none_where_solvers_are_at_home() {
-    assert!(Similarity::to_natural(12.0, Vec2::new(3.0, 5.0)).is_none());
-    for length in [1e-3, 0.5, 5e3, 1e6] {
-        let by = Similarity::to_natural(length, Vec2::new(3.0, 5.0)).unwrap();
-        // A long cable is made no shorter than it must be.
-        let copy = if length < 2.0 { 8.0..32.0 } else { 250.0..1000.0 };
-        assert!(copy.contains(&(length * by.length)) && by.length == by.time * by.time, "{length}: {by:?}");
-        assert_eq!(by.place_back(by.place(Vec2::new(7.25, -1.5))), Vec2::new(7.25, -1.5));
     }
 }
 

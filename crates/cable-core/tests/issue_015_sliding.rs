@@ -4,8 +4,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{FrictionMobilised, Scene, Support, SupportKind, catalog};
+use cable_core::scene::{FrictionMobilised, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Simulation, Solution, SolveError};
 

@@ -3,8 +3,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::scene::catalog;
 use cable_core::timeline::{Instant, Timeline};
 use cable_core::{Model, Settings, Simulation};

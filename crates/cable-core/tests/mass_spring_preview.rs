@@ -2,7 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::Stepping;
 use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Settings, Simulation, Vec2};

@@ -8,9 +8,9 @@
 
 mod dice;
 
+use cable_core::answer_verifier::{Depth, Law, Verifier};
 use cable_core::scene::{Scene, catalog};
 use cable_core::solution::{MomentumAccount, Solution, WarningKind};
-use cable_core::verify::{Depth, Law, Verifier};
 use cable_core::{Model, Settings, Simulation};
 
 /// Steps with an account, and momentum from nowhere in each with its place.

@@ -3,8 +3,8 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, missing_docs)] // a failing test is meant to panic
 
 use cable_core::record::Fingerprint;
-use cable_core::robot::Going;
 use cable_core::scene::catalog;
+use cable_core::solution::Going;
 use cable_core::{Model, Scene, Simulation, Solution};
 
 const FRAME_S: f64 = 1.0 / 60.0;

@@ -2,15 +2,16 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
 
-use cable_core::contact::distance::cross_properly;
-use cable_core::contact::outline::Outline;
+mod segments;
+
+use cable_core::answer_verifier::Law;
+use cable_core::contact::Outline;
 use cable_core::problem::robot_outline;
 use cable_core::record::Fingerprint;
-use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Shape, catalog};
-use cable_core::solution::{ContactReport, ModelReason, WarningKind};
-use cable_core::verify::Law;
+use cable_core::solution::{ContactReport, Going, ModelReason, RobotReport, WarningKind};
 use cable_core::{Model, Obstacle, Scene, Simulation, SolveError, Vec2};
+use segments::cross_properly;
 
 /// Time between two looks, s.
 const FRAME_S: f64 = 1.0 / 60.0;

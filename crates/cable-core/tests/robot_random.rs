@@ -4,12 +4,14 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
 
-use cable_core::contact::distance::cross_properly;
+mod segments;
+
 use cable_core::math::RigidPose;
 use cable_core::problem::robot_outline;
 use cable_core::record::Fingerprint;
 use cable_core::scene::{Shape, SupportKind, catalog, preset};
 use cable_core::{Model, Robot, Scene, Simulation, Vec2};
+use segments::cross_properly;
 
 /// Time between two looks, s.
 const FRAME_S: f64 = 1.0 / 60.0;

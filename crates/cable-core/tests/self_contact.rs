@@ -3,11 +3,13 @@
 
 #![allow(clippy::unwrap_used)]
 
-use cable_core::contact::distance::cross_properly;
+mod segments;
+
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::solution::ModelReason;
 use cable_core::{Model, Settings, Simulation};
+use segments::cross_properly;
 
 const FLOOR: f64 = -0.5;
 

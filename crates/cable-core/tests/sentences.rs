@@ -1,8 +1,9 @@
 //! Warnings, errors and verdicts are sentences, in SI and in US units.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_core::answer_verifier::{Finding, Law, NotChecked, Verification};
 use cable_core::error::{
-    EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SceneError, SceneFault, ShapeFault,
+    DocumentFault, EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SceneError, SceneFault,
     SolveError, SpanError, TensionLoss, TextPosition, Unsupported,
 };
 use cable_core::files::{RunFolderFault, RunRemark};
@@ -14,7 +15,6 @@ use cable_core::solution::{
     SlideReason, TakenStiffness, Warning, WarningCause, WarningKind,
 };
 use cable_core::units::{Quantity, UnitSystem};
-use cable_core::verification::{Finding, Law, NotChecked, Verification};
 use cable_core::wording::Sentence;
 use cable_core::{FileError, Model};
 
@@ -266,12 +266,12 @@ fn others() -> Vec<Box<dyn Sentence>> {
             quantity: Quantity::Number,
         }),
         Box::new(SceneFault::Type { found: name("a string"), needed: name("a number") }),
-        Box::new(SceneFault::Shape(ShapeFault::UnknownWord {
+        Box::new(SceneFault::Document(DocumentFault::UnknownWord {
             word: name("pully"),
             known: &["fixed", "pulley", "free"],
             nearest: Some(name("pulley")),
         })),
-        Box::new(SceneFault::Shape(ShapeFault::MissingForKind { kind: "clamped" })),
+        Box::new(SceneFault::Document(DocumentFault::MissingForKind { kind: "clamped" })),
         Box::new(FileError::Scene { path: name("a.toml"), fault: scene }),
         Box::new(FileError::Table {
             path: name("run"),

@@ -8,8 +8,7 @@ use cable_core::Vec2;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{Load, Scene, Support, catalog};
+use cable_core::scene::{Load, Obstacle, Scene, Shape, Support, catalog};
 use cable_core::solution::{CableSolution, ContactReport};
 
 /// A flexible cable from a to b along a route over shapes.

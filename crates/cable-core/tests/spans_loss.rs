@@ -9,8 +9,7 @@ use cable_core::error::TensionLoss;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{Scene, Support, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{SolveError, Vec2};
 
 const RADIUS: f64 = 0.01;

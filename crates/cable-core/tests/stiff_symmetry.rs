@@ -13,8 +13,7 @@
 mod dice;
 
 use cable_core::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
-use cable_core::solution::error_estimates::{ErrorEstimates, place};
-use cable_core::solution::{CableSolution, Node};
+use cable_core::solution::{CableSolution, ErrorEstimates, Node};
 use cable_core::{Model, Simulation};
 
 use self::dice::Dice;
@@ -159,8 +158,9 @@ fn rest(scene: &Scene) -> Result<CableSolution, String> {
 /// line through every second node leaves, which is sixteen times as much of a curve of the fourth
 /// order and four times as much where the bend has a kink.
 fn reading(cable: &CableSolution) -> f64 {
-    let coarse: Vec<_> = cable.nodes.iter().step_by(2).copied().collect();
-    let off = |n: &Node| place(&coarse, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
+    let nodes: Vec<_> = cable.nodes.iter().step_by(2).copied().collect();
+    let coarse = CableSolution { nodes: nodes.into(), ..CableSolution::default() };
+    let off = |n: &Node| coarse.position_at(n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
     0.5 * cable.nodes.iter().map(off).fold(0.0, f64::max)
 }
 

@@ -2,8 +2,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::math::Vec2;
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::scene::{Motion, Scene, Support, SupportKind, catalog};
 use cable_core::solution::TensionPeaks;
 use cable_core::solution::WarningKind;

@@ -12,9 +12,9 @@ mod dice;
 
 use std::collections::BTreeMap;
 
+use cable_core::answer_verifier::Law;
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::WarningKind;
-use cable_core::verify::Law;
 use cable_core::{Model, Settings, Simulation};
 
 use self::dice::Dice;

@@ -14,8 +14,7 @@ mod dice;
 
 use std::collections::BTreeMap;
 
-use cable_core::scene::obstacle::{Obstacle, Shape};
-use cable_core::scene::{PulleySide, Scene, Support, SupportKind, catalog};
+use cable_core::scene::{Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{CableSolution, ModelReason, WarningKind};
 use cable_core::{Model, Simulation, Vec2};
 

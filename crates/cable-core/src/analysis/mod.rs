@@ -14,9 +14,9 @@ pub mod friction_range;
 mod neglected_bending;
 pub mod safe_reach;
 mod settings_compared;
-pub mod stiffness;
+mod stiffness;
 pub mod tension_budget;
 
 pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, scene_with_bending, settle_with_bending};
-pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
+pub use settings_compared::{Compared, Setting, answer_with};
 pub use stiffness::{EndStiffness, end_stiffness};

@@ -7,7 +7,7 @@ use crate::state::State;
 
 /// The stretch of the whole cable that a piece is, and what hangs on it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct CablePart {
+pub(crate) struct CablePart {
     /// Arc length of the whole cable at its start, m.
     pub from: f64,
     /// Arc length of the whole cable at its end, m.
@@ -21,7 +21,7 @@ pub(super) struct CablePart {
 
 /// A place to cut at, and what is known of the cable there.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut<'a> {
+pub(crate) struct Cut<'a> {
     /// Its place, m on the whole cable.
     pub at: f64,
     /// Supports and loads as near as this (m) sit at the cut.
@@ -94,6 +94,12 @@ impl CablePart {
             Self { from: self.from, to: cut.at, supports: left, loads: first },
             Self { from: cut.at, to: self.to, supports: right, loads: second },
         ]
+    }
+
+    /// The support at the end where a cut tears the piece off, if there is one.
+    pub fn support_at_end(&self, cut: &Cut<'_>) -> Option<usize> {
+        let end = if cut.at - self.from <= cut.near { self.supports.first() } else { self.supports.last() };
+        end.copied().flatten()
     }
 
     fn detached(&self, end: usize, problem: &Problem, cut: &Cut<'_>) -> Self {

@@ -10,7 +10,7 @@ use crate::state::State;
 
 /// Place of a rupture, and its time within the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rupture {
+pub(crate) struct Rupture {
     /// Index of the node of the later instant.
     pub node: usize,
     /// Fraction of the step, 0 to 1.
@@ -20,7 +20,7 @@ pub(super) struct Rupture {
 /// The first rupture between two instants, if there is one. Nodes that `watched` refuses are left
 /// out; of nodes that reach the limit at the same time the one that goes furthest beyond it breaks,
 /// of equals the first.
-pub(super) fn first(
+pub(crate) fn first(
     before: &[Node],
     after: &[Node],
     breaking_n: f64,
@@ -42,14 +42,14 @@ pub(super) fn first(
 }
 
 /// The node nearest to an arc length (m).
-pub(super) fn nearest(nodes: &[Node], s: f64) -> usize {
+pub(crate) fn nearest(nodes: &[Node], s: f64) -> usize {
     let k = nodes.partition_point(|n| n.arc_length_m < s);
     let off = |k: usize| nodes.get(k).map_or(f64::INFINITY, |n| (n.arc_length_m - s).abs());
     k.checked_sub(1).filter(|&before| off(before) < off(k)).unwrap_or(k)
 }
 
 /// The greatest tension, N: not a number if one is not.
-pub(super) fn greatest(nodes: &[Node]) -> f64 {
+pub(crate) fn greatest(nodes: &[Node]) -> f64 {
     nodes.iter().map(|n| n.tension_n).fold(0.0, |a, b| if b > a || b.is_nan() { b } else { a })
 }
 
@@ -67,7 +67,7 @@ fn tension_at(nodes: &[Node], s: f64) -> f64 {
 
 /// The state at a fraction of the way between two instants. On different meshes it is the later
 /// one: resampled, chords would cut corners, and a stiff cable would feel it as slack.
-pub(super) fn between(before: &State, after: &State, fraction: f64) -> State {
+pub(crate) fn between(before: &State, after: &State, fraction: f64) -> State {
     let mut state = after.clone();
     state.time_s = before.time_s + (after.time_s - before.time_s) * fraction;
     let same = before.arc_length_m == after.arc_length_m && before.velocity_m_per_s.len() == before.position_m.len();
@@ -84,7 +84,7 @@ pub(super) fn between(before: &State, after: &State, fraction: f64) -> State {
 }
 
 /// The part of a state between two arc lengths (m), with nodes at both; its arc lengths start at 0.
-pub(super) fn section(state: &State, from: f64, to: f64) -> State {
+pub(crate) fn section(state: &State, from: f64, to: f64) -> State {
     let near = 1e-9 * (to - from);
     let inside = |s: f64| s > from + near && s < to - near;
     let mut out = State { time_s: state.time_s, ..State::default() };

@@ -5,7 +5,7 @@
 //! P_k [s > s_k]. The complementary energy of the whole is a function of F_a alone, two unknowns
 //! however many loads there are.
 
-use super::kernel::{self, ChainPiece, DualEnergy, HorizontalForce};
+use super::closed_form::{self, ChainPiece, DualEnergy, HorizontalForce};
 use super::span::{Catenary, Frame, Span};
 use crate::error::SpanError;
 use crate::math::{Mat2, Vec2};
@@ -155,7 +155,7 @@ impl<'a> Chain<'a> {
         let lengths = length + x.abs() + z.abs();
         let (h, v) = frame.split(start);
         let energy = |h, v| self.energy(frame, h, v);
-        let m = kernel::minimise(energy, [x, z], [h, v], lengths, HorizontalForce::Any);
+        let m = closed_form::minimise(energy, [x, z], [h, v], lengths, HorizontalForce::Any);
         if !m.converged {
             return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure });
         }
@@ -184,7 +184,7 @@ impl<'a> Chain<'a> {
         }
         let frame = Frame::new(load, chord).facing(chord);
         let (x, z) = frame.split(chord / length);
-        let (h, v) = kernel::guess([x, z], total / self.axial_stiffness);
+        let (h, v) = closed_form::guess([x, z], total / self.axial_stiffness);
         Ok(frame.join(h * total, v * total))
     }
 }

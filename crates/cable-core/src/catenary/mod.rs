@@ -3,7 +3,7 @@
 //! | room | content |
 //! |---|---|
 //! | `span.rs` | [`Catenary`] and [`Span`]: the solved span and its questions |
-//! | `kernel.rs` | the formulas and the Newton iteration of one piece |
+//! | `closed_form.rs` | the formulas and the Newton iteration of one piece |
 //! | `chain.rs` | several pieces with dead loads between them |
 //!
 //! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the
@@ -11,14 +11,14 @@
 //! distributed loads", *Engineering Structures* 10 (1988) 174–184, discuss its solution. Here the
 //! end force is the minimum of the convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so that
 //! one Newton with a line search finds it from any start: slack, taut, folded, vertical. See
-//! `kernel` for the formulas.
+//! `closed_form.rs` for the formulas.
 //!
 //! Material is measured by its unstretched length s at rest temperature. Warmth lengthens it by 1 +
 //! αΔT and keeps total load and EA, so the span is solved with length (1 + αΔT)L and the same total
 //! load.
 
 mod chain;
-mod kernel;
+mod closed_form;
 mod span;
 #[cfg(test)]
 mod tests;

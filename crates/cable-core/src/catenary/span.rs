@@ -1,6 +1,6 @@
 //! A span is a cable between two points; solved, it is a [`Catenary`].
 
-use super::kernel::{self, ChainPiece, HorizontalForce};
+use super::closed_form::{self, ChainPiece, HorizontalForce};
 use crate::error::{NoEquilibrium, SolveError, SpanError};
 use crate::math::{Vec2, bounded, perp};
 
@@ -130,12 +130,12 @@ impl Catenary {
         let chord = [x / length, z / length];
         let piece = ChainPiece { w: 1.0, l: 1.0, eps };
         let (h, v, iterations) = if chord[0] < f64::MIN_POSITIVE {
-            (0.0, kernel::vertical(chord[1], eps), 0)
+            (0.0, closed_form::vertical(chord[1], eps), 0)
         } else {
-            let (h, v) = kernel::guess(chord, eps);
+            let (h, v) = closed_form::guess(chord, eps);
             let lengths = 1.0 + chord[0] + chord[1].abs();
             let energy = |h, v| piece.energy(h, v);
-            let m = kernel::minimise(energy, chord, [h, v], lengths, HorizontalForce::Positive);
+            let m = closed_form::minimise(energy, chord, [h, v], lengths, HorizontalForce::Positive);
             if !m.converged {
                 return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure * length });
             }

@@ -1,4 +1,4 @@
-use super::kernel::ChainPiece;
+use super::closed_form::ChainPiece;
 use super::*;
 use crate::math::Vec2;
 use proptest::prelude::*;

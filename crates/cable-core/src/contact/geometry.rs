@@ -20,7 +20,7 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use super::Gap;
 use super::distance::nearest_fraction;
-use super::outline::Outline;
+use super::moving_outline::Outline;
 use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{LineEnds, Obstacle, Shape};
 

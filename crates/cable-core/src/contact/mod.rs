@@ -5,10 +5,10 @@
 //! | `gap.rs` | the gap between a cable and one feature of an obstacle |
 //! | `geometry.rs`, `distance.rs` | obstacles as features in search trees; distances |
 //! | `sweep.rs` | continuous collision detection by conservative advancement |
-//! | `pairs.rs`, `neighbour_lists.rs` | contact pairs of a chain; what each segment can come near to |
+//! | `obstacle_pairs.rs`, `neighbour_lists.rs` | contact pairs of a chain; what each segment can come near to |
 //! | `self_contact_pairs.rs`, `self_crossings.rs` | contact of a cable with itself; crossings of its line |
 //! | `barrier.rs`, `friction.rs` | contact potential and friction potential |
-//! | `outline.rs` | the moving outline of a robot |
+//! | `moving_outline.rs` | the moving outline of a robot |
 //! | `nearest_corner.rs`, `swept_corners.rs` | the body that a cable wraps; corners that it has passed through |
 //!
 //! [`World`] compiles a scene's obstacles once. Gaps are measured from the cable's *surface*: the
@@ -17,14 +17,14 @@
 //! sides.
 
 pub(crate) mod barrier;
-pub mod distance;
+pub(crate) mod distance;
 pub(crate) mod friction;
 mod gap;
 pub(crate) mod geometry;
+pub(crate) mod moving_outline;
 pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
-pub mod outline;
-pub(crate) mod pairs;
+pub(crate) mod obstacle_pairs;
 pub(crate) mod self_contact_pairs;
 pub(crate) mod self_crossings;
 pub(crate) mod sweep;
@@ -36,6 +36,7 @@ use crate::math::{RigidPose, Vec2};
 use crate::scene::Obstacle;
 
 pub use gap::Gap;
+pub use moving_outline::Outline;
 
 /// The obstacles of a scene, ready for queries by one cable.
 #[derive(Clone, Debug, Default)]
@@ -53,7 +54,7 @@ impl World {
 
     /// The same obstacles and an outline that can be moved, for a cable of this radius (m).
     #[must_use]
-    pub(crate) fn with_outline(&self, outline: &outline::Outline, cable_radius: f64) -> Self {
+    pub(crate) fn with_outline(&self, outline: &moving_outline::Outline, cable_radius: f64) -> Self {
         let mut geometry = self.geometry.clone();
         let obstacle = geometry.bodies().iter().map(|b| b.obstacle + 1).max().unwrap_or(0);
         geometry.add_outline(outline, obstacle, cable_radius);
@@ -61,7 +62,7 @@ impl World {
     }
 
     /// Puts the outline where it is now.
-    pub(crate) fn place_outline(&mut self, outline: &outline::Outline, placement: RigidPose) {
+    pub(crate) fn place_outline(&mut self, outline: &moving_outline::Outline, placement: RigidPose) {
         self.geometry.place_outline(outline, placement);
     }
 

@@ -144,7 +144,7 @@ fn gap(geometry: &Geometry, part: ObstaclePart, [a, b]: [Vec2; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::pairs::Pair;
+    use super::super::obstacle_pairs::Pair;
     use super::*;
     use crate::scene::{Obstacle, Shape};
     use proptest::prelude::*;

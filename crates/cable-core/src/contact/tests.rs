@@ -204,7 +204,7 @@ fn pair_sums_have_no_jump() {
     let reach = 0.2;
     let energy = |x: &[Vec2; 3]| {
         let mut sum = 0.0;
-        let mut add = |p: pairs::Pair| sum += p.weight * (reach - p.gap.gap_m).powi(2);
+        let mut add = |p: obstacle_pairs::Pair| sum += p.weight * (reach - p.gap.gap_m).powi(2);
         let g = world.geometry();
         g.node_pairs(None, x[0], Some(x[1]), reach, &mut add);
         g.node_pairs(Some(x[0]), x[1], Some(x[2]), reach, &mut add);

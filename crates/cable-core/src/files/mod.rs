@@ -18,7 +18,7 @@ use atomic_write_file::AtomicWriteFile;
 use crate::error::SceneError;
 use crate::record::ReadError;
 use crate::scene::Scene;
-use crate::scene::file::MAX_TEXT_BYTES;
+use crate::scene::read::file::MAX_TEXT_BYTES;
 
 pub use self::run_folder::{RunEnd, RunFolder};
 pub use self::saved_run::{RunRemark, SavedRun, is_run, load_run};

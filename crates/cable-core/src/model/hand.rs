@@ -8,7 +8,7 @@
 //! pulled harder and harder, not reached. The support is a node of the cable like any other. With
 //! both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again,
 //! of stiffness κ = k + c/Δt to a place p, so it is one more term of the energy that a step
-//! minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
+//! minimises, convex, and needs no exchange of forces and no limit of the step (`Hand::pull`).
 
 use super::smoothed_target::SmoothedTarget;
 use crate::math::{Vec2, larger};
@@ -42,7 +42,7 @@ pub fn default_hand_stiffness(problem: &Problem) -> f64 {
 
 /// A hand that holds a support by a spring with a damper beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub(crate) struct Hand {
     end: SmoothedTarget,
     /// N/m.
     stiffness: f64,
@@ -70,12 +70,6 @@ impl Hand {
     #[must_use]
     pub fn end(&self) -> &SmoothedTarget {
         &self.end
-    }
-
-    /// N/m.
-    #[must_use]
-    pub fn stiffness(&self) -> f64 {
-        self.stiffness
     }
 
     /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of

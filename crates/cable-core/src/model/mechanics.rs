@@ -3,8 +3,8 @@
 use std::any::Any;
 use std::sync::Arc;
 
-use super::gauge::TensionGauge;
 use super::settings::Settings;
+use super::tension_gauge::TensionGauge;
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
 use crate::model_id::Model;
@@ -107,7 +107,7 @@ pub trait Mechanics: Send {
     }
 
     /// As [`Self::advance`]; every inner step with inertia passes the tension along the cable to
-    /// `gauge`.
+    /// `tension_gauge`.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -150,7 +150,7 @@ pub trait Mechanics: Send {
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
     /// From now on a hand at `hand_m` (m) holds a support by a spring
-    /// ([`super::hand::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// (`model/hand.rs`) in `Dynamic` steps, its free end no faster than
     /// [`super::Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A
     /// support without a node of its own (a pulley), and one of a robot, is dragged.
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {

@@ -4,7 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `mechanics.rs`, `settings.rs` | the trait and its reports; [`Settings`] |
-//! | `gauge/` | tensions of the inner steps |
+//! | `tension_gauge/` | tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs` | the choice of a model |
 //! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
@@ -16,24 +16,32 @@
 //! never a guess.
 
 mod arc_nodes;
-pub mod auto;
+pub(crate) mod auto;
 mod auxiliary_weight;
 pub mod catenary;
 pub mod fem;
-pub mod gauge;
 pub mod hand;
 pub(crate) mod initial_equilibrium;
 mod layers;
 pub mod mass_spring;
-pub mod mechanics;
+pub(crate) mod mechanics;
 mod mobilised_friction;
-pub mod registry;
-pub mod settings;
-pub mod smoothed_target;
+pub(crate) mod registry;
+pub(crate) mod settings;
+pub(crate) mod smoothed_target;
 pub mod spans;
+pub mod tension_gauge;
 
+pub use self::auto::Question;
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
-pub use self::registry::{Capabilities, ModelInfo, ModelSource, build};
+pub(crate) use self::registry::ModelSource;
+pub use self::registry::{Capabilities, ModelInfo, build};
 pub(crate) use self::settings::MIN_TOLERANCE;
-pub use self::settings::Settings;
+pub use self::settings::{Settings, Stepping};
 pub use crate::model_id::Model;
+
+/// Fastest motion in which masses move, m/s: supports that are faster are refused, and
+/// `mass-spring` cuts what is faster. Slower: recoils of broken ropes are cut (breaking strain
+/// times wave speed: 20 m/s for steel, 300 m/s for nylon); faster: air, which no model has, would
+/// rule, and thin obstacles cost ever shorter sub-steps.
+pub(crate) const MAX_SPEED: f64 = 300.0;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::auto::{self, Question};
 use super::layers::spans_then_fem::SwitchingModel;
-use super::layers::{Layered, leavable_wheels, similar};
+use super::layers::{Layered, leavable_wheels, natural_scale};
 use super::mechanics::{Constructor, Mechanics};
 use super::mobilised_friction::refuse_mobilised;
 use super::settings::Settings;
@@ -73,7 +73,7 @@ pub struct ModelInfo {
     /// Its capabilities.
     pub capabilities: Capabilities,
     /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
-    /// iteration stops: what [`crate::conformance`] asks of it.
+    /// iteration stops: what the conformance suite of the models asks of it.
     pub accuracy: [f64; 2],
     construct: fn(Arc<Problem>, Settings) -> Built,
 }
@@ -243,7 +243,7 @@ impl ModelSource {
     }
 }
 
-/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see `auto::choose`); where it
 /// chooses `spans`, `fem` stands behind it (`spans_then_fem.rs`).
 ///
 /// # Errors
@@ -264,7 +264,7 @@ fn at_natural_scale(
     let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
     let hand_stiffness_n_per_m = settings.hand_stiffness_n_per_m.map(|k| k / by.length);
     let inner = construct(copy, Settings { hand_speed_m_per_s, hand_stiffness_n_per_m, ..settings })?;
-    Ok(Box::new(similar::ScaledModel::new(problem, by, inner)))
+    Ok(Box::new(natural_scale::ScaledModel::new(problem, by, inner)))
 }
 
 fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::series::{Series, TIME_TOLERANCE_S, turn_between};
+use super::time_series::{Series, TIME_TOLERANCE_S, turn_between};
 use super::wheels_as_posts::WheelPost;
 use crate::contact::World;
-use crate::contact::outline::Outline;
+use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
-use crate::scene::scaled::Similarity;
+use crate::scene::similarity::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
 use crate::solution::{CableSolution, Warning};
 
@@ -45,7 +45,8 @@ pub struct Problem {
     pub loads: Vec<PointLoad>,
     /// Obstacles that it can touch and that stay where they are.
     pub world: Arc<World>,
-    /// All obstacles that stay where they are, if it can come to none of them (see `reach.rs`).
+    /// All obstacles that stay where they are, if it can come to none of them (see
+    /// `unreachable_obstacles.rs`).
     pub(crate) unreachable: Option<Arc<World>>,
     /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,
@@ -173,7 +174,7 @@ impl Problem {
 
     /// The same for a model that knows nothing of obstacles that move.
     #[must_use]
-    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
+    pub(crate) fn without_outline(this: Arc<Self>) -> Arc<Self> {
         if this.outline.is_none() {
             return this;
         }
@@ -221,7 +222,7 @@ impl Problem {
     /// loads at the same place. At rest the tension just inside a free end is the size of it, and
     /// the cable pulls at it with the opposite of it.
     #[must_use]
-    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+    pub(crate) fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
         let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
         let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
@@ -232,7 +233,7 @@ impl Problem {
     /// A force that says how large forces are here, N: the whole distributed load, point loads and
     /// the weight of lumps, or EA·1e-6 without one.
     #[must_use]
-    pub fn force_scale(&self) -> f64 {
+    pub(crate) fn force_scale(&self) -> f64 {
         self.whole_load().max(1e-6 * self.axial_stiffness)
     }
 

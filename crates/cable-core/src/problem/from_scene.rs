@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::definition::{PointLoad, Problem, StandingWheels, SupportPoint, WheelsAsPosts};
 use super::robot_outline::robot_outline;
-use super::series::Series;
+use super::time_series::Series;
 use super::wheels_as_posts::{WithPosts, standing_wheels, with_posts};
 use super::{ground_route, route_check, support_clearance};
 use crate::contact::World;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
-use crate::scene::scaled::Similarity;
+use crate::scene::similarity::Similarity;
 use crate::scene::{Cable, FrictionMobilised, Scene, SupportKind, View};
 use crate::solution::Warning;
 

@@ -4,11 +4,11 @@
 //! |---|---|
 //! | `definition.rs` | [`Problem`]: the cable, its supports and loads |
 //! | `from_scene.rs` | the steps from a scene to its problems |
-//! | `series.rs` | forces and wind as functions of time |
+//! | `time_series.rs` | forces and wind as functions of time |
 //! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
 //! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
 //! | `robot_outline.rs` | the robot as an obstacle |
-//! | `reach.rs` | obstacles that the cable cannot come to are left out |
+//! | `unreachable_obstacles.rs` | obstacles that the cable cannot come to are left out |
 //! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
 //! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
@@ -23,12 +23,12 @@ mod definition;
 mod describe_place;
 mod from_scene;
 pub(crate) mod ground_route;
-mod reach;
 pub(crate) mod robot_outline;
 mod rounding_error;
 mod route_check;
-mod series;
 mod support_clearance;
+mod time_series;
+mod unreachable_obstacles;
 pub(crate) mod wheel_passage;
 pub(crate) mod wheels_as_posts;
 
@@ -36,4 +36,4 @@ pub use self::definition::{PointLoad, Problem, SupportPoint};
 pub(crate) use self::definition::{StandingWheels, WheelsAsPosts};
 pub use self::from_scene::{check, problems};
 pub use self::robot_outline::{OUTLINE_NAME, robot_outline};
-pub use self::series::Series;
+pub use self::time_series::Series;

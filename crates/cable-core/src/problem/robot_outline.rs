@@ -1,6 +1,6 @@
 //! The outline of the robot is an obstacle for a cable.
 
-use crate::contact::outline::Outline;
+use crate::contact::moving_outline::Outline;
 use crate::math::vec2;
 use crate::scene::preset::robot_preset;
 use crate::scene::robot::Pose;

@@ -3,7 +3,7 @@
 
 use super::definition::Problem;
 use crate::error::{SceneError, SceneFault};
-use crate::scene::read::path::Path;
+use crate::scene::read::key_path::Path;
 
 /// Greatest depth to which a route may cut into a beam besides the cable's diameter, m: drawn along
 /// a surface by a few points it cuts corners off. Smaller: such routes are refused. Larger: more of

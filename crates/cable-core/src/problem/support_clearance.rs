@@ -10,7 +10,7 @@ use super::definition::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::math::Vec2;
 use crate::scene::SupportKind;
-use crate::scene::read::path::Path;
+use crate::scene::read::key_path::Path;
 use crate::solution::{Warning, WarningCause};
 
 /// Depth inside a surface at which a point may be that was meant to be on it, of the radius:

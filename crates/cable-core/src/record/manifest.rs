@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::choice::{NodeChoice, NodeInterval};
 use super::fingerprint::Fingerprint;
+use super::node_choice::{NodeChoice, NodeInterval};
 use crate::model_id::Model;
 
 /// Progress of a run.

@@ -5,7 +5,7 @@
 //! | `history.rs` | tensions and reactions over time, in memory |
 //! | `manifest.rs` | `run.toml`: what was asked, how far the run came, which files are its own |
 //! | `run_tables.rs` | the three tables of a run, read together |
-//! | `columns.rs`, `choice.rs` | names of the tables' columns; which nodes and figures are written |
+//! | `columns.rs`, `node_choice.rs` | names of the tables' columns; which nodes and figures are written |
 //! | `run_writer.rs`, `page.rs` | the tables are written in whole instants; rows that lie on one page of a file |
 //! | `table_reader.rs`, `csv_records.rs` | the tables are read up to their last whole row |
 //! | `table_error.rs` | faults of tables |
@@ -27,12 +27,12 @@
 //! [`read_nodes`] and [`read_events`] read one of them. Folders are made and read in
 //! [`crate::files`].
 
-mod choice;
 mod columns;
 mod csv_records;
 mod fingerprint;
 mod history;
 mod manifest;
+mod node_choice;
 mod page;
 mod run_tables;
 mod run_writer;
@@ -41,13 +41,12 @@ mod table_reader;
 #[cfg(test)]
 mod tables_tests;
 
-pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub use columns::RobotColumns;
-pub use csv_records::WholeRecords;
 pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use manifest::MANIFEST_HEAD;
 pub use manifest::{FileRecord, Manifest, NodeSummary, RunRequest, RunStatus, RunStop};
+pub use node_choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub(crate) use page::Pages;
 pub(crate) use run_tables::read_run;
 pub use run_tables::{LeftOut, RunTables};

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
-use super::choice::{NodeChoice, NodeColumns, NodeInterval, node_values};
 use super::columns::{EVENT_COLUMNS, EVENTS, HISTORY, NODES, RobotColumns, extras, history_columns};
+use super::node_choice::{NodeChoice, NodeColumns, NodeInterval, node_values};
 use super::table_error::{WriteError, WrittenNumber};
 use crate::scene::Scene;
 use crate::solution::{Solution, Warning, WarningKind};

@@ -4,9 +4,9 @@ use std::io::Read;
 
 use serde::{Deserialize, Serialize};
 
-use super::choice::{NodeColumns, node_of};
 use super::columns::{EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, known_extra};
 use super::csv_records::WholeRecords;
+use super::node_choice::{NodeColumns, node_of};
 use super::table_error::{ReadError, RowFault};
 use crate::solution::{WarningCause, WarningKind};
 

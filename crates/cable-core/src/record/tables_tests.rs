@@ -1,6 +1,6 @@
 use std::io::Write;
 
-use super::choice::node_values;
+use super::node_choice::node_values;
 use super::*;
 use crate::model::Model;
 use crate::solution::{

@@ -33,7 +33,7 @@
 //!
 //! The work of the ground where it tips the vehicle over a corner takes nothing from its speed: on
 //! such ground its weight and the hitch do work that is not along the way, and
-//! [`RobotWork::ground_j`] is that.
+//! `RobotWork::ground_j` is that.
 //!
 //! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
 //! and jerk; `speed_balance.rs` solves for the speed that drive, tracks and cable leave of it.
@@ -54,7 +54,7 @@ use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
-pub use crate::solution::robot_report::{Going, RobotReport, RobotWork};
+use crate::solution::robot_report::{Going, RobotReport};
 
 /// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
 /// t swing at 14 rad/s, 17 times slower.
@@ -358,12 +358,6 @@ impl Vehicle {
     #[must_use]
     pub fn mass(&self) -> f64 {
         self.preset.mass_kg.value
-    }
-
-    /// Speed, m/s.
-    #[must_use]
-    pub fn speed(&self) -> f64 {
-        self.speed
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is

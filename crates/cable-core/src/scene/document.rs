@@ -13,7 +13,7 @@ use super::robot::{Pose, Robot};
 use crate::math::Point;
 
 /// The file version this build writes, and the newest it reads.
-pub const VERSION: u32 = 1;
+pub(crate) const VERSION: u32 = 1;
 
 /// A whole scene, as a scene file holds it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

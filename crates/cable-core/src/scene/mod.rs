@@ -10,37 +10,40 @@
 //! | `read/` | files in and out, and the refusal of what cannot be solved |
 //! | `library/` | named scenes and presets |
 //! | `nearest.rs` | the known name that a mistyped one means |
-//! | `import.rs`, `scaled.rs` | lines from tables and drawings; a similar copy at another scale |
+//! | `import.rs`, `similarity.rs` | lines from tables and drawings; a similar copy at another scale |
+//! | `comparison.rs` | in which keys do two scenes differ? |
 //!
 //! A [`Scene`] is a plain document: every field is public, so that an editor can hold a half-typed
 //! one. [`Scene::validate`] says whether it can be solved; [`crate::Simulation::new`] refuses one
 //! that cannot.
 
-pub mod cable;
+pub(crate) mod cable;
+mod comparison;
 mod document;
-pub mod environment;
-pub mod ground;
+pub(crate) mod environment;
+pub(crate) mod ground;
 pub mod import;
-pub mod library;
-pub mod load;
-pub mod motion;
+pub(crate) mod library;
+pub(crate) mod load;
+pub(crate) mod motion;
 mod nearest;
-pub mod obstacle;
+pub(crate) mod obstacle;
 pub(crate) mod read;
-pub mod robot;
+pub(crate) mod robot;
 mod robot_contact_outline;
-pub mod scaled;
-pub mod support;
+pub(crate) mod similarity;
+pub(crate) mod support;
 
 pub use cable::{Cable, FrictionMobilised};
-pub use document::{Scene, VERSION};
+pub use comparison::{Change, FieldValue};
+pub use document::Scene;
+pub(crate) use document::VERSION;
 pub use environment::{Environment, STANDARD_GRAVITY, View};
+pub use ground::{Ground, Stand};
 pub use library::{catalog, preset};
 pub use load::Load;
 pub use motion::Motion;
 pub(crate) use obstacle::LineEnds;
 pub use obstacle::{Obstacle, Shape};
-pub use read::changes::{Change, FieldValue};
-pub use read::{file, schema, validate};
-pub use robot::{Heading, Robot, RobotTask};
+pub use robot::{Heading, Pose, ROLLING_RESISTANCE, Robot, RobotTask, TRACK_FRICTION};
 pub use support::{PulleySide, Support, SupportKind};

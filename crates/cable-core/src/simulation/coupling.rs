@@ -15,14 +15,14 @@ use std::mem::discriminant;
 
 use super::speed_search::{SpeedSearch, Trial};
 use super::{RunPhase, Simulation};
-use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
-use crate::robot::{self, Drive, Going, Pulls, Vehicle};
+use crate::robot::{self, Drive, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
-use crate::solution::{Cost, Warning, WarningCause};
+use crate::simulated_cable::SimulatedCable;
+use crate::solution::{Cost, Going, Warning, WarningCause};
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
@@ -56,7 +56,7 @@ impl Simulation {
         let mut left = dt_s;
         while left > 0.0 {
             let longest = match inertia {
-                Inertia::Dynamic => self.cables.iter().map(BreakableCable::inner_step_s).fold(robot::STEP_S, smaller),
+                Inertia::Dynamic => self.cables.iter().map(SimulatedCable::inner_step_s).fold(robot::STEP_S, smaller),
                 Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
             };
             let pieces = (left / longest - 1e-9).ceil().max(1.0);
@@ -81,7 +81,7 @@ impl Simulation {
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
         let drive = vehicle.begin(step.step_s, begun);
         let start = vehicle.clone();
-        let kept: Vec<BreakableCable> = self.cables.iter().map(BreakableCable::checkpoint).collect();
+        let kept: Vec<SimulatedCable> = self.cables.iter().map(SimulatedCable::checkpoint).collect();
         let (mut speed, mut search, mut iterations) = (start.foreseen(drive), SpeedSearch::new(), 0);
         loop {
             self.cost = Cost::default();
@@ -151,7 +151,7 @@ impl Simulation {
     fn warn_out_of_balance(&mut self, left_n: Option<f64>, hitches: &[(usize, usize)]) {
         let (Some(left_n), Some(vehicle)) = (left_n, &self.vehicle) else { return };
         let [value, limit] = vehicle.imbalance(left_n, self.pulls(hitches));
-        let Some(problem) = hitches.first().and_then(|(k, _)| self.cables.get(*k)).map(BreakableCable::problem) else {
+        let Some(problem) = hitches.first().and_then(|(k, _)| self.cables.get(*k)).map(SimulatedCable::problem) else {
             return;
         };
         let at = vehicle.hitch();
@@ -170,7 +170,7 @@ impl Simulation {
     }
 
     /// The cables are as they were before.
-    fn go_back(&mut self, before: &[BreakableCable]) {
+    fn go_back(&mut self, before: &[SimulatedCable]) {
         for (cable, before) in self.cables.iter_mut().zip(before) {
             cable.restore(before);
         }
@@ -189,11 +189,11 @@ impl Simulation {
     /// Returns what the cables do to the robot now.
     fn pulls(&self, hitches: &[(usize, usize)]) -> Pulls {
         let pull = |&(cable, support): &(usize, usize)| {
-            self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.pull_on(support))
+            self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.force_on_support(support))
         };
         Pulls {
             hitch: hitches.iter().map(pull).sum(),
-            outline: self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.force_n).sum(),
+            outline: self.cables.iter().filter_map(SimulatedCable::robot_contact).map(|o| o.force_n).sum(),
         }
     }
 
@@ -234,7 +234,7 @@ impl Simulation {
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();
         self.lead(hitch, to, &self.hitches());
-        self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
+        self.cables.iter_mut().for_each(SimulatedCable::begin_step);
         let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
         self.refresh(RunPhase::InMotion);
@@ -243,13 +243,13 @@ impl Simulation {
 
     /// Returns how far the outline that came least far is from where it was led, m.
     fn left_m(&self) -> f64 {
-        self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.left_m).fold(0.0, larger)
+        self.cables.iter().filter_map(SimulatedCable::robot_contact).map(|o| o.left_m).fold(0.0, larger)
     }
 
     /// The vehicle is where the outline came that came least far; how far that is from where it was
     /// led, m.
     fn hold_vehicle(&mut self) -> f64 {
-        let outlines = self.cables.iter().filter_map(BreakableCable::robot_contact);
+        let outlines = self.cables.iter().filter_map(SimulatedCable::robot_contact);
         let last = outlines.reduce(|a, b| if b.left_m > a.left_m { b } else { a }).filter(|o| o.left_m > 0.0);
         if let (Some(vehicle), Some(last)) = (&mut self.vehicle, last) {
             vehicle.hold_back(last.placement);

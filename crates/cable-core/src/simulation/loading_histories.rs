@@ -7,9 +7,9 @@
 //! friction has forgotten how it was laid. The range of the results is a lower bound: other
 //! histories may leave more.
 
-use crate::breakage::BreakableCable;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::{Inertia, Model, ModelSource, Settings};
+use crate::simulated_cable::SimulatedCable;
 use crate::solution::{CableSolution, EndMove, Histories};
 
 /// Ways of an end, of the cable's length, shortest first. Less: what is held in the middle of a
@@ -38,7 +38,7 @@ const MOVE_TIME_S: f64 = 1e-6;
 
 /// The same cable at rest as the most capable model has it, on a mesh of few elements, to be
 /// drawn to and fro; None where that finds no rest.
-pub(super) fn exploration_copy(cable: &BreakableCable) -> Option<BreakableCable> {
+pub(super) fn exploration_copy(cable: &SimulatedCable) -> Option<SimulatedCable> {
     let elements = cable.answer().nodes.len().saturating_sub(1);
     if cable.model().capabilities().explores_histories && elements <= MAX_ELEMENTS {
         return Some(cable.clone());
@@ -56,13 +56,13 @@ pub(super) fn exploration_copy(cable: &BreakableCable) -> Option<BreakableCable>
 
 /// Returns whether `spans` was asked for the cable before another model, and refused: it would
 /// refuse again. Of a stiff cable it was not asked.
-pub(super) fn refused_by_spans(cable: &BreakableCable) -> bool {
+pub(super) fn refused_by_spans(cable: &SimulatedCable) -> bool {
     cable.refusal().is_some() && !(cable.problem().bending_stiffness > 0.0)
 }
 
 /// Other histories, and what they would have left in the cable; `sound` judges each as if it
 /// were the answer.
-pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolution) -> bool) -> Histories {
+pub(super) fn other_histories(cable: &SimulatedCable, sound: impl Fn(&CableSolution) -> bool) -> Histories {
     let answer = cable.answer();
     let laid = tensions(&answer);
     let (mut moves, mut left) = (Vec::new(), vec![laid]);
@@ -93,7 +93,7 @@ pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolut
 /// Returns the tensions that are left after a support has been moved from its place (m) in a
 /// direction and put back, further each time, until that makes no difference any more.
 fn move_and_return(
-    cable: &BreakableCable,
+    cable: &SimulatedCable,
     support: usize,
     place: Vec2,
     direction: Vec2,
@@ -126,7 +126,7 @@ fn move_and_return(
 
 /// Draws a support to a place (m) without inertia; the iterations that it took, None where that
 /// fails or breaks the cable.
-fn move_support_to(cable: &mut BreakableCable, support: usize, place: Vec2) -> Option<usize> {
+fn move_support_to(cable: &mut SimulatedCable, support: usize, place: Vec2) -> Option<usize> {
     cable.drag_support(support, place);
     let report = cable.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
     cable.breaks().is_empty().then_some(report.cost.iterations)

@@ -3,10 +3,10 @@
 //! finer mesh.
 
 use super::{RunPhase, Simulation};
-use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::model::auto;
 use crate::model::{Model, ModelSource};
+use crate::simulated_cable::SimulatedCable;
 use crate::solution::ModelReason;
 
 impl Simulation {
@@ -14,12 +14,12 @@ impl Simulation {
     pub(super) fn settle_until_verified(&mut self) -> Result<(), SolveError> {
         let mut first: Option<SolveError> = None;
         loop {
-            let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
+            let found = self.for_each_cable(SimulatedCable::settle).and_then(|()| {
                 self.refresh(RunPhase::AtRest);
                 self.verify_answers()
             });
             let Err(error) = found else { return Ok(()) };
-            let error = match self.cables.iter().find_map(BreakableCable::refusal) {
+            let error = match self.cables.iter().find_map(SimulatedCable::refusal) {
                 Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
                     SolveError::clearer(refusal.clone(), error)
                 }
@@ -78,6 +78,6 @@ impl Simulation {
     /// have to, which cannot move, and once time has run: the cable is no longer on its route.
     fn model_at_rest(&self) -> Option<Model> {
         let begins = self.reason == ModelReason::Inertia && self.time_s() <= 0.0;
-        if begins { auto::before_motion(self.cables.iter().map(BreakableCable::problem)) } else { None }
+        if begins { auto::before_motion(self.cables.iter().map(SimulatedCable::problem)) } else { None }
     }
 }

@@ -118,15 +118,28 @@ impl CableSolution {
 /// beyond, it is a corner or a fold.
 const MAX_TURN: f64 = 1.0;
 
+/// Least number of elements of a mesh with which a finer one is compared: the errors of fewer say
+/// nothing about those of more.
+pub(crate) const MIN_COMPARED_ELEMENTS: usize = 4;
+
 /// Curvatures of two neighbours on one curve differ by no more than this factor. Less: catenaries
 /// on few nodes are read as straighter than they are; more: what leaves a round is bent.
 const MAX_CURVATURE_RATIO: f64 = 3.0;
+
+impl CableSolution {
+    /// Returns where the cable is at an arc length, m: between two nodes on the curve that has
+    /// their mean curvature.
+    #[must_use]
+    pub fn position_at(&self, arc_length_m: f64) -> Option<Vec2> {
+        place(&self.nodes, arc_length_m)
+    }
+}
 
 /// Returns where the cable is at an arc length, m: between two nodes on the curve that has their
 /// mean curvature and leaves both symmetrically, which is a circle's to the fourth order in the
 /// distance of the nodes; a straight line between them is of the second.
 #[must_use]
-pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
+pub(crate) fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
     let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m);
     let (Some(a), Some(b)) = (k.checked_sub(1).and_then(|k| nodes.get(k)), nodes.get(k)) else {
         return nodes.get(k).or(nodes.last()).map(Node::at);

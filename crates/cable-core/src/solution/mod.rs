@@ -16,12 +16,12 @@
 
 mod energy;
 mod energy_account;
-pub mod error_estimates;
+pub(crate) mod error_estimates;
 mod inertia_effect;
 mod model_reason;
 mod next_cheaper;
 pub(crate) mod node_motion;
-pub mod robot_report;
+pub(crate) mod robot_report;
 mod shared_nodes;
 mod warning;
 
@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, larger};
 use crate::model_id::Model;
-use crate::verification::Verification;
+use crate::verification_report::Verification;
 
 pub use self::energy::Energy;
 pub use self::energy_account::EnergyAccount;
@@ -37,7 +37,7 @@ pub use self::error_estimates::ErrorEstimates;
 pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
 pub use self::next_cheaper::{NeglectedEffect, NextCheaper};
-use self::robot_report::RobotReport;
+pub use self::robot_report::{Going, RobotReport, RobotWork};
 pub use self::shared_nodes::SharedNodes;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};

@@ -29,12 +29,6 @@ pub use balance::ForceBalance;
 pub use places::{CablePlace, Sag, TensionAt, TouchKind, Touchdown};
 pub use shape::{sag, stretched_length_m};
 
-// Users of the library know these analyses by this path.
-pub use crate::analysis::{
-    Bending, COMPARED_ELEMENTS, Compared, EndStiffness, NeglectedBending, Setting, answer_with, end_stiffness,
-    neglected_bending, scene_with_bending, settle_with_bending, stiffness,
-};
-
 /// The figures of one cable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CableSummary {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::analysis::{Bending, end_stiffness, neglected_bending, settle_with_bending};
 use crate::model::{Model, Settings};
 use crate::scene::{Motion, Support, catalog};
 use crate::simulation::Simulation;

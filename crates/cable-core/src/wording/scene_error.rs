@@ -1,7 +1,7 @@
 //! These sentences say why a scene is refused: the place in its file, the fault, and what mends it.
 
 use super::{Figures, Sentence, display_in_si, six_digits};
-use crate::error::{SceneError, SceneFault, ShapeFault};
+use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::units::{Quantity, UnitSystem};
 
 display_in_si!(SceneError, SceneFault);
@@ -39,7 +39,7 @@ impl Sentence for SceneFault {
             }
             Self::Type { found, needed } => format!("{found} where {needed} is needed"),
             Self::Elements { count, needed } => format!("{count} elements where {needed} is needed"),
-            Self::Shape(fault) => fault.sentence(units),
+            Self::Document(fault) => fault.sentence(units),
             Self::TooMany { count, most } => format!("{count} are more than the {most} allowed"),
             Self::TooFewPoints { count, least } => {
                 format!("{count} points where at least {least} are needed")
@@ -122,7 +122,7 @@ fn hint(nearest: Option<&str>) -> String {
     nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
 }
 
-impl Sentence for ShapeFault {
+impl Sentence for DocumentFault {
     fn sentence(&self, _: UnitSystem) -> String {
         let text = match self {
             Self::Refused { message } => return message.clone(),

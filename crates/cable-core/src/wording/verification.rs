@@ -2,7 +2,7 @@
 
 use super::{Figures, Sentence, display_in_si, serialize_in_si};
 use crate::units::{Quantity, UnitSystem};
-use crate::verification::{Finding, NotChecked, Verification};
+use crate::verification_report::{Finding, NotChecked, Verification};
 
 display_in_si!(Finding, NotChecked);
 serialize_in_si!(NotChecked);

@@ -6,7 +6,7 @@
 //! velocities belong to half a sub-step earlier. Sub-steps are bounded by the stable step, so
 //! ladders in time begin below it.
 
-use cable_core::model::mass_spring::Stepping;
+use cable_core::model::Stepping;
 use cable_core::scene::{Scene, Support, SupportKind};
 use cable_core::state::State;
 use cable_core::{Model, Settings, Simulation, Vec2};

@@ -4,8 +4,8 @@ use egui::{TextEdit, Ui};
 
 use crate::command::{Command, FileCommand};
 use crate::io::feedback::{Answers, MAX_RATING, MIN_GOOD_RATING, QUESTIONS};
+use crate::widgets::checkbox_and_radio::radio_button;
 use crate::widgets::field;
-use crate::widgets::tick::radio_button;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut Vec<Command>) {

@@ -58,7 +58,7 @@ impl Section {
     fn panel(self, has_head_above: bool) -> PanelUi {
         match self {
             Self::Outline => panels::scene::outline::ui,
-            Self::Selected => panels::selected::ui,
+            Self::Selected => panels::selected_item::ui,
             Self::Warnings => panels::warnings::ui,
             Self::MarkedPlace | Self::UnmarkedPlace => panels::analysis::tension_budget::ui,
             Self::Readouts if has_head_above => panels::readouts::rest,

@@ -1,7 +1,7 @@
 //! The menu bar offers the commands, and the status line says how the solver is doing.
 
+use cable_core::answer_verifier::Verification;
 use cable_core::scene::catalog;
-use cable_core::verify::Verification;
 use egui::{Align, Button, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
 
 use crate::app::keys;
@@ -14,8 +14,8 @@ use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::system::System;
+use crate::widgets::checkbox_and_radio::{checkbox, radio_value};
 use crate::widgets::highlight;
-use crate::widgets::tick::{checkbox, radio_value};
 
 /// Narrower windows (points) have the last entries of the bar in a menu: the figures on the right
 /// would lie over them.
@@ -28,7 +28,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
         highlight::register(&edit.response, "Edit menu");
         ui.menu_button("View", |ui| view(ui, state, commands));
-        ui.menu_button("Tools", |ui| crate::app::tools::menu(ui, state, commands));
+        ui.menu_button("Tools", |ui| crate::app::analysis_tools::menu(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
         ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
         if ui.ctx().content_rect().width() < MIN_WHOLE_WIDTH {

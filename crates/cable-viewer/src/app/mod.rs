@@ -3,14 +3,15 @@
 //! - `layout`, `menu`, `keys`, `palette`, `palette_entries`: where panels are, and every command by
 //!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
-//! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
+//! - `first_steps`, `welcome_dialog`: the hints of the first minute, and what to begin with
 //! - `frame_pacing`: fewer frames where there is no GPU
 //! - `held_clicks`: clicks that come before the first frame, or are over within one
-//! - `tools`: what is asked beside the answer, as verbs
+//! - `analysis_tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
 //! - `canvas_picture`: the canvas with its legend as a picture file
 
+pub mod analysis_tools;
 mod canvas_picture;
 mod dialogs;
 pub mod documentation_pictures;
@@ -25,10 +26,9 @@ pub mod palette;
 mod palette_entries;
 mod path_picker;
 pub mod screenshot;
-mod start_here;
-pub mod tools;
 mod tutorial_bar;
 pub mod tutorials;
+mod welcome_dialog;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -45,8 +45,8 @@ use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reac
 use crate::render::theme;
 use crate::state::analysis::hold;
 use crate::state::dialog::Dialog;
+use crate::state::job_questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::live::RestartCause;
-use crate::state::questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::{AppState, WorkerStatus};
 use crate::units::system;
 use crate::worker::Worker;

@@ -4,12 +4,12 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
+use crate::app::analysis_tools::tools;
 use crate::app::palette_entries;
-use crate::app::tools::tools;
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
-use crate::plot::{along, time};
+use crate::plot::{along_cable, over_time};
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Item, OpenPanels};
@@ -113,7 +113,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
     ];
     let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
-    let graphs = [time::TITLE, along::TITLE].map(|title| {
+    let graphs = [over_time::TITLE, along_cable::TITLE].map(|title| {
         let name = format!("Export the graph {}…", title.to_lowercase());
         (name, Command::View(ViewCommand::ExportGraph(title)))
     });

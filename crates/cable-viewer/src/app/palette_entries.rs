@@ -13,7 +13,7 @@ use crate::panels::cable::property::PROPERTIES;
 use crate::panels::readouts::{extremes, take_likely_bending};
 use crate::panels::scene::{map, robot as robot_form};
 use crate::panels::{robot, warnings};
-use crate::record::measure::Measure;
+use crate::record::plotted_quantity::Measure;
 use crate::render::colour::{ColourMap, ColourScale};
 use crate::state::{AppState, GraphRequest, Item, Layers};
 

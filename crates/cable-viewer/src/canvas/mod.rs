@@ -1,23 +1,23 @@
 //! The canvas draws the scene in layers and reads the pointer on it.
 //!
 //! - `layers`: what is drawn, a file a layer
-//! - `view`: from metres to the painter
+//! - `canvas_view`: from metres to the painter
 //! - `pointer`: clicks, drags and the wheel as commands
 //! - `accessibility`: the same picture for screen readers
 
 mod accessibility;
+mod canvas_view;
 pub mod layers;
 mod pointer;
-mod view;
 
 use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
+use crate::canvas::canvas_view::{CanvasView, hints_height};
 use crate::canvas::layers::{
     annotations, breaks, cable, compare_overlay, contact, forces, grid, no_answer, obstacles, robot, robot_path,
     safe_reach, supports, tension_marker,
 };
-use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand, ViewCommand};
 use crate::geometry::{bounds, torn_cable};
 use crate::render::theme;

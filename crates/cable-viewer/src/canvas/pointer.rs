@@ -3,8 +3,8 @@
 use cable_core::scene::Shape;
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
+use crate::canvas::canvas_view::CanvasView;
 use crate::canvas::layers::grid;
-use crate::canvas::view::CanvasView;
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::{handles, hit_test};
 use crate::state::{AppState, Grab, Item, TensionMarker};

@@ -9,8 +9,8 @@ use cable_core::{Cable, Obstacle};
 
 use crate::command::effects::Effects;
 use crate::command::move_item::shifted;
-use crate::command::name::unique;
 use crate::command::support_kind::of_kind;
+use crate::command::unique_name::unique;
 use crate::command::waypoint::waypoint_place;
 use crate::geometry::hit_test;
 use crate::geometry::supports::support_position;

@@ -16,7 +16,7 @@ use crate::io::graph_file;
 use crate::io::graph_in_view::GraphInView;
 use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
-use crate::record::run::Run;
+use crate::record::kept_run::Run;
 use crate::record::sample::Sample;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::live::ReopenedRun;

@@ -3,25 +3,25 @@
 //!
 //! - `scene`, `view`, `playback`, `file`: the commands and what each does
 //! - `effects`: what applying them asks of the worker and the window
-//! - `move_item`, `surface_projection`, `remove_item`, `waypoint`, `robot_hitch`, `name`,
-//!   `support_kind`, `route`: rules of edits that several commands share
+//! - `move_item`, `surface_projection`, `remove_item`, `waypoint`, `robot_hitch`, `unique_name`,
+//!   `support_kind`, `blocked_route`: rules of edits that several commands share
 //! - `resume`: time that goes on from an earlier answer
 //! - `clipboard`, `import`: copy, paste, and maps from tables and drawings
 
+mod blocked_route;
 pub mod clipboard;
 pub mod effects;
 pub mod file;
 mod import;
 mod move_item;
-mod name;
 pub mod playback;
 mod remove_item;
 mod resume;
 mod robot_hitch;
-mod route;
 pub mod scene;
 pub mod support_kind;
 mod surface_projection;
+mod unique_name;
 pub mod view;
 pub mod waypoint;
 

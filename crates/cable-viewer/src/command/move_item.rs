@@ -1,8 +1,7 @@
 //! Any thing of the scene can be moved to a point, whatever it is.
 
 use cable_core::math::Point;
-use cable_core::scene::ground::Ground;
-use cable_core::scene::{RobotTask, Shape};
+use cable_core::scene::{Ground, RobotTask, Shape};
 
 use crate::command::surface_projection::clear_of_obstacles;
 use crate::state::{AppState, Item};

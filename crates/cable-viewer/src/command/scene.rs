@@ -7,12 +7,12 @@ use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::command::move_item::{move_item, set};
-use crate::command::name::unique;
 use crate::command::playback::{self, PlaybackCommand};
 use crate::command::remove_item::{drop_lost_selection, remove_all};
 use crate::command::robot_hitch::{hitched_support, set_robot};
+use crate::command::unique_name::unique;
 use crate::command::waypoint::add_waypoint;
-use crate::command::{clipboard, route};
+use crate::command::{blocked_route, clipboard};
 use crate::geometry::supports::is_broken;
 use crate::state::live::RestartCause;
 use crate::state::undo::EditKind;
@@ -174,7 +174,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         matches!(command, SceneCommand::SetScene(_) | SceneCommand::AddObstacle(_) | SceneCommand::Paste { .. });
     change(state, command);
     if new_obstacles && state.document.scene.obstacles != before.obstacles {
-        route::remove_penetrating_routes(&mut state.document.scene);
+        blocked_route::remove_penetrating_routes(&mut state.document.scene);
     }
     let dragged = if robot_moves { hitched_support(&state.document.scene) } else { dragged };
     if state.document.scene == before {

@@ -3,7 +3,7 @@
 use cable_core::Support;
 use cable_core::math::Point;
 
-use crate::command::name::unique;
+use crate::command::unique_name::unique;
 use crate::state::{AppState, Item};
 
 /// The node of the present answer next to an arc length, m.

@@ -1,10 +1,8 @@
 //! The robot has an outline in the world, and its path a flag where each leg ends.
 
 use cable_core::math::Point;
-use cable_core::scene::RobotTask;
-use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{RobotPreset, robot_preset};
-use cable_core::scene::robot::Pose;
+use cable_core::scene::{Ground, Pose, RobotTask};
 
 use crate::state::AppState;
 use crate::units::labels;

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use cable_core::record::{Event, HistoryTable, Manifest, NodeRow, RunTables};
-use cable_core::robot::{RobotReport, RobotWork};
 use cable_core::scene::SupportKind;
 use cable_core::solution::{
-    CableSolution, Cost, Energy, ModelReason, SupportReaction, TensionPeak, TensionPeaks, Warning,
+    CableSolution, Cost, Energy, ModelReason, RobotReport, RobotWork, SupportReaction, TensionPeak, TensionPeaks,
+    Warning,
 };
 use cable_core::{Model, Scene, Solution, files};
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cable_core::summary::{NeglectedBending, neglected_bending};
+use cable_core::analysis::{NeglectedBending, neglected_bending};
 use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;

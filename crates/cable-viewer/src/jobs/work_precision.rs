@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use cable_core::summary::{Compared, Setting, answer_with};
+use cable_core::analysis::{Compared, Setting, answer_with};
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;

@@ -2,16 +2,17 @@
 //! else.
 //!
 //! - `scene`: the outline on the left, and the forms of what stands in it
-//! - `selected`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on the
-//!   right
+//! - `selected_item`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on
+//!   the right
 //! - `readouts`, `warnings`, `warning_figures`, `analysis`: what was answered, on the right
 //! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
-//! - `words`: keys of scene files and names of models as the window says them
+//! - `display_names`: keys of scene files and names of models as the window says them
 
 pub mod analysis;
 pub mod cable;
+pub mod display_names;
 pub mod environment;
 pub mod playback;
 pub mod plots;
@@ -20,9 +21,8 @@ pub mod readouts;
 pub mod robot;
 pub mod scene;
 pub mod scene_errors;
-pub mod selected;
+pub mod selected_item;
 pub mod solver;
 pub mod timeline;
 mod warning_figures;
 pub mod warnings;
-pub mod words;

@@ -6,14 +6,14 @@ use egui::{ComboBox, Id, Ui};
 use crate::command::{Command, FileCommand, PlaybackCommand};
 use crate::panels::readouts::dimmed_if_old;
 use crate::panels::timeline;
-use crate::plot::{GraphResponse, GraphView, along, time};
-use crate::record::measure::Measure;
+use crate::plot::{GraphResponse, GraphView, along_cable, over_time};
+use crate::record::plotted_quantity::Measure;
 use crate::render::colour::CableQuantity;
 use crate::state::dialog::Dialog;
-use crate::state::questions::friction_answer;
+use crate::state::job_questions::friction_answer;
 use crate::state::{AppState, GraphRequest};
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
-use crate::widgets::tick::checkbox;
 
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
@@ -57,17 +57,17 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     } else if wide && view.second.is_some() {
         ui.columns_const(|[left, middle, right]| {
             vec![
-                over_time(left, state, view, height, time::ui),
-                over_time(middle, state, view, height, time::second),
+                over_time(left, state, view, height, over_time::ui),
+                over_time(middle, state, view, height, over_time::second),
                 along_cable(right, state, view, height),
             ]
         })
     } else if wide {
         ui.columns_const(|[left, right]| {
-            vec![over_time(left, state, view, height, time::ui), along_cable(right, state, view, height)]
+            vec![over_time(left, state, view, height, over_time::ui), along_cable(right, state, view, height)]
         })
     } else {
-        vec![over_time(ui, state, view, height, time::ui), along_cable(ui, state, view, height)]
+        vec![over_time(ui, state, view, height, over_time::ui), along_cable(ui, state, view, height)]
     };
     for graph in touched {
         // A graph that follows would take the zoom back at once.
@@ -160,7 +160,7 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
             let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
-            dimmed_if_old(ui, state, |ui| along::ui(ui, cable, solved, ribbon, view, height))
+            dimmed_if_old(ui, state, |ui| along_cable::ui(ui, cable, solved, ribbon, view, height))
         }
         _ => {
             ui.weak("Nothing solved yet");

@@ -1,10 +1,9 @@
 //! The robot panel drives by hand, edits the path, and shows what the motion is made of.
 
 use cable_core::Robot;
-use cable_core::robot::RobotReport;
 use cable_core::scene::preset::robot_preset;
-use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
-use cable_core::scene::{RobotTask, SupportKind};
+use cable_core::scene::{ROLLING_RESISTANCE, RobotTask, SupportKind, TRACK_FRICTION};
+use cable_core::solution::RobotReport;
 use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
@@ -13,9 +12,9 @@ use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, quantity};
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
-use crate::widgets::tick::checkbox;
 use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.

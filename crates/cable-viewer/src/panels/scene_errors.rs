@@ -6,7 +6,7 @@ use cable_core::{Cable, SceneError};
 use egui::Ui;
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::words;
+use crate::panels::display_names;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::units::{format, sentence};
@@ -53,7 +53,11 @@ pub fn summary(state: &AppState) -> Option<String> {
         let property = crate::panels::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;
         Some(format!("{} of “{}”", property.quantity.name, state.document.scene.cables.get(index)?.name))
     });
-    Some(format!("{} {}", named.unwrap_or_else(|| format!("{}:", words::place(&found.path))), sentence(&found.fault)))
+    Some(format!(
+        "{} {}",
+        named.unwrap_or_else(|| format!("{}:", display_names::place(&found.path))),
+        sentence(&found.fault)
+    ))
 }
 
 /// Rounded up to the next hundredth, so that the figure shown is long enough.
@@ -120,7 +124,7 @@ pub fn inline(ui: &mut Ui, state: &AppState, path: &str, commands: &mut Vec<Comm
     let Some(found) = at(state, path) else { return };
     let below = found.path.strip_prefix(path).unwrap_or_default().trim_start_matches('.');
     let text = sentence(&found.fault);
-    field::fault(ui, &if below.is_empty() { text } else { format!("{}: {text}", words::place(below)) });
+    field::fault(ui, &if below.is_empty() { text } else { format!("{}: {text}", display_names::place(below)) });
     if let Some(fix) = fix(state)
         && ui.button(&fix.label).on_hover_text("Puts this right").clicked()
     {

@@ -13,8 +13,8 @@ use crate::units::format;
 use crate::units::labels;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::property::{Provenance, Quantity, row};
-use crate::widgets::tick::checkbox;
 use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {

@@ -8,8 +8,8 @@ use crate::state::AppState;
 use crate::state::live::RestartCause;
 use crate::units::format;
 use crate::units::sentence::sentence;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::tick::checkbox;
 use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.

@@ -1,16 +1,16 @@
 //! The graphs show quantities along the cable, and these, the robot and energies against time.
 //!
-//! - `along`, `time`: what each graph shows
+//! - `along_cable`, `over_time`: what each graph shows
 //! - `axes`: ranges, and the numbers along them
 //! - `corners`: the pieces that a line is drawn in
 //! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
-pub mod along;
+pub mod along_cable;
 mod axes;
 mod corners;
 mod cursors;
 mod keys;
-pub mod time;
+pub mod over_time;
 
 use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
@@ -18,7 +18,7 @@ use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, Pl
 use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
-use crate::record::measure::Measure;
+use crate::record::plotted_quantity::Measure;
 use crate::record::series::{Series, line_style, value_at};
 use crate::render::colour::{CableQuantity, LINES};
 use crate::render::theme;

@@ -99,8 +99,8 @@ impl History {
     }
 
     /// Time (s) and value of the greatest of a line that
-    /// [`Measure::PRIMARY_LINES`](crate::record::measure::Measure::PRIMARY_LINES) names: the block
-    /// it is in is found first.
+    /// [`Measure::PRIMARY_LINES`](crate::record::plotted_quantity::Measure::PRIMARY_LINES) names:
+    /// the block it is in is found first.
     #[must_use]
     pub fn peak(&self, of: impl Fn(&Sample) -> f64) -> Option<[f64; 2]> {
         let greatest = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };

@@ -3,15 +3,15 @@
 //! - `recording`: whole answers, the events between them, and which of them is on screen
 //! - `sample`, `history`: a few figures of every instant, for graphs over time
 //! - `decimation`: the thinning of the history, which keeps extremes
-//! - `run`: a whole run, kept to compare with
-//! - `measure`: the quantities that graphs show, and how to read them off a sample
+//! - `kept_run`: a whole run, kept to compare with
+//! - `plotted_quantity`: the quantities that graphs show, and how to read them off a sample
 //! - `series`, `pyramid`: points of a line, thinned to what a screen can show
 
 mod decimation;
 pub mod history;
-pub mod measure;
+pub mod kept_run;
+pub mod plotted_quantity;
 pub mod pyramid;
 pub mod recording;
-pub mod run;
 pub mod sample;
 pub mod series;

@@ -6,7 +6,7 @@ use cable_core::{Scene, Solution};
 
 use crate::jobs::model_comparison::{self, Outcome};
 use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision};
-use crate::record::run::Run;
+use crate::record::kept_run::Run;
 use crate::units::labels;
 
 /// The questions beyond the answer itself.

@@ -8,7 +8,7 @@
 //! - `live`: what the worker answered, and how time runs
 //! - `freshness`: whether what is on screen answers the scene as it is
 //! - `solver`: what the worker is asked for
-//! - `analysis`, `questions`: what is asked beyond the answer, and of which scene
+//! - `analysis`, `job_questions`: what is asked beyond the answer, and of which scene
 //! - `ui`, `dialog`: the window itself and its dialog
 //! - `first_steps`, `tutorial_place`: the hints that are still open, and the tutorial that is on
 
@@ -20,8 +20,8 @@ pub mod dialog;
 pub mod document;
 pub mod first_steps;
 pub mod freshness;
+pub mod job_questions;
 pub mod live;
-pub mod questions;
 pub mod selection;
 pub mod solver;
 pub mod tutorial_place;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::record::measure::Measure;
+use crate::record::plotted_quantity::Measure;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;

@@ -5,11 +5,12 @@
 //! - `property`: one quantity in a row with name, slider, value and reset
 //! - `readout`: a name and a figure
 //! - `slider`: a slider that is fine about the value it has
-//! - `tick`: boxes to tick and rings to choose by
+//! - `checkbox_and_radio`: boxes to tick and rings to choose by
 //! - `time_table`: a vector that changes with time, as a table
 //! - `icon`: painted signs
 //! - `highlight`: a frame round the control that a guide speaks of
 
+pub mod checkbox_and_radio;
 pub mod field;
 pub mod highlight;
 pub mod icon;
@@ -17,5 +18,4 @@ pub mod progress;
 pub mod property;
 pub mod readout;
 pub mod slider;
-pub mod tick;
 pub mod time_table;

@@ -151,8 +151,8 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     }
 }
 
-/// A text in the column of names, and the widget it names beside it; `name` is what tests and
-/// screen readers call it.
+/// A text in the column of names, and the widget it names beside it; `name` is what tests
+/// and screen readers call it.
 pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
     // In a narrow panel the name gives way: what is typed must be read.
     let name_width = NAME_WIDTH.min(ui.available_width() - FIELD_WIDTH - 24.0).max(MIN_SLIDER_WIDTH);

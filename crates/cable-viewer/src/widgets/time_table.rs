@@ -5,9 +5,9 @@ use cable_core::math::Point;
 use egui::{Button, ScrollArea, Ui};
 
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::tick::checkbox;
 
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;

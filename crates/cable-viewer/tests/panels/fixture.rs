@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use cable_core::robot::{Going, RobotReport, RobotWork};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning,
-    WarningCause, WarningKind,
+    CableSolution, ContactReport, ContactState, Cost, Energy, Going, ModelReason, Node, RobotReport, RobotWork,
+    Solution, SupportReaction, Warning, WarningCause, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;
@@ -253,7 +252,7 @@ pub fn with_pulley(state: &mut AppState) {
 pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
     cable_viewer::panels::scene::outline::ui(ui, state, commands);
     if state.selection.selected.is_some() {
-        cable_viewer::panels::selected::ui(ui, state, commands);
+        cable_viewer::panels::selected_item::ui(ui, state, commands);
     }
 }
 

@@ -65,7 +65,7 @@ fn selected_support() {
         state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
         state
     };
-    picture("selected_support", selected, panels::selected::ui, [320.0, 420.0]);
+    picture("selected_support", selected, panels::selected_item::ui, [320.0, 420.0]);
 }
 
 /// As narrow as it is in a window of 1280 points.
@@ -76,7 +76,7 @@ fn selected_obstacle() {
         state.selection.selected = Some(Item::Obstacle(0));
         state
     };
-    picture("selected_obstacle", selected, panels::selected::ui, [250.0, 420.0]);
+    picture("selected_obstacle", selected, panels::selected_item::ui, [250.0, 420.0]);
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! A tank job set up from the first scene by someone who knows nothing of it: map, robot, opening;
 //! every model asked about it.
 
-use cable_core::scene::ground::Ground;
-use cable_core::scene::{SupportKind, catalog, preset};
+use cable_core::scene::{Ground, SupportKind, catalog, preset};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};

@@ -181,7 +181,8 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
 
 #[test]
 fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_be_chosen() {
-    let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::state::questions::reach_target(&harness.state().state);
+    let moved =
+        |harness: &Harness<'_, ViewerApp>| cable_viewer::state::job_questions::reach_target(&harness.state().state);
     let mut harness = tall(catalog::robot_drive());
     assert_eq!(moved(&harness), Some(ReachSubject::Robot));
     harness.get_by_label("What is moved").click();

@@ -1,8 +1,7 @@
 //! Stories of the users that no other file tells: each test is named after its row.
 
 use cable_core::scene::preset::robot_presets;
-use cable_core::scene::robot::Pose;
-use cable_core::scene::{Shape, Support, catalog};
+use cable_core::scene::{Pose, Shape, Support, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;

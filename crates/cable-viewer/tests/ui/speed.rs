@@ -282,7 +282,7 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 #[test]
 fn speed_of_graphs() {
     use cable_viewer::record::history::History;
-    use cable_viewer::record::run::Run;
+    use cable_viewer::record::kept_run::Run;
     use cable_viewer::record::sample::Sample;
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
@@ -315,8 +315,9 @@ fn speed_of_graphs() {
             let samples: Vec<Sample> = (0..held).map(sample).collect();
             let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
             assert_eq!(
-                run.as_ref()
-                    .map(|r| r.line(cable_viewer::record::measure::Measure::ALL[0]).map_or(0, |l| l.points().len())),
+                run.as_ref().map(|r| r
+                    .line(cable_viewer::record::plotted_quantity::Measure::ALL[0])
+                    .map_or(0, |l| l.points().len())),
                 Some(held as usize)
             );
             let scene = state.live.snapshot.scene.clone().expect("a scene");

@@ -2,8 +2,7 @@
 //! watched.
 
 use cable_core::math::Point;
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::scene::catalog;
 use cable_core::timeline::{Instant, RunPeaks, Timeline};
 use cable_core::{Model, Scene, Settings, Simulation, Solution};

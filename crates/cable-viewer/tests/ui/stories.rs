@@ -1,8 +1,8 @@
 //! Each test does by hand what a user asked for, and is named after that story.
 
 use cable_core::record::read_history;
-use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::catalog;
+use cable_core::solution::{Going, RobotReport};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
 use cable_viewer::state::Item;

@@ -2,7 +2,7 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::app::tools::tools;
+use cable_viewer::app::analysis_tools::tools;
 use cable_viewer::command::{Command, ViewCommand};
 use cable_viewer::state::OpenPanels;
 use egui::accesskit::Role;

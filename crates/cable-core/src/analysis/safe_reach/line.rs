@@ -1,7 +1,7 @@
 //! This analysis finds where a robot can go along its ground.
 //!
 //! It is put where its tracks stand, place after place; its outline is an obstacle for its cable.
-//! No drive, slope or traction limits it here: [`crate::robot::Vehicle`] answers whether the robot
+//! No drive, slope or traction limits it here: `robot::Vehicle` answers whether the robot
 //! could pull so hard.
 
 use std::ops::ControlFlow;

@@ -22,11 +22,11 @@ mod first_guess;
 mod layout;
 mod multiple_equilibria;
 pub(super) mod report;
-pub mod settings;
+mod settings;
 mod slide;
 mod wheel;
 
-use crate::numerics::HalvedSteps;
+use crate::numerics::{HalvedSteps, MAX_HALVINGS};
 use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, Start, solve};
@@ -34,13 +34,14 @@ use self::first_guess::{first_arcs, nearest_along, spread};
 use self::layout::{AnchorLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::report::{report, straight};
-use self::settings::CatenarySettings;
+pub use self::settings::CatenarySettings;
 use self::slide::Mode;
-use super::gauge::TensionGauge;
+use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::model::auxiliary_weight::slack_without_weight;
+use crate::model::settings::MAX_MOVE_FRACTION;
 use crate::problem::Problem;
 use crate::solution::{
     CableSolution, Cost, Histories, Node, SharedNodes, ShownEquilibrium, SupportReaction, Warning, WarningCause,
@@ -332,10 +333,9 @@ impl Mechanics for CatenaryModel {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
-        let pieces = (self.support_travel(start, end) / (self.tuned.max_move_fraction * self.problem.length))
-            .ceil()
-            .clamp(1.0, 1000.0);
-        let mut steps = HalvedSteps::new(end, dt_s / pieces, self.tuned.max_step_halvings, JOINED_FRACTION);
+        let pieces =
+            (self.support_travel(start, end) / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, 1000.0);
+        let mut steps = HalvedSteps::new(end, dt_s / pieces, MAX_HALVINGS, JOINED_FRACTION);
         let mut total = StepReport::default();
         while let Some(next) = steps.next(self.time_s) {
             match self.slow_step(next, if next >= end { StepStage::Final } else { StepStage::Intermediate }) {

@@ -17,7 +17,7 @@
 use std::sync::Arc;
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
@@ -39,7 +39,7 @@ const ESTIMATES_PER_SEARCH: usize = 4;
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TwoMeshes {
     exact: Option<Box<SpansModel>>,
-    coarse: Option<Box<Dynamics>>,
+    coarse: Option<Box<Stepper>>,
     /// The errors as far as they are known now.
     pub errors: ErrorEstimates,
 }
@@ -61,7 +61,7 @@ impl TwoMeshes {
         problem: &Arc<Problem>,
         settings: Settings,
         refinement: Refinement,
-        fine: &mut Dynamics,
+        fine: &mut Stepper,
         exact: Option<InitialEquilibrium>,
         dragged: &[Option<Vec2>],
     ) {
@@ -115,7 +115,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         settings: Settings,
-        fine: &Dynamics,
+        fine: &Stepper,
         dt_s: f64,
         inertia: Inertia,
         dragged: &[Option<Vec2>],
@@ -162,9 +162,9 @@ fn advance_spans(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) ->
 fn errors_by_coarser_meshes(
     problem: &Arc<Problem>,
     settings: Settings,
-    fine: &Dynamics,
+    fine: &Stepper,
     dragged: &[Option<Vec2>],
-) -> Option<(ErrorEstimates, Dynamics)> {
+) -> Option<(ErrorEstimates, Stepper)> {
     if fine.cable.meshing.even_bars < LEAST_BARS {
         return None;
     }
@@ -190,13 +190,13 @@ fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) 
 fn at_rest_with_bars(
     problem: &Arc<Problem>,
     settings: Settings,
-    like: &Dynamics,
+    like: &Stepper,
     bars: usize,
     answer: &CableSolution,
     dragged: &[Option<Vec2>],
-) -> Option<Dynamics> {
+) -> Option<Stepper> {
     let mut other =
-        Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }, like.cable.mesh.tuning.clone())
+        Stepper::new(problem.clone(), Settings { segments: Some(bars), ..settings }, like.cable.mesh.tuning.clone())
             .ok()?;
     other.cable.meshing.slides = like.cable.meshing.slides;
     other.warm_start(answer, like.cable.time(), dragged).ok()?;

@@ -339,13 +339,14 @@ pub struct EquilibriumTuning {
     /// posts, beams and drapes at random those that held left up to 4e-5, those with 0.3 % too
     /// little friction 3e-4 and more.
     pub unheld_load_fraction: f64,
-    /// Unbalanced force of a polished rest in its stages, in tolerances. Smaller: nothing but
-    /// rounding is gained. Larger: the forces left at a hundred nodes of a cable that all but
-    /// slides show in the balance of the whole.
-    pub polish_residuals: [f64; 3],
-    /// Newton iterations of the stages. The first continues a search that came to its last
+    /// Unbalanced force of a polished rest, in tolerances. It is polished in three stages, whose
+    /// residuals fall evenly from one tolerance to this. Smaller: nothing but rounding is gained.
+    /// Larger: the forces left at a hundred nodes of a cable that all but slides show in the
+    /// balance of the whole.
+    pub polish_residual: f64,
+    /// Newton iterations of the first stage, which continues a search that came to its last
     /// iteration. Fewer: a cable that slides as a whole on smooth ground does not come to rest.
-    pub polish_iterations: [usize; 3],
+    pub polish_iterations: usize,
     /// Times a rest is sought again because corners were met or left on the way to it. Fewer: it is
     /// refused. More: a cycle costs more.
     pub corner_rounds: usize,
@@ -370,8 +371,8 @@ impl Default for EquilibriumTuning {
             dead_load_weights: 2.0,
             squeezed_residual: 1e3,
             unheld_load_fraction: 1e-4,
-            polish_residuals: [1.0, 0.1, 1e-2],
-            polish_iterations: [600, 30, 30],
+            polish_residual: 1e-2,
+            polish_iterations: 600,
             corner_rounds: 8,
             max_corner_pull_rad: 1e-4,
         }
@@ -430,12 +431,11 @@ pub struct RemeshTuning {
     /// Distance within which a node is in the way of a new sliding node. Smaller: short bars.
     /// Larger: nodes are lost.
     pub removed_distance: f64,
-    /// Tension, in weights of an even bar, from which a corner gets a sliding node. Smaller: a
-    /// slack cable gets them, and loses them again. Larger: chains jerk at corners, node by node.
+    /// Tension, in weights of an even bar, from which a corner gets a sliding node. It loses it
+    /// below half of that: a slack cable lies on corners with its nodes, and the barrier carries it
+    /// as well. Smaller: a slack cable gets them, and loses them again. Larger: chains jerk at
+    /// corners, node by node.
     pub sliding_tension_weights: f64,
-    /// Tension below which it loses it: a slack cable lies on corners with its nodes, and the
-    /// barrier carries it as well. Smaller: slack hangs at corners. Larger: nodes come and go.
-    pub material_tension_weights: f64,
     /// Turn the wrong way round a corner that a step may end with, rad; the node leaves after it.
     /// Smaller: more steps are taken twice. Larger: its tangents would lie inside the obstacle.
     pub max_reverse_turn_rad: f64,
@@ -447,7 +447,8 @@ pub struct RemeshTuning {
     /// hangs there. Larger: the node is far from the round.
     pub max_left_half_turn_rad: f64,
     /// Half of the turn up to which the node that takes the place of a sliding one goes where the
-    /// tangents meet, rad. Smaller: a bar cuts the corner. Larger: it is put far away.
+    /// tangents meet, and up to which one mark of a round can carry the cable, rad. Smaller: a bar
+    /// cuts the corner. Larger: it is put far away.
     pub max_tangent_half_turn_rad: f64,
     /// Turn below which a node that leaves its corner is taken out, rad; else it becomes a node of
     /// the cable. Smaller: more nodes. Larger: the cable loses a bend.
@@ -493,7 +494,6 @@ impl Default for RemeshTuning {
             max_bar: 1.6,
             removed_distance: 0.1,
             sliding_tension_weights: 4.0,
-            material_tension_weights: 2.0,
             max_reverse_turn_rad: 0.02,
             resolved_bend: 0.5,
             max_left_half_turn_rad: 1.0,
@@ -556,9 +556,6 @@ pub struct StartTuning {
     /// Most bars to which a mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
     /// as dear as with half as many.
     pub max_refined_bars: usize,
-    /// Turn that one mark of a round can carry, rad: the way to it must not go round the other
-    /// side. Smaller: more nodes.
-    pub max_mark_turn_rad: f64,
     /// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps
     /// by more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5). More: more
     /// nodes.
@@ -588,7 +585,6 @@ impl Default for StartTuning {
             softest_loads: 1e3,
             stiffness_ratio: 10.0,
             max_refined_bars: 800,
-            max_mark_turn_rad: 2.8,
             marks_per_bar: 1.5,
             min_part: 0.05,
             arc_length_ratio: 2.0,

@@ -5,11 +5,11 @@
 //! |---|---|
 //! | `mod.rs` | what a layer may change |
 //! | `leavable_wheels.rs` | a cable over wheels, which it may leave |
-//! | `similar.rs` | a cable computed at another scale |
+//! | `natural_scale.rs` | a cable computed at another scale |
 //! | `spans_then_fem.rs` | two models that take turns |
 
 pub(in crate::model) mod leavable_wheels;
-pub(in crate::model) mod similar;
+pub(in crate::model) mod natural_scale;
 pub(in crate::model) mod spans_then_fem;
 
 use std::borrow::Cow;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2};
-use crate::model::gauge::TensionGauge;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ModelReason};

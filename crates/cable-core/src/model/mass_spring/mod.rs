@@ -55,7 +55,7 @@ mod forces;
 mod mesh;
 mod preview_choice;
 mod results;
-pub mod settings;
+mod settings;
 mod xpbd;
 
 use std::sync::Arc;
@@ -63,14 +63,13 @@ use std::sync::Arc;
 use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
-use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::{
     Account, ChainState, Report, Rollback, SupportDrives, integrate, transaction,
 };
 use crate::model::mass_spring::equilibrium::{Anchors, Estimate, Start, find_equilibrium, quasi_static_step};
 use crate::model::mass_spring::mesh::{Mesh, even_out, first_support_arc_lengths};
 use crate::model::mass_spring::xpbd::preview;
-pub use crate::model::settings::Stepping;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -80,7 +79,8 @@ use contact_memory::ContactMemory;
 use dynamics::{Clock, buried_nodes, hands};
 use forces::{nodal, tension};
 use preview_choice::is_preview;
-use settings::Tuning;
+
+pub use settings::{MeshTuning, PreviewTuning, SubStepTuning, Tuning};
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]

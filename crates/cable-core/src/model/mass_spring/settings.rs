@@ -138,10 +138,6 @@ impl Default for ImpactTuning {
 /// Limits of a motion that runs away.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunawayTuning {
-    /// Greatest speed of a node, m/s. Smaller cuts the recoil of a broken rope (breaking strain
-    /// times wave speed: 20 m/s for steel, 300 m/s for nylon), larger lets thin obstacles cost ever
-    /// shorter sub-steps.
-    pub max_speed_m_per_s: f64,
     /// Greatest kinetic energy, of that which supports, loads and stretch can have given. Smaller
     /// damps real whips, larger shows an explosion first.
     pub max_energy_ratio: f64,
@@ -152,7 +148,7 @@ pub struct RunawayTuning {
 
 impl Default for RunawayTuning {
     fn default() -> Self {
-        Self { max_speed_m_per_s: 300.0, max_energy_ratio: 10.0, brake_factor: 0.7 }
+        Self { max_energy_ratio: 10.0, brake_factor: 0.7 }
     }
 }
 
@@ -302,25 +298,19 @@ pub struct QuasiStaticTuning {
     /// Greatest number of equilibria in a step. Smaller goes farther at once in long steps, larger
     /// takes longer.
     pub max_parts: f64,
-    /// Most halvings of the path between two equilibria after failures. Fewer give up early, more
-    /// try longer.
-    pub max_halvings: u32,
     /// Points of a motion within a step that measure its path. Fewer miss a motion to and fro.
     pub path_samples: u32,
 }
 
 impl Default for QuasiStaticTuning {
     fn default() -> Self {
-        Self { max_path_lengths: 0.5, max_parts: 1e4, max_halvings: 10, path_samples: 8 }
+        Self { max_path_lengths: 0.5, max_parts: 1e4, path_samples: 8 }
     }
 }
 
 /// Constants of error estimates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EstimateTuning {
-    /// Least number of elements of which half make a mesh to compare with. Smaller compares with
-    /// meshes that know nothing, larger leaves coarse meshes without an estimate.
-    pub min_elements: usize,
     /// Least error of the finest of three meshes, of the difference of the coarser two: 0.5 is that
     /// of the first order. Smaller states too small errors at corners, larger too great ones in the
     /// air.
@@ -341,13 +331,6 @@ pub struct EstimateTuning {
 
 impl Default for EstimateTuning {
     fn default() -> Self {
-        Self {
-            min_elements: 8,
-            first_order_fraction: 0.5,
-            round_nodes: 3,
-            turn_share: 0.2,
-            min_turn_rad: 1e-3,
-            max_turn_rad: 1.4,
-        }
+        Self { first_order_fraction: 0.5, round_nodes: 3, turn_share: 0.2, min_turn_rad: 1e-3, max_turn_rad: 1.4 }
     }
 }

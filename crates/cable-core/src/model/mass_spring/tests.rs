@@ -1,4 +1,5 @@
-use crate::model::mass_spring::{MassSpringModel, Stepping};
+use crate::model::Stepping;
+use crate::model::mass_spring::MassSpringModel;
 use crate::model::{Inertia, Mechanics, Model, Settings};
 use crate::scene::{Obstacle, Scene, Shape, Support, catalog};
 use crate::solution::Solution;

@@ -7,7 +7,7 @@
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
 use crate::model::spans::acceptance::{clearance, equilibrium, tunnelling};
-use crate::model::spans::boundary::{Loose, Mode};
+use crate::model::spans::boundary::{LooseSection, Mode};
 use crate::model::spans::changes;
 use crate::model::spans::contact::{point_load, slack_pocket};
 use crate::model::spans::newton::{Converged, Workspace, predict_slip};
@@ -292,7 +292,7 @@ impl CableEquilibrium {
         let size = to.load.norm();
         let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
-        for _ in 0..tuned.max_drag_steps {
+        for _ in 0..layout.settings.changes.max_changes {
             self.context.drag = drag;
             let result = self.step(layout, to, workspace);
             self.context.drag = 0.0;
@@ -344,7 +344,7 @@ impl CableEquilibrium {
             return;
         }
         let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
-        let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(Loose::spreads);
+        let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(LooseSection::spreads);
         let all =
             |of: &dyn Fn(usize) -> bool| (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || of(k));
         let instant = self.instant.clone();

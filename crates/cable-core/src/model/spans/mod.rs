@@ -11,7 +11,7 @@
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `section` | free spans and contacts in a row between two end conditions: the unknowns |
 //! | `section_layout` | how supports and loads cut a cable into sections |
-//! | `newton`, `numerics` | all unknowns of a section at once; root finding |
+//! | `newton`, `bracketed_root` | all unknowns of a section at once; the root of one variable |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
 //! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; slack elsewhere; how much friction a sliding cable lacks |
@@ -27,18 +27,18 @@
 
 mod acceptance;
 mod boundary;
+mod bracketed_root;
 mod changes;
 pub(in crate::model) mod contact;
 mod continuation;
 mod first_equilibrium;
 mod initial;
 mod newton;
-mod numerics;
 mod results;
 mod reversed;
 mod section;
 mod section_layout;
-pub mod settings;
+mod settings;
 mod slack;
 
 use std::sync::Arc;
@@ -46,7 +46,6 @@ use std::sync::Arc;
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::auxiliary_weight::slack_without_weight;
-use crate::model::gauge::TensionGauge;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
@@ -54,12 +53,14 @@ use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Reversal;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
-use crate::model::spans::settings::SpansSettings;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
+
+pub use crate::model::spans::settings::SpansSettings;
 
 /// Part of the greatest tension within which two histories left the same. Larger: a cable that is
 /// held by little friction is said to have one rest; smaller: rounding is said to be another

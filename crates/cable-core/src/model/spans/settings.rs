@@ -9,6 +9,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::model::settings::MAX_MOVE_FRACTION;
+
 /// All settings of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpansSettings {
@@ -21,7 +23,7 @@ pub struct SpansSettings {
     /// Contacts that come and go.
     pub changes: ChangeSettings,
     /// Causes of failures, and corners passed through.
-    pub verify: VerifySettings,
+    pub acceptance: AcceptanceSettings,
 }
 
 /// Newton's method for a section, and the prediction of slip before it.
@@ -74,10 +76,8 @@ pub struct NewtonSettings {
 /// The prediction of which contacts slide in a step, before it is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlipSettings {
-    /// Rounds of changing sides, over two for each contact. Smaller: no prediction where many
-    /// contacts change. Larger: a cycle costs more.
-    pub extra_rounds: usize,
-    /// Most rounds of Newton's method. Smaller: a worse guess. Larger: each costs a tenth of an
+    /// Most rounds of Newton's method, and of changing sides beside two for each contact. Smaller:
+    /// a worse guess, or none where many contacts change. Larger: each costs a tenth of an
     /// iteration of Newton's method for the whole.
     pub newton_rounds: usize,
     /// Change of tension, as part of it, from which another round is worth its cost: what is left
@@ -146,9 +146,6 @@ pub struct ContinuationSettings {
     /// Part of the length by which the material at a contact differs in another balance. Smaller:
     /// two answers of one search are two balances; larger: balances near each other are one.
     pub other_balance_fraction: f64,
-    /// Most steps over which it is followed. Smaller: it is given up on its way. Larger: a failure
-    /// costs more.
-    pub max_drag_steps: usize,
     /// Most times in a row that the drag is raised. Smaller: it is given up where it runs fast.
     /// Larger: a failure costs more.
     pub max_drag_raises: usize,
@@ -221,9 +218,6 @@ pub struct InitialSettings {
     /// as drawn round the wheel. Smaller: the chords of a coarse polygon are left. Larger: of a
     /// route that only comes near more is taken for its round.
     pub wheel_route_radii: f64,
-    /// Part of the section's material that two contacts keep between them at least. Smaller: a span
-    /// of no length. Larger: contacts near each other are moved apart.
-    pub contact_spacing_fraction: f64,
     /// Distance within which a node of another model's answer touches a boundary, m. Smaller: a
     /// contact that a barrier holds off is missed. Larger: a cable that passes near is laid on it.
     pub adopted_contact_distance_m: f64,
@@ -232,16 +226,18 @@ pub struct InitialSettings {
 /// Contacts that are made, joined, extended and released between solves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChangeSettings {
-    /// Most changes in one solve; a cold start over 24 corners takes 60. Smaller: a long route
-    /// fails. Larger: a cycle costs more.
+    /// Most changes in one solve (a cold start over 24 corners takes 60), and most steps over which
+    /// a cable that runs away is followed. Smaller: a long route fails, or a cable is given up on
+    /// its way. Larger: a cycle, or a failure, costs more.
     pub max_changes: usize,
+    /// Part of the section that is next to nothing: two contacts of a first guess keep so much
+    /// material between them, and a contact beside a load that has less is released when Newton
+    /// stalls. Smaller: spans of no length; Newton comes so near to its end only after many
+    /// halvings. Larger: contacts near each other are moved apart, or laid down again for nothing.
+    pub least_material_fraction: f64,
     /// Most times in one solve that something is done about loads where Newton stalls. Smaller: a
     /// load between contacts fails a step. Larger: a failure costs more.
     pub max_load_releases: usize,
-    /// Part of the section below which a stretch beside a load is released when Newton stalls.
-    /// Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid down
-    /// again for nothing.
-    pub shed_length_fraction: f64,
     /// Distance from a contact within which a load is caught by it when Newton stalls, of the
     /// section. Smaller: the step fails. Larger: a load that hangs is laid down.
     pub catch_distance_fraction: f64,
@@ -261,7 +257,7 @@ pub struct ChangeSettings {
 
 /// Causes of failures, and corners that a step passed through.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct VerifySettings {
+pub struct AcceptanceSettings {
     /// Force across the load, of the weight of a span, up to which it hangs in one line. Smaller: a
     /// fold is not reported. Larger: a span that sags is reported as a fold.
     pub fold_force_fraction: f64,
@@ -296,7 +292,6 @@ impl Default for NewtonSettings {
 impl Default for SlipSettings {
     fn default() -> Self {
         Self {
-            extra_rounds: 6,
             newton_rounds: 6,
             round_tolerance: 2e-3,
             accepted_tension_change: 0.02,
@@ -309,7 +304,7 @@ impl Default for SlipSettings {
 impl Default for ContinuationSettings {
     fn default() -> Self {
         Self {
-            max_move_fraction: 0.01,
+            max_move_fraction: MAX_MOVE_FRACTION,
             max_halvings: 12,
             first_step: 0.05,
             grown_step: 0.2,
@@ -323,7 +318,6 @@ impl Default for ContinuationSettings {
             least_slack_fraction: 0.02,
             max_other_equilibria: 16,
             other_balance_fraction: 1e-5,
-            max_drag_steps: 200,
             max_drag_raises: 5,
             missing_friction_fraction: 3e-4,
             landing_step_fraction: 1.0 / 64.0,
@@ -349,7 +343,6 @@ impl Default for InitialSettings {
             route_excess_fraction: 0.05,
             post_approach_radii: 2.5,
             wheel_route_radii: 0.1,
-            contact_spacing_fraction: 1e-4,
             adopted_contact_distance_m: 2.5e-4,
         }
     }
@@ -359,8 +352,8 @@ impl Default for ChangeSettings {
     fn default() -> Self {
         Self {
             max_changes: 200,
+            least_material_fraction: 1e-4,
             max_load_releases: 4,
-            shed_length_fraction: 1e-4,
             catch_distance_fraction: 0.02,
             corner_search_points: 64,
             lying_fraction: 0.02,
@@ -370,7 +363,7 @@ impl Default for ChangeSettings {
     }
 }
 
-impl Default for VerifySettings {
+impl Default for AcceptanceSettings {
     fn default() -> Self {
         Self { fold_force_fraction: 5e-3, tunnelling_points: 24, unchecked_move: 0.5 }
     }

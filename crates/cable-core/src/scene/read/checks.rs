@@ -1,9 +1,9 @@
 //! The checks that every part of a scene shares: numbers in their ranges, series in time, and names
 //! that are used once.
 
-use super::path::Path;
+use super::key_path::Path;
 use super::range::{self, Range};
-use crate::error::{SceneError, SceneFault, ShapeFault};
+use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::math::Point;
 use crate::scene::Motion;
 
@@ -39,7 +39,7 @@ pub(super) fn points(at: &Path<'_>, values: &[Point], range: Range) -> CheckResu
 /// No two neighbours in the same place.
 pub(super) fn apart(at: &Path<'_>, line: &[Point]) -> CheckResult {
     match line.windows(2).position(|w| w[0] == w[1]) {
-        Some(i) => Err(at.index(i + 1).shape(ShapeFault::RepeatedPoint)),
+        Some(i) => Err(at.index(i + 1).document_fault(DocumentFault::RepeatedPoint)),
         None => Ok(()),
     }
 }
@@ -54,13 +54,13 @@ pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) ->
     for (i, name) in names.enumerate() {
         let place = at.index(i);
         if name.trim().is_empty() {
-            return Err(place.key("name").shape(ShapeFault::EmptyName));
+            return Err(place.key("name").document_fault(DocumentFault::EmptyName));
         }
         if name.len() > MAX_NAME {
-            return Err(place.key("name").shape(ShapeFault::LongName { most: MAX_NAME }));
+            return Err(place.key("name").document_fault(DocumentFault::LongName { most: MAX_NAME }));
         }
         if !seen.insert(name) {
-            return Err(place.key("name").shape(ShapeFault::TakenName { name: name.to_owned() }));
+            return Err(place.key("name").document_fault(DocumentFault::TakenName { name: name.to_owned() }));
         }
     }
     Ok(())
@@ -75,7 +75,7 @@ pub(super) fn series(
 ) -> CheckResult {
     at_most(times_at, times.len(), MAX_KNOTS)?;
     if times.is_empty() {
-        return Err(times_at.shape(ShapeFault::NoTime));
+        return Err(times_at.document_fault(DocumentFault::NoTime));
     }
     if times.len() != values.len() {
         return Err(values_at.fault(SceneFault::UnequalCounts { values: values.len(), times: times.len() }));
@@ -97,10 +97,10 @@ pub(super) fn series(
 pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> CheckResult {
     let given = !times.is_empty() || !forces.is_empty();
     match constant {
-        Some(_) if given => Err(at.key("force_n").shape(ShapeFault::TwoForces)),
+        Some(_) if given => Err(at.key("force_n").document_fault(DocumentFault::TwoForces)),
         Some(f) => point(&at.key("force_n"), f, range::FORCE),
         None if given => series(&at.key("times_s"), &at.key("forces_n"), times, forces, range::FORCE),
-        None => Err(at.key("force_n").shape(ShapeFault::NoForce)),
+        None => Err(at.key("force_n").document_fault(DocumentFault::NoForce)),
     }
 }
 

@@ -15,7 +15,7 @@ use serde::de::{
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::{SceneFault, ShapeFault};
+use crate::error::{DocumentFault, SceneFault};
 use crate::scene::nearest::nearest;
 use crate::scene::preset;
 
@@ -80,7 +80,7 @@ impl std::error::Error for DeserializeError {}
 
 impl serde::de::Error for DeserializeError {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self::new(SceneFault::Shape(ShapeFault::Refused { message: message.to_string() }))
+        Self::new(SceneFault::Document(DocumentFault::Refused { message: message.to_string() }))
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -101,11 +101,11 @@ impl serde::de::Error for DeserializeError {
 
     fn unknown_variant(variant: &str, known: &'static [&'static str]) -> Self {
         let nearest = nearest(variant, known.iter().copied());
-        Self::new(SceneFault::Shape(ShapeFault::UnknownWord { word: variant.to_owned(), known, nearest }))
+        Self::new(SceneFault::Document(DocumentFault::UnknownWord { word: variant.to_owned(), known, nearest }))
     }
 
     fn missing_field(field: &'static str) -> Self {
-        let mut refusal = Self::new(SceneFault::Shape(ShapeFault::Missing));
+        let mut refusal = Self::new(SceneFault::Document(DocumentFault::Missing));
         refusal.steps.push(PathStep::Key(field.to_owned()));
         refusal
     }

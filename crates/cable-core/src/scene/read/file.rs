@@ -5,8 +5,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::deserialize::{DeserializeError, Document};
-use super::path::Path;
-use crate::error::{SceneError, SceneFault, ShapeFault, TextPosition};
+use super::key_path::Path;
+use crate::error::{DocumentFault, SceneError, SceneFault, TextPosition};
 use crate::scene::{Scene, VERSION, preset};
 
 /// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its
@@ -22,10 +22,10 @@ impl Scene {
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.len() > MAX_TEXT_BYTES {
-            return Err(Path::Root.shape(ShapeFault::LongText { bytes: text.len(), most: MAX_TEXT_BYTES }));
+            return Err(Path::Root.document_fault(DocumentFault::LongText { bytes: text.len(), most: MAX_TEXT_BYTES }));
         }
         if text.trim().is_empty() {
-            return Err(Path::Root.shape(ShapeFault::EmptyText));
+            return Err(Path::Root.document_fault(DocumentFault::EmptyText));
         }
         let document = DeTable::parse(text).map_err(|e| SceneError {
             path: String::new(),
@@ -50,7 +50,7 @@ impl Scene {
     /// As [`Self::from_toml`], and when the bytes are not UTF-8.
     pub fn from_toml_bytes(bytes: &[u8]) -> Result<Self, SceneError> {
         if bytes.len() > MAX_TEXT_BYTES + 3 {
-            return Err(Path::Root.shape(ShapeFault::LongText { bytes: bytes.len(), most: MAX_TEXT_BYTES }));
+            return Err(Path::Root.document_fault(DocumentFault::LongText { bytes: bytes.len(), most: MAX_TEXT_BYTES }));
         }
         match std::str::from_utf8(bytes) {
             Ok(text) => Self::from_toml(text),
@@ -73,7 +73,7 @@ impl Scene {
     }
 
     /// The scene as it is written, as a tree.
-    pub(super) fn written(&self) -> toml::Table {
+    pub(in crate::scene) fn written(&self) -> toml::Table {
         let mut table = toml::Table::try_from(self).unwrap_or_default();
         let cables = table.get_mut("cables").and_then(toml::Value::as_array_mut);
         for cable in cables.into_iter().flatten().filter_map(toml::Value::as_table_mut) {

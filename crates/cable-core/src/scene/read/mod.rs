@@ -6,19 +6,17 @@
 //! | `file.rs` | TOML in and out |
 //! | `deserialize.rs` | from the parsed tree to a [`Scene`](super::Scene), unknown keys refused with the nearest known one |
 //! | `validate.rs`, `support_rules.rs` | every number in range, every name known, every key where it belongs |
-//! | `changes.rs` | in which keys do two scenes differ? |
 //! | `checks.rs` | the checks that those share: ranges, series in time, names used once |
 //! | `length_check.rs` | is the cable long enough for the way between its supports? |
 //! | `self_touch.rs` | does the line of a terrain or beam cross or touch itself? |
-//! | `path.rs`, `range.rs` | the name of a place in a scene; the allowed range of each number |
+//! | `key_path.rs`, `range.rs` | the name of a place in a scene; the allowed range of each number |
 //! | `schema.rs` | the JSON Schema of a scene file |
 
-pub(crate) mod changes;
 mod checks;
 pub mod deserialize;
 pub mod file;
+pub(crate) mod key_path;
 mod length_check;
-pub(crate) mod path;
 mod range;
 pub mod schema;
 mod self_touch;

@@ -2,9 +2,9 @@
 //! may sit.
 
 use super::checks::{CheckResult, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
-use super::path::Path;
+use super::key_path::Path;
 use super::range;
-use crate::error::{SceneFault, ShapeFault};
+use crate::error::{DocumentFault, SceneFault};
 use crate::scene::{Cable, Scene, Support, SupportKind};
 
 use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
@@ -15,7 +15,7 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> CheckR
     let supports = &cable.supports;
     at_most(&at, supports.len(), MAX_POINTS_ON_CABLE)?;
     if supports.len() < 2 {
-        return Err(at.shape(ShapeFault::TooFewSupports));
+        return Err(at.document_fault(DocumentFault::TooFewSupports));
     }
     unique(&at, supports.iter().map(|s| s.name.as_str()))?;
     let (mut before, last) = (0.0, supports.len() - 1);
@@ -25,18 +25,18 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> CheckR
         check_keys(support, &here)?;
         check_numbers(support, &here)?;
         if support.kind == Robot && scene.robot.is_none() {
-            return Err(here.key("kind").shape(ShapeFault::HitchWithoutRobot));
+            return Err(here.key("kind").document_fault(DocumentFault::HitchWithoutRobot));
         }
         match (is_end, support.kind, support.arc_length_m) {
             (true, Pulley, _) => {
-                return Err(here.key("kind").shape(ShapeFault::PulleyAtEnd));
+                return Err(here.key("kind").document_fault(DocumentFault::PulleyAtEnd));
             }
-            (false, Free, _) => return Err(here.key("kind").shape(ShapeFault::FreeWithin)),
+            (false, Free, _) => return Err(here.key("kind").document_fault(DocumentFault::FreeWithin)),
             (true, _, Some(_)) => {
-                return Err(here.key("arc_length_m").shape(ShapeFault::ArcLengthAtEnd));
+                return Err(here.key("arc_length_m").document_fault(DocumentFault::ArcLengthAtEnd));
             }
             (false, Fixed | Clamped | Load | Robot, None) => {
-                return Err(here.key("arc_length_m").shape(ShapeFault::MissingArcLength));
+                return Err(here.key("arc_length_m").document_fault(DocumentFault::MissingArcLength));
             }
             (false, _, Some(s)) => {
                 if !(s > before && s < cable.length_m) {
@@ -75,10 +75,10 @@ fn check_keys(s: &Support, at: &Path<'_>) -> CheckResult {
     ];
     for (key, given, allowed, needed) in rules {
         if given && !allowed {
-            return Err(at.key(key).shape(ShapeFault::NotForKind { kind: name(kind) }));
+            return Err(at.key(key).document_fault(DocumentFault::NotForKind { kind: name(kind) }));
         }
         if needed && !given {
-            return Err(at.key(key).shape(ShapeFault::MissingForKind { kind: name(kind) }));
+            return Err(at.key(key).document_fault(DocumentFault::MissingForKind { kind: name(kind) }));
         }
     }
     Ok(())

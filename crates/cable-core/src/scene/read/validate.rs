@@ -7,11 +7,11 @@
 use super::checks::{
     CheckResult, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
 };
-use super::path::Path;
+use super::key_path::Path;
 use super::range;
 use super::self_touch::{SelfTouch, first_self_touch};
 use super::{length_check, support_rules};
-use crate::error::{SceneError, SceneFault, ShapeFault};
+use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::math::Point;
 use crate::scene::{Cable, Environment, LineEnds, Load, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
@@ -33,12 +33,12 @@ impl Scene {
             return Err(root.key("version").fault(SceneFault::Version { value: f64::from(self.version) }));
         }
         if self.name.len() > MAX_TITLE {
-            return Err(root.key("name").shape(ShapeFault::LongName { most: MAX_TITLE }));
+            return Err(root.key("name").document_fault(DocumentFault::LongName { most: MAX_TITLE }));
         }
         check_environment(&self.environment)?;
         let at = root.key("cables");
         if self.cables.is_empty() {
-            return Err(at.shape(ShapeFault::NoCable));
+            return Err(at.document_fault(DocumentFault::NoCable));
         }
         at_most(&at, self.cables.len(), MAX_CABLES)?;
         unique(&at, self.cables.iter().map(|c| c.name.as_str()))?;
@@ -124,7 +124,7 @@ fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     let route = at.key("route_m");
     at_most(&route, cable.route_m.len(), MAX_KNOTS)?;
     if cable.route_m.len() == 1 {
-        return Err(route.shape(ShapeFault::ShortRoute));
+        return Err(route.document_fault(DocumentFault::ShortRoute));
     }
     points(&route, &cable.route_m, range::COORDINATE)?;
     apart(&route, &cable.route_m)?;
@@ -170,13 +170,13 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
     apart(&line, corners)?;
     match (&obstacle.shape, corners.first(), corners.last()) {
         (Shape::Terrain { .. }, Some(first), Some(last)) if !(last[0] > first[0]) => {
-            Err(line.shape(ShapeFault::TerrainLeftwards))
+            Err(line.document_fault(DocumentFault::TerrainLeftwards))
         }
         (Shape::Polygon { .. }, Some(first), Some(last)) if first == last => {
-            Err(line.index(corners.len() - 1).shape(ShapeFault::PolygonClosedTwice))
+            Err(line.index(corners.len() - 1).document_fault(DocumentFault::PolygonClosedTwice))
         }
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
-            Err(line.shape(ShapeFault::PolygonWithoutArea))
+            Err(line.document_fault(DocumentFault::PolygonWithoutArea))
         }
         (Shape::Terrain { .. }, _, _) => check_not_self_crossing(&line, corners, LineEnds::Open),
         (Shape::Polygon { .. }, _, _) => check_not_self_crossing(&line, corners, LineEnds::Joined),
@@ -194,7 +194,7 @@ fn check_not_self_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> Che
             let edges_m = Box::new([j, i].map(|k| [line[k], end(k)]));
             Err(at.index(j).fault(SceneFault::EdgesCross { other: i, edges_m }))
         }
-        Some(SelfTouch::Tangled) => Err(at.shape(ShapeFault::Tangled)),
+        Some(SelfTouch::Tangled) => Err(at.document_fault(DocumentFault::Tangled)),
     }
 }
 

@@ -3,8 +3,8 @@
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
+use crate::canvas::canvas_view::{CanvasView, LabelPriority};
 use crate::canvas::layers::{breaks, robot};
-use crate::canvas::view::{CanvasView, LabelPriority};
 use crate::geometry::supports::support_position;
 use crate::state::AppState;
 use crate::units::labels;

@@ -3,7 +3,7 @@
 use cable_core::solution::{CableSolution, Node};
 use egui::{Pos2, Stroke, vec2};
 
-use crate::canvas::view::{CanvasView, LabelPriority};
+use crate::canvas::canvas_view::{CanvasView, LabelPriority};
 use crate::state::AppState;
 use crate::units::labels;
 

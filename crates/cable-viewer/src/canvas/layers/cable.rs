@@ -4,8 +4,8 @@
 use cable_core::solution::Node;
 use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 
+use crate::canvas::canvas_view::CanvasView;
 use crate::canvas::layers::surface_offset::{self, MIN_WIDTH};
-use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
 use crate::state::{AppState, Freshness, Item};
@@ -60,7 +60,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
             view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
         }
     }
-    if let Some(s) = plot::hovered(view.painter.ctx(), plot::along::GROUP)
+    if let Some(s) = plot::hovered(view.painter.ctx(), plot::along_cable::GROUP)
         && let Some(n) =
             solution.cables.get(state.current_cable()).and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= s))
     {

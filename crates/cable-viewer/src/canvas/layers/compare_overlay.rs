@@ -4,7 +4,7 @@
 use cable_core::Solution;
 use egui::{Pos2, Stroke};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::render::colour::LINES;
 use crate::state::AppState;
 

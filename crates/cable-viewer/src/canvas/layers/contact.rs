@@ -4,9 +4,9 @@
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
 use egui::{Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
+use crate::canvas::canvas_view::CanvasView;
 use crate::canvas::layers::cable::{Ribbon, distinct_nodes};
 use crate::canvas::layers::surface_offset::{self, MIN_WIDTH};
-use crate::canvas::view::CanvasView;
 use crate::render::theme::Palette;
 use crate::state::AppState;
 

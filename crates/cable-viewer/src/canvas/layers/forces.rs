@@ -5,7 +5,7 @@ use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
 use egui::{Align2, Color32, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::arrows::{load_arrow, load_at};
 use crate::state::{AppState, Item};
 use crate::units::labels;

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Rect, Stroke, pos2, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::state::camera::Camera;
 use crate::units::labels;
 

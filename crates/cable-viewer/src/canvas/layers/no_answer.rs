@@ -2,7 +2,7 @@
 
 use egui::{FontId, Rect, Stroke, StrokeKind, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::panels::scene_errors;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::sentence::sentence;

@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::Shape;
 use egui::{Mesh, Pos2, Stroke, pos2, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};
 

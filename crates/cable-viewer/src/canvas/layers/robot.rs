@@ -2,12 +2,12 @@
 
 use cable_core::math::Point;
 use cable_core::problem::OUTLINE_NAME;
-use cable_core::robot::Going;
 use cable_core::scene::preset::RobotPreset;
-use cable_core::scene::robot::{Heading, Pose};
+use cable_core::scene::{Heading, Pose};
+use cable_core::solution::Going;
 use egui::{Color32, Mesh, Pos2, Stroke};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::robot::{robot_outline, robot_pose};
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::robot::path_flags;
 use crate::state::{AppState, Item};
 

@@ -11,7 +11,7 @@ use egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::jobs::safe_reach::ReachMaps;
 use crate::render::colour::ColourMap;
 use crate::render::theme::{self, Palette};

@@ -3,7 +3,7 @@
 use cable_core::scene::{Support, SupportKind};
 use egui::{Pos2, Stroke, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 use crate::geometry::supports::{hand_spring, support_position};
 use crate::state::{AppState, Item};
 

@@ -4,7 +4,7 @@
 use cable_core::solution::{CableSolution, ContactReport, Node};
 use egui::{Pos2, Vec2, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::canvas_view::CanvasView;
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
 pub const MIN_WIDTH: f32 = 4.5;

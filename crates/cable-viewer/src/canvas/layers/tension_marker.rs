@@ -2,8 +2,8 @@
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
+use crate::canvas::canvas_view::CanvasView;
 use crate::canvas::layers::contact;
-use crate::canvas::view::CanvasView;
 use crate::state::AppState;
 use crate::units::labels;
 

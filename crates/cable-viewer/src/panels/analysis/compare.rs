@@ -8,10 +8,10 @@ use egui::{Grid, Id, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
+use crate::panels::display_names;
 use crate::panels::readouts::DIMMED;
-use crate::panels::words;
-use crate::record::measure::Measure;
-use crate::record::run::Peak;
+use crate::record::kept_run::Peak;
+use crate::record::plotted_quantity::Measure;
 use crate::render::colour::{CableQuantity, LINES};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
@@ -310,7 +310,7 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     {
         out.push(format!("Model: {}, now {}", labels::model(held.solution.model), labels::model(present.model)));
     }
-    out.extend(held.scene.changes_to(&state.document.scene).iter().map(words::change));
+    out.extend(held.scene.changes_to(&state.document.scene).iter().map(display_names::change));
     if out.is_empty() {
         out.push("Same inputs".to_owned());
     }

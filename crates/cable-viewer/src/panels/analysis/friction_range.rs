@@ -10,8 +10,8 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::property::{Provenance, Quantity, row};
-use crate::widgets::tick::checkbox;
 use crate::widgets::{field, progress};
 
 const MIN_FRICTION: Quantity = Quantity {

@@ -10,10 +10,10 @@ use egui::{ComboBox, Slider, Ui};
 use crate::command::{Command, ViewCommand};
 use crate::jobs::safe_reach::{self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions};
 use crate::state::AppState;
-use crate::state::questions::reach_target;
+use crate::state::job_questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::tick::radio_button;
+use crate::widgets::checkbox_and_radio::radio_button;
 use crate::widgets::{field, highlight, progress};
 
 /// Width of a slider's value beside it, points.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use cable_core::Model;
-use cable_core::summary::Setting;
+use cable_core::analysis::Setting;
 use egui::{Rangef, RichText, Ui};
 use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, Plot, PlotBounds, Points};
 

@@ -14,9 +14,9 @@ use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::panels::cable::property::{PROPERTIES, SEGMENTS};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, labelled, row};
-use crate::widgets::tick::checkbox;
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;

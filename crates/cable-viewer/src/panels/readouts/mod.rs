@@ -16,7 +16,7 @@ use egui::{Label, ProgressBar, RichText, Ui};
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::render::theme;
-use crate::state::questions::{bending_query, bending_query_fits};
+use crate::state::job_questions::{bending_query, bending_query_fits};
 use crate::state::{AppState, Freshness};
 use crate::units::sentence::sentence;
 use crate::units::{format, unit};

@@ -10,10 +10,10 @@ use crate::panels::scene::rows::{self, GAP, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
+use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
-use crate::widgets::tick::checkbox;
 
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;

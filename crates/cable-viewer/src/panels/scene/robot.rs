@@ -1,9 +1,8 @@
 //! The form of the robot says which it is, where it stands and which way. A first one stands where
 //! it can, with the end of the cable on its hitch.
 
-use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{self, RobotPreset};
-use cable_core::scene::{Heading, SupportKind};
+use cable_core::scene::{Ground, Heading, SupportKind};
 use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 

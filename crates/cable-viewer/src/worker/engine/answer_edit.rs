@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use cable_core::math::Point;
-use cable_core::model::auto::Question;
+use cable_core::model::Question;
 use cable_core::{Error, Model, Scene, Settings, Simulation};
 
 use super::run::{MOTION, Run, RunStart, is_quasi_static};

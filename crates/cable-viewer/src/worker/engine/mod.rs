@@ -4,13 +4,13 @@
 //! - `motion`: frames of simulated time, and a hand that draws meanwhile
 //! - `outbox`: what waits for the window
 //! - `run`: the simulation in time, with its start, its whole steps and what is known of it
-//! - `shown`: what of the engine's state goes there
+//! - `snapshot`: what of the engine's state goes there
 
 mod answer_edit;
 mod motion;
 pub(super) mod outbox;
 mod run;
-mod shown;
+mod snapshot;
 
 use std::sync::Arc;
 use std::time::Instant;

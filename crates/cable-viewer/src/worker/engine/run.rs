@@ -1,7 +1,6 @@
 //! A run is a simulation in time: where it began, its whole steps, and what is known of it.
 
-use cable_core::model::Inertia;
-use cable_core::model::auto::Question;
+use cable_core::model::{Inertia, Question};
 use cable_core::solution::Solution;
 use cable_core::timeline::{RunMonitor, RunPeaks, TimeDebt, answer_between_steps, make_steps, usual_step};
 use cable_core::{Error, Model, Settings, Simulation};

@@ -2,12 +2,12 @@
 
 use crate::math::Vec2;
 use crate::model::Inertia;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way};
 use crate::model::fem::remesh::remesh;
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
-impl Dynamics {
+impl Stepper {
     /// A step without inertia to the time `to` (s); friction remembers.
     pub(in crate::model::fem) fn quasi_static_step(
         &mut self,

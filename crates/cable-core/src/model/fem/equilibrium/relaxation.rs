@@ -6,10 +6,10 @@
 //! on, solved exactly, until the force of the resistance is nothing.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::lagged_friction::Lagged;
 use crate::model::fem::obstacle::prepare_way;
 use crate::model::fem::state::{CableState, prepare_input};
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns, load_scale};
 
 /// Length of cable (m) whose dead loads set the first resistance.
@@ -108,7 +108,7 @@ impl Relaxation {
     }
 }
 
-impl Dynamics {
+impl Stepper {
     /// Relaxes the cable, then finds its equilibrium. On the way rounding may hide any force: a
     /// cable that is laid in contact begins there. If that finds no equilibrium, it may hide less.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {

@@ -3,12 +3,13 @@
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::relaxation::moved_away;
-use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, bow, depenetrate};
+use crate::model::fem::first_shape::{bow, depenetrate};
+use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way, put_outline};
 use crate::model::fem::results;
 use crate::model::fem::state::{CableState, prepare_input};
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, load_scale, tolerance};
 use crate::model::{Model, StepReport};
 use crate::state::State;
@@ -57,7 +58,7 @@ fn crosses_itself(x: &[Vec2]) -> bool {
     !crate::contact::self_crossings::crossings(x, |_| true).is_empty()
 }
 
-impl Dynamics {
+impl Stepper {
     /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
     /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
@@ -66,7 +67,12 @@ impl Dynamics {
         let rounding = self.rounding_of_bars();
         let mut all = found;
         let tuning = self.cable.mesh.tuning.equilibrium;
-        for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
+        let stages = [
+            (1.0, tuning.polish_iterations),
+            (tuning.polish_residual.sqrt(), tuning.max_iterations),
+            (tuning.polish_residual, tuning.max_iterations),
+        ];
+        for (part, iterations) in stages {
             self.rollback.save(&self.cable);
             prepare_way(&mut self.cable, [to, to], Some(dragged));
             self.cable.input.stopping.max_noise = exact;

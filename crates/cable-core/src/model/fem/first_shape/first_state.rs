@@ -5,16 +5,16 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::math::Vec2;
 use crate::model::Settings;
-use crate::model::fem::first_shape::push_out::{PUSHED_OUT_REACHES, depenetrate};
+use crate::model::fem::contact_free::touches_nothing;
+use crate::model::fem::first_shape::push_out::depenetrate;
 use crate::model::fem::first_shape::route::{place_nodes, route};
 use crate::model::fem::first_shape::threading::thread_pulleys;
-use crate::model::fem::mesh::{Mesh, bar_count};
+use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES, bar_count};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
     CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
 };
 use crate::model::fem::system::{ContactSet, Loss, StepInput, load_scale, tolerance};
-use crate::model::fem::touches_nothing;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 
@@ -28,21 +28,57 @@ pub(in crate::model::fem) fn cable_along_route(
     let (outline, problem) = MovingOutline::of(problem);
     let route = route(&problem);
     let segments = bar_count(&problem, settings, &start);
-    let even = problem.length / segments as f64;
+    let breaks = places_of_nodes(&problem, &route, start.route_node_bars * (problem.length / segments as f64));
+    let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
+    let mut cable = cable_at_rest(problem, outline, mesh, segments, &route);
+    if cable.problem.cable.self_contact {
+        cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
+        cable.contacts.self_contacts.friction = cable.problem.cable.friction;
+    }
+    cable.forget_history();
+    prepare_input(&mut cable, 0.0, None);
+    for k in 0..cable.mesh.nodes() {
+        if cable.mesh.held[k] {
+            cable.motion.positions[k] = cable.input.supports.target[k];
+        }
+    }
+    thread_pulleys(&mut cable, None);
+    let mut x = std::mem::take(&mut cable.motion.positions);
+    depenetrate(&cable.problem, &cable.mesh, &mut x, PUSHED_OUT_REACHES * contact.reach_m);
+    cable.motion.positions = x;
+    cable.forget_history();
+    cable
+}
+
+/// Arc lengths at which a mesh needs a node, m: supports, loads and, where the cable can touch
+/// something, points of its route that are not as near to one of these as `near` (m).
+fn places_of_nodes(problem: &Problem, route: &[(f64, Vec2)], near: f64) -> Vec<f64> {
     let mut breaks = vec![0.0, problem.length];
     breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
     breaks.extend(problem.loads.iter().map(|l| l.arc_length));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
     if !problem.world.is_empty() || problem.cable.self_contact {
-        for (s, _) in &route {
-            if breaks.iter().all(|b| (b - s).abs() > start.route_node_bars * even) {
+        for (s, _) in route {
+            if breaks.iter().all(|b| (b - s).abs() > near) {
                 breaks.push(*s);
             }
         }
         breaks.sort_by(f64::total_cmp);
     }
-    let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
+    breaks
+}
+
+/// A cable at rest with its nodes along a route, which nothing has pushed out of obstacles yet.
+fn cable_at_rest(
+    problem: Arc<Problem>,
+    outline: Option<MovingOutline>,
+    mesh: Mesh,
+    segments: usize,
+    route: &[(f64, Vec2)],
+) -> CableState {
+    let contact = mesh.tuning.contact;
+    let even = problem.length / segments as f64;
     let n = mesh.nodes();
     let support_node: Vec<Option<usize>> =
         problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
@@ -51,10 +87,10 @@ pub(in crate::model::fem) fn cable_along_route(
     let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
     let mut input = StepInput::default();
     input.stopping.tolerance = tolerance(&problem, whole);
-    let mut cable = CableState {
+    CableState {
         contacts: ContactSet::new(barrier, contact, n),
         motion: NodalMotion {
-            positions: place_nodes(&mesh, &route),
+            positions: place_nodes(&mesh, route),
             velocities: vec![Vec2::zeros(); n],
             previous_positions: vec![Vec2::zeros(); n],
             previous_velocities: vec![Vec2::zeros(); n],
@@ -93,24 +129,7 @@ pub(in crate::model::fem) fn cable_along_route(
         mesh,
         input,
         problem,
-    };
-    if cable.problem.cable.self_contact {
-        cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
-        cable.contacts.self_contacts.friction = cable.problem.cable.friction;
     }
-    cable.forget_history();
-    prepare_input(&mut cable, 0.0, None);
-    for k in 0..n {
-        if cable.mesh.held[k] {
-            cable.motion.positions[k] = cable.input.supports.target[k];
-        }
-    }
-    thread_pulleys(&mut cable, None);
-    let mut x = std::mem::take(&mut cable.motion.positions);
-    depenetrate(&cable.problem, &cable.mesh, &mut x, PUSHED_OUT_REACHES * contact.reach_m);
-    cable.motion.positions = x;
-    cable.forget_history();
-    cable
 }
 
 /// True if the mass is spread over the bars. Where the cable can touch something it is lumped all

@@ -13,6 +13,6 @@ pub mod route;
 pub(in crate::model::fem) mod threading;
 
 pub(in crate::model::fem) use first_state::cable_along_route;
-pub(in crate::model::fem) use push_out::{PUSHED_OUT_REACHES, depenetrate, push_chain_out};
+pub(in crate::model::fem) use push_out::{depenetrate, push_chain_out};
 pub(in crate::model::fem) use route::{bow, leaning_way};
 pub(in crate::model::fem) use threading::thread_pulleys;

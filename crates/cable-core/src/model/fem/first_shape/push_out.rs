@@ -9,11 +9,6 @@ use crate::problem::Problem;
 /// diameter.
 const MAX_PASSES: usize = 60;
 
-/// Gap to which a shape is pushed out of obstacles, in reaches of the barrier. Smaller: nodes begin
-/// with a larger barrier force; larger: at 1 they are out of contact and fall back into it. A
-/// choice, tuned on no campaign; the landing gap of predicted contacts is half of the reach.
-pub(in crate::model::fem) const PUSHED_OUT_REACHES: f64 = 0.9;
-
 /// Depth (m) inside an obstacle to which a first shape is found and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 

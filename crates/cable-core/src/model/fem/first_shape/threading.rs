@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::math::Vec2;
 use crate::model::fem::free::{Restraint, StationLayout};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
+use crate::model::fem::remesh::clear_of_nodes;
 use crate::model::fem::remesh::{even_out, insert};
 use crate::model::fem::state::{CableState, renew_input};
-use crate::model::fem::transfer::from_solution::clear_of_nodes;
 use crate::problem::wheel_passage::facing;
 use crate::scene::PulleySide;
 use crate::state::State;
@@ -30,8 +30,8 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
         let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
         let sense = -facing(wheel.side, passing);
-        // Its material is counted where the state has it: beside that the cable would be fed over the
-        // wheel, and friction would hold it there.
+        // Its material is counted where the state has it: beside that the cable would be fed over
+        // the wheel, and friction would hold it there.
         let outward = state.and_then(|state| (state.position_at(at)? - wheel.center).try_normalize(0.0));
         let mark = outward.filter(|_| wheel.radius > 0.0).unwrap_or(up);
         let end = BarEnd { center: wheel.center, radius: wheel.radius, mark, sense };

@@ -5,7 +5,8 @@
 //! is found is in tension and stable by construction. The mesh follows the error estimate where the
 //! scene does not give one.
 
-use crate::numerics::HalvedSteps;
+use crate::model::settings::MAX_MOVE_FRACTION;
+use crate::numerics::{HalvedSteps, MAX_HALVINGS};
 use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
@@ -40,13 +41,8 @@ const ESTIMATE_FRACTION: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Longest move of a support in one slow step where friction must remember the way, in parts of the
-/// cable length.
-const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
-/// Greatest number of halvings of a slow step.
-const MAX_HALVINGS: u32 = 8;
 /// Part of a slow step that is taken with the step before it.
 const JOINED_FRACTION: f64 = 0.5;
 
@@ -171,7 +167,7 @@ impl Statics {
                 longest = longest.max((b - a).norm());
             }
         }
-        (longest / (SLOW_MOVE * self.problem.length)).ceil().clamp(1.0, MAX_SLOW_STEPS)
+        (longest / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, MAX_SLOW_STEPS)
     }
 
     /// Rest at a time; on an error nothing has changed.

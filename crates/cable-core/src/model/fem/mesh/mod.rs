@@ -23,3 +23,8 @@ pub(in crate::model::fem) use sliding_node::{
     BalancedTensions, SlideOver, SlidingNode, SlidingNodeLoad, StickSlip, mean_factor, round_of,
 };
 pub(in crate::model::fem) use tangent_path::{BarEnd, TangentPath, angle_between, rotate};
+
+/// Gap to which a shape is pushed out of obstacles, in reaches of the barrier. Smaller: nodes begin
+/// with a larger barrier force; larger: at 1 they are out of contact and fall back into it. A
+/// choice, tuned on no campaign; the landing gap of predicted contacts is half of the reach.
+pub(in crate::model::fem) const PUSHED_OUT_REACHES: f64 = 0.9;

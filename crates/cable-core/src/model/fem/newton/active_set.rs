@@ -180,9 +180,9 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use crate::math::Vec2;
-    use crate::model::fem::dynamics::Dynamics;
     use crate::model::fem::newton::minimize::Workspace;
     use crate::model::fem::settings::ContactTuning;
+    use crate::model::fem::stepper::Stepper;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
@@ -191,7 +191,7 @@ mod tests {
 
     /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s
     /// downwards: it lands all along its length in the next step, here sooner and there later.
-    fn about_to_land() -> Dynamics {
+    fn about_to_land() -> Stepper {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
         scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape, friction: Some(0.5) }];
@@ -201,7 +201,7 @@ mod tests {
         c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
         let radius = 0.5 * c.diameter_m;
         let settings = Settings { segments: Some(100), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
+        let mut d = Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
         for (k, (x, v)) in d.cable.motion.positions.iter_mut().zip(&mut d.cable.motion.velocities).enumerate() {

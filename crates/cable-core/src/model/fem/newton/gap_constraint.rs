@@ -150,17 +150,17 @@ mod tests {
     use super::*;
     use crate::contact::self_contact_pairs::{SelfContact, SortedNodes};
     use crate::model::Settings;
-    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::stepper::Stepper;
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, catalog};
     use proptest::prelude::*;
 
-    fn mesh(obstacles: Vec<Obstacle>) -> Dynamics {
+    fn mesh(obstacles: Vec<Obstacle>) -> Stepper {
         let mut scene = catalog::hanging_span();
         scene.obstacles = obstacles;
         scene.cables[0].breaking_tension_n = 1e12;
         let settings = Settings { segments: Some(4), ..Settings::default() };
-        Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
+        Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
     }
 
     proptest! {

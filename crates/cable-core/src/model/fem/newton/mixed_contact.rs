@@ -315,7 +315,7 @@ impl Workspace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::stepper::Stepper;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
@@ -324,7 +324,7 @@ mod tests {
     const STEP: f64 = 1.0 / 240.0;
 
     /// A cable of 6 m let go `tilt` (m) askew above rough ground, thrown down and about.
-    fn falling(tilt: f64, waves: &[f64]) -> Dynamics {
+    fn falling(tilt: f64, waves: &[f64]) -> Stepper {
         let mut scene = catalog::hanging_span();
         let points_m = (0..=40).map(|k| [-4.0 + 0.4 * f64::from(k), 0.05 * f64::from(k * 7 % 5)]).collect();
         let shape = Shape::Terrain { points_m };
@@ -334,7 +334,7 @@ mod tests {
         let hook = |name: &str, at| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, at) };
         c.supports = vec![hook("a", [0.0, 0.9]), hook("b", [5.9, 0.9 + tilt])];
         let settings = Settings { segments: Some(40), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
+        let mut d = Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         let n = d.cable.mesh.nodes() - 1;
         for (k, v) in d.cable.motion.velocities.iter_mut().enumerate() {
@@ -346,7 +346,7 @@ mod tests {
     }
 
     /// A cable of 10 m let go at both ends above a floor, cut into so many bars.
-    fn dropped(height: f64, bars: usize) -> Dynamics {
+    fn dropped(height: f64, bars: usize) -> Stepper {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
         scene.obstacles = vec![Obstacle { name: "floor".to_owned(), shape, friction: Some(0.5) }];
@@ -355,7 +355,7 @@ mod tests {
         let hook = |name: &str, x| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, [x, height]) };
         c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
         let settings = Settings { segments: Some(bars), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
+        let mut d = Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         d
     }

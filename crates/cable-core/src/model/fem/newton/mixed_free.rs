@@ -260,15 +260,15 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::dynamics::Dynamics;
     use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::stepper::Stepper;
     use crate::model::fem::system::StepContext;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};
     use proptest::prelude::*;
 
-    fn dynamics(stiffness: f64, loose: bool) -> Dynamics {
+    fn dynamics(stiffness: f64, loose: bool) -> Stepper {
         let mut scene = catalog::hanging_span();
         scene.cables[0].axial_stiffness_n = stiffness;
         scene.cables[0].bending_stiffness_n_m2 = 0.0;
@@ -276,7 +276,7 @@ mod tests {
             scene.cables[0].supports[1] = Support::new("loose", SupportKind::Free);
         }
         let settings = Settings { segments: Some(30), ..Settings::default() };
-        Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
+        Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
     }
 
     proptest! {

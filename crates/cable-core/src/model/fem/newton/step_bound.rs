@@ -106,14 +106,14 @@ mod tests {
     use super::*;
     use crate::energy::Curvature;
     use crate::model::Settings;
-    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::stepper::Stepper;
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
     use proptest::prelude::*;
 
     /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be
     /// sliding nodes, which are always looked at.
-    fn lying() -> Dynamics {
+    fn lying() -> Stepper {
         let mut scene = catalog::hanging_span();
         let points_m = vec![[-4.0, 0.0], [3.0, -0.1], [11.0, 0.1]];
         let shape = Shape::Terrain { points_m };
@@ -123,7 +123,7 @@ mod tests {
         let hook = |name: &str, x| Support { release_s: Some(1e-3), ..Support::fixed(name, [x, 0.4]) };
         c.supports = vec![hook("a", 0.0), hook("b", 5.9)];
         let settings = Settings { segments: Some(60), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
+        let mut d = Stepper::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         for _ in 0..240 {
             d.advance(1.0 / 240.0, crate::model::Inertia::Dynamic, &[]).unwrap();

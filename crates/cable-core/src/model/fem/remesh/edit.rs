@@ -134,3 +134,16 @@ fn renumber(cable: &mut CableState, change: impl Fn(usize) -> Option<usize>) {
     }
     cable.contacts.renumber(change);
 }
+
+/// Takes the plain nodes out that would lie on a round, between two material points (m).
+pub(in crate::model::fem) fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
+    let mut k = 1;
+    while k + 1 < cable.mesh.nodes() {
+        let s = cable.mesh.arc_length[k];
+        if s >= from && s <= to && cable.meshing.removable(&cable.mesh, k) && cable.mesh.sliding[k].is_none() {
+            remove(cable, k);
+        } else {
+            k += 1;
+        }
+    }
+}

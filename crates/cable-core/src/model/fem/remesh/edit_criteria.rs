@@ -80,7 +80,7 @@ impl<'a> Criteria<'a> {
         load.normal < 0.0
             || turn < 0.0
             || self.intersections().beyond_its_corner(k)
-            || (tension < mesh.tuning.remesh.material_tension_weights * self.meshing.bar_weight
+            || (tension < 0.5 * mesh.tuning.remesh.sliding_tension_weights * self.meshing.bar_weight
                 && turn < 2.0 * mesh.tuning.remesh.max_left_half_turn_rad)
     }
 

@@ -13,4 +13,4 @@ pub(in crate::model::fem) mod edit;
 mod edit_criteria;
 
 pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
-pub(in crate::model::fem) use edit::{insert, remove};
+pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};

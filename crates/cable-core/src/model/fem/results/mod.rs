@@ -5,6 +5,7 @@
 //! | `mod.rs` | the answer as a whole, and the tension of inner steps |
 //! | `forces.rs` | tensions of bars, forces on ends and nodes, moments |
 //! | `nodes.rs`, `supports.rs`, `contacts.rs`, `self_contact.rs` | those parts of the answer |
+//! | `points_on_round.rs` | the points that draw the cable round a corner, post or pulley |
 //! | `weighted_capstan.rs` | the tension along a round between those at its ends |
 //! | `bending_error.rs` | the part of the error that is bending round obstacles |
 
@@ -12,6 +13,7 @@ pub(in crate::model::fem) mod bending_error;
 mod contacts;
 pub(in crate::model::fem) mod forces;
 mod nodes;
+mod points_on_round;
 mod self_contact;
 mod supports;
 mod weighted_capstan;

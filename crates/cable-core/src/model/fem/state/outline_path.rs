@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::outline::Outline;
+use crate::contact::moving_outline::Outline;
 use crate::math::RigidPose;
 use crate::problem::Problem;
 

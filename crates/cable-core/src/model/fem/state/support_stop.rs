@@ -2,8 +2,7 @@
 //! leaves the cable there when it lets go.
 
 use crate::math::Vec2;
-use crate::model::fem::first_shape::PUSHED_OUT_REACHES;
-use crate::model::fem::mesh::Mesh;
+use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES};
 use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::Converged;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::problem::problems;
@@ -25,8 +25,8 @@ fn floor(friction: f64) -> Obstacle {
     Obstacle { name: "floor".to_owned(), shape, friction: Some(friction) }
 }
 
-fn build(scene: &Scene) -> Dynamics {
-    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default(), Arc::default()).unwrap()
+fn build(scene: &Scene) -> Stepper {
+    Stepper::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default(), Arc::default()).unwrap()
 }
 
 /// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries
@@ -127,7 +127,7 @@ fn a_load_over_a_corner_rests_and_stays() {
 
 /// A steel-stiff cable drawn to 1e5 N over a post, without sliding nodes: the barrier alone carries
 /// it.
-fn taut_over_a_post() -> Dynamics {
+fn taut_over_a_post() -> Stepper {
     let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.2 };
     let scene = scene(
         |c| {
@@ -349,7 +349,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
         (x.y, v.y) = (x.y + 0.05, -2.4);
     }
     d.forget_history();
-    let highest = |d: &Dynamics| d.cable.state().position_m.iter().map(|p| p.y - RADIUS).fold(0.0, f64::max);
+    let highest = |d: &Stepper| d.cable.state().position_m.iter().map(|p| p.y - RADIUS).fold(0.0, f64::max);
     let (mut landed, mut most) = (false, 0.0f64);
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
@@ -363,7 +363,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
 }
 
 /// Two legs of a hanging hairpin thrown at each other until they touch.
-fn legs_that_touch() -> Dynamics {
+fn legs_that_touch() -> Stepper {
     let mut scene = scene(
         |c| {
             (c.length_m, c.axial_stiffness_n, c.segments, c.self_contact) = (4.0, 1e5, Some(40), true);
@@ -396,10 +396,10 @@ fn legs_that_land_on_each_other_go_on_together() {
         d.cable.motion.velocities[k] =
             Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }
-    let momentum = |d: &Dynamics| {
+    let momentum = |d: &Stepper| {
         (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.velocities[k] * d.cable.mesh.tributary_length(k)).sum::<Vec2>()
     };
-    let fastest = |d: &Dynamics| {
+    let fastest = |d: &Stepper| {
         rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.velocities)).abs()).fold(0.0, f64::max)
     };
     let (before, approach) = (momentum(&d), fastest(&d));
@@ -442,7 +442,7 @@ fn a_rest_of_many_bars_is_polished_as_far_as_its_bars_are_known() {
     let problem = problems(&catalog::slack_to_floor()).unwrap().remove(0);
     let mut model = FemModel::new(problem, settings).unwrap();
     model.settle().unwrap();
-    let done = model.dynamics.polish(Converged::default(), &[]);
+    let done = model.stepper.polish(Converged::default(), &[]);
     println!("{done:?}");
     assert!(done.iterations <= 5, "{done:?}");
 }

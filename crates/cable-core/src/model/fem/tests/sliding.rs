@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::settle_down;
+use crate::model::fem::stepper::Stepper;
 use crate::model::{Inertia, Settings};
 use crate::problem::problems;
 use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -25,8 +25,8 @@ fn scene(cable: impl FnOnce(&mut Cable), obstacles: Vec<Obstacle>) -> Scene {
     scene
 }
 
-fn build(scene: &Scene) -> Dynamics {
-    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default(), Arc::default()).unwrap()
+fn build(scene: &Scene) -> Stepper {
+    Stepper::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default(), Arc::default()).unwrap()
 }
 
 fn beam(friction: f64) -> Obstacle {
@@ -191,7 +191,7 @@ fn material_is_neither_made_nor_lost_at_corners() {
 }
 
 /// A soft cable drawn down over a beam at both ends, and thrown up from it at a speed, m/s.
-fn thrown_off_a_beam(speed: f64) -> Dynamics {
+fn thrown_off_a_beam(speed: f64) -> Stepper {
     let scene = scene(
         |c| {
             (c.length_m, c.linear_density_kg_per_m, c.segments) = (3.33, 0.5, Some(33));
@@ -227,7 +227,7 @@ fn a_corner_never_pulls_at_what_is_thrown_off_it() {
 }
 
 /// The corner that would have to pull at positions `x` (m).
-fn pulled(d: &Dynamics, x: &[Vec2]) -> Option<usize> {
+fn pulled(d: &Stepper, x: &[Vec2]) -> Option<usize> {
     IntersectionCheck::at(&d.cable, x).pulled_corner(d.cable.mesh.tuning.remesh.max_reverse_turn_rad)
 }
 
@@ -289,7 +289,7 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     d.cable.mesh.arc_length[k] += material;
     d.cable.mesh.rest_length[k - 1] += material;
     d.cable.mesh.rest_length[k] -= material;
-    let tensions = |d: &Dynamics| {
+    let tensions = |d: &Stepper| {
         [k - 1, k].map(|e| {
             stiff * (d.cable.mesh.path(e, &d.cable.motion.positions).length / d.cable.mesh.rest_length[e] - 1.0)
         })

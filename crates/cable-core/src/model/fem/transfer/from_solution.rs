@@ -11,7 +11,7 @@
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, angle_between, rotate, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::{insert, remove};
+use crate::model::fem::remesh::{clear_of_nodes, insert, remove};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::ContactPair;
 use crate::solution::Node;
@@ -139,7 +139,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
             / if many {
                 cable.mesh.tuning.remesh.max_marked_arc_rad
             } else {
-                cable.mesh.tuning.start.max_mark_turn_rad
+                2.0 * cable.mesh.tuning.remesh.max_tangent_half_turn_rad
             })
         .ceil()
         .max(bars);
@@ -167,19 +167,6 @@ fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
     let k = cable.mesh.arc_length.partition_point(|&a| a <= s);
     if k > 0 && k < cable.mesh.nodes() {
         insert(cable, k, s, Some(node));
-    }
-}
-
-/// Takes the plain nodes out that would lie on a round, between two material points (m).
-pub(in crate::model::fem) fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
-    let mut k = 1;
-    while k + 1 < cable.mesh.nodes() {
-        let s = cable.mesh.arc_length[k];
-        if s >= from && s <= to && cable.meshing.removable(&cable.mesh, k) && cable.mesh.sliding[k].is_none() {
-            remove(cable, k);
-        } else {
-            k += 1;
-        }
     }
 }
 

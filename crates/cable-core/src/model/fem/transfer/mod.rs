@@ -8,65 +8,22 @@
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
 
-use std::sync::Arc;
-
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::Settings;
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::first_shape::{PUSHED_OUT_REACHES, cable_along_route, depenetrate, thread_pulleys};
-use crate::model::fem::newton::{MixedFreeSolver, NodalWays, SolverMemory, WorkspaceMemory};
+use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
+use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
-use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::renew_input;
-use crate::model::fem::system::{Unknowns, WorkBudget};
-use crate::model::fem::time::{HandDrive, Rollback, Sleep, StepSizeController, TimeControl};
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
 use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes};
-use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
 
-impl Dynamics {
-    /// Builds it at the route.
-    ///
-    /// # Errors
-    /// None today: a feature that the model lacks is refused when it is asked for.
-    pub fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
-        let longest = tuning.step.longest_s;
-        let cable = cable_along_route(problem, settings, tuning);
-        Ok(Self {
-            rollback: Rollback::default(),
-            solver: SolverMemory {
-                unknowns: Unknowns::default(),
-                memory: WorkspaceMemory(None),
-                free: MixedFreeSolver::default(),
-                ways: NodalWays::default(),
-                decay: Vec::new(),
-                work_left: WorkBudget::Unlimited,
-                work_of_advance: WorkBudget::Unlimited,
-            },
-            time_control: TimeControl {
-                step_size: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
-                sleep: Sleep::default(),
-                tolerance: settings.tolerance,
-                due: f64::INFINITY,
-            },
-            hand_drive: HandDrive {
-                hand_speed: settings.hand_speed_m_per_s,
-                hand_stiffness: settings.hand_stiffness_n_per_m,
-                pulled: vec![false; cable.problem.supports.len()],
-                hand_targets: Vec::new(),
-            },
-            rested: false,
-            accounts_energy: settings.energy_account,
-            cable,
-        })
-    }
-
+impl Stepper {
     /// Takes over a state (from statics: at rest).
     ///
     /// # Errors

@@ -5,6 +5,7 @@
 //! and the answer says that it was held back, where and when.
 
 use crate::math::Vec2;
+use crate::model::MAX_SPEED;
 use crate::model::mass_spring::dynamics::supports::SupportDrives;
 use crate::model::mass_spring::mesh::Mesh;
 use crate::problem::Problem;
@@ -88,9 +89,9 @@ impl RunawayGuard {
         if brake && self.energy.is_none_or(|e| energy > e.value) {
             self.energy = Some(found(energy, limit));
         }
-        let cut = speed > tuning.max_speed_m_per_s;
+        let cut = speed > MAX_SPEED;
         if cut && self.speed.is_none_or(|s| speed > s.value) {
-            self.speed = Some(found(speed, tuning.max_speed_m_per_s));
+            self.speed = Some(found(speed, MAX_SPEED));
         }
         if cut || brake {
             speed = reduce_speeds(mesh, if brake { tuning.brake_factor } else { 1.0 });
@@ -112,7 +113,7 @@ impl RunawayGuard {
 
 /// Brakes all free nodes and cuts their speeds; returns the greatest speed left, m/s.
 fn reduce_speeds(mesh: &mut Mesh, brake: f64) -> f64 {
-    let limit = mesh.tuning.runaway.max_speed_m_per_s;
+    let limit = MAX_SPEED;
     let mut fastest = 0.0;
     for i in (0..mesh.position.len()).filter(|&i| !mesh.supported[i]) {
         mesh.velocity[i] *= brake;

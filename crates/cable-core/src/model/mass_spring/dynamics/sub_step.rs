@@ -4,7 +4,6 @@
 use crate::error::{FailureCause, SolveError};
 use crate::math::smaller;
 use crate::model::Settings;
-use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::chain_state::ChainState;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::sliding::slide;
@@ -12,6 +11,7 @@ use crate::model::mass_spring::dynamics::supports::HandSettings;
 use crate::model::mass_spring::dynamics::{SubStep, floor_friction, hands, impacts};
 use crate::model::mass_spring::forces::{nodal, tension};
 use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
+use crate::model::tension_gauge::TensionGauge;
 use crate::problem::Problem;
 
 /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is
@@ -47,50 +47,13 @@ pub(in crate::model::mass_spring) fn integrate(
             return Err(e);
         }
         if h < tuning.min_stable_fraction * if stable < dt_s { stable } else { dt_s } {
-            let node = chain.mesh.velocity.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
-            return Err(SolveError::StepFailed {
-                model: crate::Model::MassSpring,
-                time_s: chain.clock.time_s,
-                dt_s: h,
-                residual_n: chain.mesh.force[node].norm(),
-                place: chain.mesh.problem.place(
-                    chain.mesh.arc_length[node],
-                    chain.mesh.position[node],
-                    chain.clock.time_s,
-                ),
-                cause: FailureCause::RunawaySpeed { speed_m_per_s: fastest },
-            });
+            return Err(runaway(chain, h, fastest));
         }
         left -= h;
         chain.clock.time_s = end - left;
-        release_pulleys(&mut chain.mesh, chain.clock.time_s);
-        let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
-        chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
-        hands::follow(&mut chain.drives, mesh, hand_settings, h);
-        nodal::update(mesh, chain.clock.time_s);
-        record(mesh, gauge, points, chain.clock.time_s);
-        // Velocities go with the middle of a sub-step: from that of the last one to that of
-        // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
-        // far, an error of first order.
-        let kick = chain.clock.behind_s + 0.5 * h;
-        chain.clock.behind_s = 0.5 * h;
-        let step = SubStep { length_s: h, kick_s: kick };
-        hands::pull(&chain.drives, mesh, account, step);
-        slide(mesh, step);
-        for i in 0..mesh.position.len() {
-            if !mesh.supported[i] {
-                mesh.velocity[i] += mesh.force[i] * (kick / mesh.mass[i]);
-            }
-        }
-        account.add_kick(mesh, chain.clock.time_s, kick);
-        chain.drives.correct_released(mesh, account, kick - 0.5 * h);
-        floor_friction::floor_friction(mesh, account, kick);
-        impacts::apply(&mut chain.contacts, mesh, account, h);
-        for i in 0..mesh.position.len() {
-            mesh.position[i] += mesh.velocity[i] * h;
-        }
-        if !mesh.wheels.pulleys.is_empty() {
-            mesh.update_pulley_elements();
+        sub_step(chain, hand_settings, gauge, points, h);
+        if !chain.mesh.wheels.pulleys.is_empty() {
+            chain.mesh.update_pulley_elements();
             chain.remesh();
             stable = stable_step(&chain.mesh);
         }
@@ -104,6 +67,57 @@ pub(in crate::model::mass_spring) fn integrate(
     chain.report.cost.residual_n = 0.0;
     debug_assert!(chain.clock.time_s > begin);
     chain.mesh.non_finite(chain.clock.time_s).map_or(Ok(()), Err)
+}
+
+/// Takes a sub-step of `h` (s) to the present time of the clock: forces, velocities, impulses at
+/// contacts, places.
+fn sub_step(
+    chain: &mut ChainState,
+    hand_settings: HandSettings,
+    gauge: &mut TensionGauge,
+    points: GaugePoints,
+    h: f64,
+) {
+    release_pulleys(&mut chain.mesh, chain.clock.time_s);
+    let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
+    chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
+    hands::follow(&mut chain.drives, mesh, hand_settings, h);
+    nodal::update(mesh, chain.clock.time_s);
+    record(mesh, gauge, points, chain.clock.time_s);
+    // Velocities go with the middle of a sub-step: from that of the last one to that of
+    // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
+    // far, an error of first order.
+    let kick = chain.clock.behind_s + 0.5 * h;
+    chain.clock.behind_s = 0.5 * h;
+    let step = SubStep { length_s: h, kick_s: kick };
+    hands::pull(&chain.drives, mesh, account, step);
+    slide(mesh, step);
+    for i in 0..mesh.position.len() {
+        if !mesh.supported[i] {
+            mesh.velocity[i] += mesh.force[i] * (kick / mesh.mass[i]);
+        }
+    }
+    account.add_kick(mesh, chain.clock.time_s, kick);
+    chain.drives.correct_released(mesh, account, kick - 0.5 * h);
+    floor_friction::floor_friction(mesh, account, kick);
+    impacts::apply(&mut chain.contacts, mesh, account, h);
+    for i in 0..mesh.position.len() {
+        mesh.position[i] += mesh.velocity[i] * h;
+    }
+}
+
+/// The error of a motion whose stable sub-step (s) has become too short.
+fn runaway(chain: &ChainState, h: f64, fastest: f64) -> SolveError {
+    let mesh = &chain.mesh;
+    let node = mesh.velocity.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
+    SolveError::StepFailed {
+        model: crate::Model::MassSpring,
+        time_s: chain.clock.time_s,
+        dt_s: h,
+        residual_n: mesh.force[node].norm(),
+        place: mesh.problem.place(mesh.arc_length[node], mesh.position[node], chain.clock.time_s),
+        cause: FailureCause::RunawaySpeed { speed_m_per_s: fastest },
+    }
 }
 
 /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁,

@@ -1,14 +1,14 @@
 //! Contacts and friction of a resting cable are energies.
 //!
 //! A contact is a spring from a gap δ on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs
-//! that make the force of a polyline continuous (see [`crate::contact::pairs`]). Friction is
-//! measured from an anchor: the material point that was there and where, y = (X(s) − a)·t, limited
-//! by μ times the normal force of the last accepted step; after a solve the anchor follows, y ←
-//! clamp(y, ±ε) (see [`crate::contact::friction`]). A held contact then neither creeps nor forgets,
-//! and sliding ends at the least that balances.
+//! that make the force of a polyline continuous (see [`crate::contact::obstacle_pairs`]). Friction
+//! is measured from an anchor: the material point that was there and where, y = (X(s) − a)·t,
+//! limited by μ times the normal force of the last accepted step; after a solve the anchor follows,
+//! y ← clamp(y, ±ε) (see [`crate::contact::friction`]). A held contact then neither creeps nor
+//! forgets, and sliding ends at the least that balances.
 
 use crate::contact::friction as friction_law;
-use crate::contact::pairs::Pair;
+use crate::contact::obstacle_pairs::Pair;
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
 use crate::model::mass_spring::equilibrium::system::System;

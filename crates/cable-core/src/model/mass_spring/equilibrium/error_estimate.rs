@@ -11,8 +11,8 @@ use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
-use crate::solution::CableSolution;
-use crate::solution::ErrorEstimates;
+use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
+use crate::solution::{CableSolution, ErrorEstimates};
 
 /// The model beside which errors are estimated.
 #[derive(Clone, Debug, Default)]
@@ -130,7 +130,7 @@ fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimat
 /// The same cable at rest on elements `times` as long.
 fn coarser(model: &MassSpringModel, times: usize, start: Start) -> Option<MassSpringModel> {
     let elements = model.chain.mesh.rest_length.len();
-    if elements < model.chain.mesh.tuning.estimate.min_elements {
+    if elements < 2 * MIN_COMPARED_ELEMENTS {
         return None;
     }
     let settings = Settings { segments: Some(elements / times), ..model.settings };

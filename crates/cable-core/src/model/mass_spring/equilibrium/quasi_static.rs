@@ -6,7 +6,7 @@ use crate::math::Vec2;
 use crate::model::mass_spring::dynamics::ChainState;
 use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::static_rest::find_equilibrium;
-use crate::numerics::HalvedSteps;
+use crate::numerics::{HalvedSteps, MAX_HALVINGS};
 
 /// Part of a step that is taken with the step before it.
 const JOINED_FRACTION: f64 = 0.5;
@@ -42,7 +42,7 @@ pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, d
     };
     let targets = chain.drives.targets.clone();
     let starts: Vec<Vec2> = nodes.iter().map(|&(_, n)| from[n]).collect();
-    let mut steps = HalvedSteps::new(1.0, 1.0 / parts, tuning.max_halvings, JOINED_FRACTION);
+    let mut steps = HalvedSteps::new(1.0, 1.0 / parts, MAX_HALVINGS, JOINED_FRACTION);
     let (mut done, mut iterations) = (0.0, 0);
     while let Some(next) = steps.next(done) {
         let kept = chain.clone();

@@ -17,7 +17,6 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};
 use crate::model::Settings;
-use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::{
     ChainState, HandSettings, RunawayGuard, SupportDrives, floor_friction, hands, impacts,
 };
@@ -26,6 +25,7 @@ use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
 use crate::model::mass_spring::preview_choice::FRAME_S;
 use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
+use crate::model::tension_gauge::TensionGauge;
 use crate::solution::{Warning, WarningCause};
 
 /// Advances by `dt_s` in sub-steps.

@@ -31,7 +31,7 @@ pub(in crate::model::spans) fn is_clear(
     context: &SolveContext,
     corners: &[ImpassableCorner],
 ) -> bool {
-    let (load, unchecked) = (context.law.load, context.settings.verify.unchecked_move);
+    let (load, unchecked) = (context.law.load, context.settings.acceptance.unchecked_move);
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.place[side] - b.ends.place[side]).abs();
         (a.curve, a.chain_range, a.wheel, a.next == Connection::Pocket, a.is_load())
@@ -94,7 +94,7 @@ impl SpanBound {
 
 /// A shape of a section as points.
 pub(in crate::model::spans) fn shape(section: &CableSection, context: &SolveContext, out: &mut Vec<Vec2>) {
-    let points = context.settings.verify.tunnelling_points;
+    let points = context.settings.acceptance.tunnelling_points;
     out.clear();
     for k in 0..section.spans() {
         if section.has_span(k) {

@@ -19,7 +19,7 @@
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
 use crate::model::spans::boundary::segment_cursor::Sliding;
-use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
+use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
 const DIFFERENCE_STEP: f64 = 1e-6;
@@ -460,8 +460,8 @@ impl TensionProfile {
         StickZone::Meet([front(p1, t1, left.mobilised), front(p2, t2, right.mobilised)])
     }
 
-    /// Takes what came of a step as the new past. `held`: where it sticks, where that is known;
-    /// `old`: memory.
+    /// Takes the outcome of a step as the new past. `held` is the stick zone, where that is known;
+    /// `old` gives memory for the past before it.
     pub fn commit(
         &mut self,
         contact_path: &ContactPath<'_>,
@@ -482,65 +482,11 @@ impl TensionProfile {
             return;
         }
         match mode {
-            Mode::Slip(m) => {
-                let drawn = e.drawn_side(m);
-                let [from, to] = [[first, last][drawn], [first, last][1 - drawn]];
-                let loose = match contact_path.floored {
-                    true => contact_path.slide_floored(from.coordinate, to.coordinate, from.tension, m).1,
-                    false => None,
-                };
-                self.clear();
-                let Some(loose) = loose else {
-                    self.breakpoints.extend([Breakpoint { mobilised: m, ..first }, last]);
-                    return;
-                };
-                // Loose from there to the end that is not drawn, as even as friction keeps it.
-                let end = Breakpoint {
-                    coordinate: loose.coordinate,
-                    arc_length: from.arc_length + loose.material,
-                    tension: loose.tension,
-                    mobilised: m,
-                };
-                let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
-                let bed = ContactPath { friction: contact_path.friction_of_loose, ..*contact_path };
-                let laid = Self::laid(
-                    &bed,
-                    Breakpoint { tension: 0.0, ..if drawn == 1 { a } else { b } },
-                    [a.coordinate, b.coordinate],
-                );
-                if drawn == 0 {
-                    self.push(Breakpoint { mobilised: m, ..first });
-                }
-                laid.breakpoints.iter().for_each(|breakpoint| self.push(*breakpoint));
-                if drawn == 1 {
-                    self.push(end);
-                    self.push(last);
-                }
-            }
+            Mode::Slip(m) => self.commit_slip(contact_path, e, [first, last], m),
             Mode::Stick => match held.unwrap_or_else(|| self.hold(contact_path, e)) {
-                StickZone::Between([left, right]) => {
+                StickZone::Between(fronts) => {
                     old.clone_from(self);
-                    self.clear();
-                    if left.coordinate > first.coordinate {
-                        self.push(Breakpoint { mobilised: left.mobilised, ..first });
-                    }
-                    let mut p = left.coordinate;
-                    while p < right.coordinate {
-                        let (next, m) = old.stretch(contact_path, p, right.coordinate);
-                        let (tension, s) = old.at(contact_path, p);
-                        self.push(Breakpoint { coordinate: p, arc_length: s, tension, mobilised: m });
-                        p = next;
-                    }
-                    if right.coordinate < last.coordinate {
-                        let (tension, s) = old.at(contact_path, right.coordinate);
-                        self.push(Breakpoint {
-                            coordinate: right.coordinate,
-                            arc_length: s,
-                            tension,
-                            mobilised: right.mobilised,
-                        });
-                    }
-                    self.push(last);
+                    self.commit_stick(contact_path, [first, last], fronts, old);
                 }
                 StickZone::Meet([left, right]) => {
                     let (tension, s) = (left.way.tension, e.material[0] + left.way.material);
@@ -560,5 +506,67 @@ impl TensionProfile {
                 }
             },
         }
+    }
+
+    /// Takes a contact that slid from end to end, with friction `m`, as the new past. If its
+    /// tension ends before the end that is not drawn, the rest lies loose.
+    fn commit_slip(&mut self, contact_path: &ContactPath<'_>, e: &Ends, [first, last]: [Breakpoint; 2], m: f64) {
+        let drawn = e.drawn_side(m);
+        let [from, to] = [[first, last][drawn], [first, last][1 - drawn]];
+        let loose = match contact_path.floored {
+            true => contact_path.slide_floored(from.coordinate, to.coordinate, from.tension, m).1,
+            false => None,
+        };
+        self.clear();
+        let Some(loose) = loose else {
+            self.breakpoints.extend([Breakpoint { mobilised: m, ..first }, last]);
+            return;
+        };
+        // Loose from there to the end that is not drawn, as even as friction keeps it.
+        let end = Breakpoint {
+            coordinate: loose.coordinate,
+            arc_length: from.arc_length + loose.material,
+            tension: loose.tension,
+            mobilised: m,
+        };
+        let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
+        let bed = ContactPath { friction: contact_path.friction_of_loose, ..*contact_path };
+        let begin = Breakpoint { tension: 0.0, ..if drawn == 1 { a } else { b } };
+        let laid = Self::laid(&bed, begin, [a.coordinate, b.coordinate]);
+        if drawn == 0 {
+            self.push(Breakpoint { mobilised: m, ..first });
+        }
+        laid.breakpoints.iter().for_each(|breakpoint| self.push(*breakpoint));
+        if drawn == 1 {
+            self.push(end);
+            self.push(last);
+        }
+    }
+
+    /// Takes a contact that slid from its ends up to two slip fronts, and stuck between them, as
+    /// the new past: between the fronts it keeps its `old` memory.
+    fn commit_stick(
+        &mut self,
+        contact_path: &ContactPath<'_>,
+        [first, last]: [Breakpoint; 2],
+        [left, right]: [SlipFront; 2],
+        old: &Self,
+    ) {
+        self.clear();
+        if left.coordinate > first.coordinate {
+            self.push(Breakpoint { mobilised: left.mobilised, ..first });
+        }
+        let mut p = left.coordinate;
+        while p < right.coordinate {
+            let (next, m) = old.stretch(contact_path, p, right.coordinate);
+            let (tension, s) = old.at(contact_path, p);
+            self.push(Breakpoint { coordinate: p, arc_length: s, tension, mobilised: m });
+            p = next;
+        }
+        if right.coordinate < last.coordinate {
+            let (tension, s) = old.at(contact_path, right.coordinate);
+            self.push(Breakpoint { coordinate: right.coordinate, arc_length: s, tension, mobilised: right.mobilised });
+        }
+        self.push(last);
     }
 }

@@ -8,13 +8,13 @@
 //! | `arc.rs` | closed forms of tension and material along a stretch of an arc |
 //! | `segment_cursor.rs` | one boundary piece seen from a point; where two tensions become equal |
 //! | `friction_memory.rs` | tension profile of a contact: stick zone, slip fronts, breakpoints |
-//! | `loose.rs` | a section without tension: parts that hang, lie, or are heaped |
+//! | `loose_section.rs` | a section without tension: parts that hang, lie, or are heaped |
 
 pub(in crate::model::spans) mod arc;
 pub(in crate::model::spans) mod capstan;
 pub(in crate::model::spans) mod curve;
 pub(in crate::model::spans) mod friction_memory;
-pub(in crate::model::spans) mod loose;
+pub(in crate::model::spans) mod loose_section;
 pub(in crate::model::spans) mod segment_cursor;
 
 pub(in crate::model::spans) use capstan::{CableLaw, ContactPath, SlideResult};
@@ -22,5 +22,5 @@ pub(in crate::model::spans) use curve::{BoundaryPoint, ChainRange, Curve, PieceS
 pub(in crate::model::spans) use friction_memory::{
     Breakpoint, Ends, Mode, SlipFront, StickZone, SweepDirection, TensionProfile,
 };
-pub(in crate::model::spans) use loose::{BearingEdge, Heap, Loose, LyingStretch, SlackForm, SlackPart};
+pub(in crate::model::spans) use loose_section::{BearingEdge, Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 pub(in crate::model::spans) use segment_cursor::{CachedPiece, SegmentCursor};

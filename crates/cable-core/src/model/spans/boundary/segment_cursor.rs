@@ -8,7 +8,7 @@ use crate::math::{Vec2, sin_cos};
 use crate::model::spans::boundary::arc::{ArcPath, SHORT_ARC};
 use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
 use crate::model::spans::boundary::curve::{BoundaryPoint, ChainRange, Curve};
-use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
+use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
 /// Part of a piece before which two tensions that meet are not searched for on it again. Larger:
 /// asked after all more often.

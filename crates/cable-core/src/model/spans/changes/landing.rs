@@ -5,7 +5,7 @@ use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, TensionProfile};
-use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
+use crate::model::spans::changes::edge_crossing::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::changes::load_landing;
 use crate::model::spans::changes::obstacle_search::{Penetration, deepest};
 use crate::model::spans::contact::release_below;

@@ -9,12 +9,12 @@
 //! | `landing` | a span that runs into an obstacle is laid down on it |
 //! | `load_landing` | where a load or a cable end runs into an obstacle |
 //! | `cycle` | nothing: contacts that come back to where they were |
-//! | `edges` | ends of contacts go over edges, along which nothing turns |
+//! | `edge_crossing` | ends of contacts go over edges, along which nothing turns |
 //!
 //! Loads, kinks, wheels and slack have their own changes, in `contact`.
 
 mod cycle;
-mod edges;
+mod edge_crossing;
 mod landing;
 pub(in crate::model::spans) mod load_landing;
 mod merge;
@@ -25,7 +25,7 @@ use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
 use crate::model::spans::changes::cycle::CycleSearch;
-use crate::model::spans::changes::edges::follow_edges;
+use crate::model::spans::changes::edge_crossing::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
 use crate::model::spans::changes::release::{lifted_wheel, release_turned_contact, release_vanishing_contact};

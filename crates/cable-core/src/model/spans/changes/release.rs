@@ -39,7 +39,7 @@ pub(super) fn release_vanishing_contact(
     section: &mut CableSection,
     context: &mut SolveContext,
 ) -> Result<bool, Failure> {
-    let least = context.settings.changes.shed_length_fraction * (section.to - section.from);
+    let least = context.settings.changes.least_material_fraction * (section.to - section.from);
     let small = |c: &Contact| !c.is_load() && c.ends.material[1] - c.ends.material[0] < least;
     let beside = |j: usize| section.is_joined(j, 0) || section.is_joined(j, 1);
     let Some(j) = (0..section.contacts.len()).find(|&j| small(&section.contacts[j]) && beside(j)) else {

@@ -18,9 +18,9 @@ use crate::catenary::PointForce;
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, Mode, TensionProfile};
+use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_balance::load_balance;
-use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
 use crate::model::spans::section::{
     CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
 };

@@ -7,7 +7,7 @@
 //! post with a bottom between them are two until they meet.
 
 use crate::model::spans::boundary::{ContactPath, Ends, Mode, TensionProfile};
-use crate::model::spans::numerics::{TENSION_ROUNDING, crossing};
+use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than

@@ -2,7 +2,7 @@
 //! again step by step once it has an equilibrium.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::{Loose, Mode};
+use crate::model::spans::boundary::{LooseSection, Mode};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
 use crate::model::spans::initial::{contacts, tightening};
@@ -77,7 +77,7 @@ impl CableEquilibrium {
             } else {
                 None
             };
-            if let Some(section) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
+            if let Some(section) = loose.filter(|s| s.loose.as_ref().is_some_and(LooseSection::spreads)) {
                 self.sections.push(section);
                 routes.push(Vec::new());
                 continue;

@@ -123,7 +123,7 @@ impl CableEquilibrium {
         for section in &mut self.sections {
             contacts::solve_spans(section, &self.context).ok_or(Failure::ContactCycling { s: section.from })?;
         }
-        for _ in 0..tuned.max_drag_steps {
+        for _ in 0..layout.settings.changes.max_changes {
             let materials = self.material_at_contacts();
             self.context.drag = drag;
             let result = self.step(layout, to, workspace);

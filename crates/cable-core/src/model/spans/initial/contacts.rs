@@ -5,7 +5,7 @@ use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, TensionProfile};
 use crate::model::spans::contact::LIFT_FRACTION;
-use crate::model::spans::initial::material::{measure, spread};
+use crate::model::spans::initial::material_distribution::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::{shortest_path, tightening};
@@ -59,52 +59,19 @@ fn along(
         Some(k) => EndCondition::Fixed(instant.places[k]),
         None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
     });
-    // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
-    let heads = [0, 1].map(|side| {
-        let near = if part.supports[side].is_none() {
-            [tuned.falling_end_radii; 2]
-        } else {
-            [tuned.lying_end_radii, tuned.route_contact_radii]
-        };
-        let near = near.map(|n| n * layout.problem.radius);
-        lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
-            EndCondition::Hangs(force) => {
-                let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
-                force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
-            }
-            _ => true,
-        })
-    });
-    // Evenly along the route; from the end that is held, strained by what draws the other, where
-    // that is not held.
-    let loose = |side: usize| part.supports[side].is_none();
-    let drawn = |side: usize| match (&heads[side], end_conditions[side]) {
-        (None, EndCondition::Hangs(force)) => (force + context.law.load * tail(part, instant, way, side)).norm(),
-        _ => 0.0,
-    };
-    let drawn = if loose(0) && (!loose(1) || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
-    let stretch = context.law.stretch(drawn);
-    let at = |w: f64| match (loose(0), loose(1)) {
-        (true, false) => to - (total - w) / stretch,
-        (false, true) => from + w / stretch,
-        _ => from + (to - from) * w / total,
-    };
+    let heads = lying_ends(layout, part, context, way, end_conditions);
+    let spread_along = SpreadAlongRoute::of(part, context, instant, way, end_conditions, &heads);
+    let (loose, stretch, slack) = (spread_along.loose, spread_along.stretch, spread_along.slack);
+    let at = |w: f64| spread_along.at(w);
+    let tension = spread_along.tension(context);
     let mut section = CableSection { from, to, end_conditions, contacts: Vec::new(), forces: Vec::new(), loose: None };
-    let slack = total / ((to - from) * context.law.thermal) - 1.0;
-    let tension = if loose(0) || loose(1) {
-        drawn
-    } else if slack > 0.0 {
-        slack * context.law.stiffness
-    } else {
-        0.0
-    };
-    let least = tuned.laid_tension_weights * context.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range)
     {
         return Some(lies_whole(section, context, [a, b], tension));
     }
     // A span from one lying stretch to the next needs some tension.
+    let least = tuned.laid_tension_weights * context.law.load.norm() * (to - from);
     let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
     let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
     let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
@@ -136,8 +103,8 @@ fn along(
     }
     section.forces = vec![Vec2::zeros(); contacts.len() + 1];
     section.contacts = contacts;
-    if join == 0.0 && (loose(0) || loose(1)) {
-        measure(&mut section, context, [loose(0), loose(1)], stretch);
+    if join == 0.0 && loose.contains(&true) {
+        measure(&mut section, context, loose, stretch);
     }
     spread(&mut section, context);
     solve_spans(&mut section, context)?;
@@ -147,12 +114,101 @@ fn along(
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
     if (slack > tuned.route_excess_fraction || tangent_ways)
         && heads.iter().all(Option::is_none)
-        && !loose(0)
-        && !loose(1)
+        && !loose.contains(&true)
     {
         tightening::equalise_tensions(&mut section, context);
     }
     Some(section)
+}
+
+/// Ends that lie on a boundary. An end that a load lifts does not.
+fn lying_ends(
+    layout: &SectionLayout,
+    part: &SectionBounds,
+    context: &SolveContext,
+    way: &RoutePolyline,
+    end_conditions: [EndCondition; 2],
+) -> [Option<EndContact>; 2] {
+    let tuned = &layout.settings.initial;
+    [0, 1].map(|side| {
+        let near = if part.supports[side].is_none() {
+            [tuned.falling_end_radii; 2]
+        } else {
+            [tuned.lying_end_radii, tuned.route_contact_radii]
+        };
+        let near = near.map(|n| n * layout.problem.radius);
+        lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
+            EndCondition::Hangs(force) => {
+                let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
+                force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
+            }
+            _ => true,
+        })
+    })
+}
+
+/// The material of a section spread along its route: evenly; from the end that is held, strained by
+/// what draws the other, where that is not held.
+struct SpreadAlongRoute {
+    material: [f64; 2],
+    /// Length of the route, m.
+    total: f64,
+    /// True for ends that nothing holds.
+    loose: [bool; 2],
+    /// Force that draws the end that is not held, N.
+    drawn: f64,
+    /// Length of a metre of material that is drawn so.
+    stretch: f64,
+    /// Strain of material that is as long as the route, negative where there is more of it.
+    slack: f64,
+}
+
+impl SpreadAlongRoute {
+    fn of(
+        part: &SectionBounds,
+        context: &SolveContext,
+        instant: &BoundaryConditions,
+        way: &RoutePolyline,
+        end_conditions: [EndCondition; 2],
+        heads: &[Option<EndContact>; 2],
+    ) -> Self {
+        let ([from, to], total) = (part.material, way.total());
+        let loose = part.supports.map(|support| support.is_none());
+        let drawn = |side: usize| match (&heads[side], end_conditions[side]) {
+            (None, EndCondition::Hangs(force)) => (force + context.law.load * tail(part, instant, way, side)).norm(),
+            _ => 0.0,
+        };
+        let drawn = if loose[0] && (!loose[1] || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
+        Self {
+            material: part.material,
+            total,
+            loose,
+            drawn,
+            stretch: context.law.stretch(drawn),
+            slack: total / ((to - from) * context.law.thermal) - 1.0,
+        }
+    }
+
+    /// The material at a length of the route, m.
+    fn at(&self, w: f64) -> f64 {
+        let [from, to] = self.material;
+        match self.loose {
+            [true, false] => to - (self.total - w) / self.stretch,
+            [false, true] => from + w / self.stretch,
+            _ => from + (to - from) * w / self.total,
+        }
+    }
+
+    /// The tension with which it is laid first, N.
+    fn tension(&self, context: &SolveContext) -> f64 {
+        if self.loose.contains(&true) {
+            self.drawn
+        } else if self.slack > 0.0 {
+            self.slack * context.law.stiffness
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Forces of spans whose ends and material are known.

@@ -1,7 +1,7 @@
 //! This module lays a section along its shortest path.
 
 use crate::model::spans::boundary::TensionProfile;
-use crate::model::spans::initial::material::{measure, spread};
+use crate::model::spans::initial::material_distribution::{measure, spread};
 use crate::model::spans::section::{CableSection, Contact, SolveContext};
 
 /// Length of the taut string through what it touches, m.

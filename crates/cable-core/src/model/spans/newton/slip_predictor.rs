@@ -292,7 +292,7 @@ impl SlipPredictor {
 
     /// Finds sides and slips that agree; false where that comes to no end.
     fn settle(&mut self) -> bool {
-        for _ in 0..2 * self.links.len() + self.tuned.extra_rounds {
+        for _ in 0..2 * self.links.len() + self.tuned.newton_rounds {
             if !self.solve() {
                 return false;
             }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
 use crate::model::spans::boundary::{
-    CableLaw, ChainRange, ContactPath, Curve, Ends, Loose, Mode, StickZone, TensionProfile,
+    CableLaw, ChainRange, ContactPath, Curve, Ends, LooseSection, Mode, StickZone, TensionProfile,
 };
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
@@ -166,7 +166,7 @@ pub(in crate::model::spans) struct CableSection {
     /// G of each span, N; one more than contacts.
     pub forces: Vec<Vec2>,
     /// The shape without tension, where the cable lies so: it has neither contacts nor spans then.
-    pub loose: Option<Loose>,
+    pub loose: Option<LooseSection>,
 }
 
 /// All sections of a cable at an instant.

@@ -27,7 +27,7 @@ pub(in crate::model::spans) fn find(
             let (from, to) = section.material(k);
             let force = section.force(context, k, from);
             let across = cross(force, b).abs() / b.norm();
-            if across > context.settings.verify.fold_force_fraction * b.norm() * (to - from) {
+            if across > context.settings.acceptance.fold_force_fraction * b.norm() * (to - from) {
                 continue;
             }
             let mut place = None;

@@ -14,7 +14,7 @@ use crate::model::spans::initial::section_route;
 use crate::model::spans::section::{BoundaryConditions, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
-use crate::model::spans::slack::drape::{LooseShapes, SlackSolver};
+use crate::model::spans::slack::slack_parts::{LooseShapes, SlackSolver};
 use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, UpperSurfaces};
 
 /// Part of the drained route by which a cable must be longer: rounding.

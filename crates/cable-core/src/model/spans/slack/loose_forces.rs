@@ -1,11 +1,11 @@
 //! A loose cable pulls at its ends and presses on what carries it; some of it hangs, and some lies.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::{Loose, SlackForm, SlackPart};
+use crate::model::spans::boundary::{LooseSection, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 
-impl Loose {
+impl LooseSection {
     /// Force in the cable at a support, N.
     pub fn end_force(&self, context: &SolveContext, side: usize) -> Vec2 {
         let part = if side == 0 { self.parts.first() } else { self.parts.last() };

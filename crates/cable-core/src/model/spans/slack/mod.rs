@@ -28,38 +28,38 @@
 //! | `mod.rs` | the section that lies loose along its route, or in a heap |
 //! | `drained_route.rs` | the route fallen along the load on to what is below it |
 //! | `upper_surfaces.rs` | the parts of boundaries that face the load |
-//! | `drape.rs` | the points at which the tension vanishes, and the chains between them |
-//! | `chain.rs` | the tensions of one chain over one crest |
-//! | `joint.rs`, `bridge.rs` | spans over kinks, and to a support |
+//! | `slack_parts.rs` | the points at which the tension vanishes, and the chains between them |
+//! | `over_crest.rs` | the tensions of a chain: the cable over one crest |
+//! | `stretch_tensions.rs`, `support_span.rs` | spans over kinks, and to a support |
 //! | `longest_in_tension.rs` | the length from which a cable cannot rest in tension |
 //! | `pay_out.rs`, `heap.rs` | the material of each part, and what is over |
 //! | `loose_forces.rs`, `report.rs` | forces on ends and obstacles; the answer |
 
-mod bridge;
-mod chain;
 pub(in crate::model::spans) mod drained_route;
-mod drape;
 mod heap;
-mod joint;
 mod longest_in_tension;
 mod loose_forces;
+mod over_crest;
 mod pay_out;
 mod report;
+mod slack_parts;
+mod stretch_tensions;
+mod support_span;
 mod upper_surfaces;
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::Loose;
+use crate::model::spans::boundary::LooseSection;
 use crate::model::spans::initial::section_route;
 use crate::model::spans::section::{BoundaryConditions, CableSection, EndCondition, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
-use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
 use crate::model::spans::slack::pay_out::pay_out;
+use crate::model::spans::slack::slack_parts::SlackSolver;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 
-pub(in crate::model::spans) use crate::model::spans::slack::drape::LooseShapes;
 pub(in crate::model::spans) use crate::model::spans::slack::longest_in_tension::exceeds_tension;
+pub(in crate::model::spans) use crate::model::spans::slack::slack_parts::LooseShapes;
 
 /// The section where it lies loose at an instant; None where it cannot.
 pub(in crate::model::spans) fn loose_section(
@@ -88,7 +88,7 @@ pub(in crate::model::spans) fn loose_section(
         let parts = drape.parts(&lines, ends)?;
         let parts = pay_out(parts, &drape, part.material, drawn, ends)?;
         let end_conditions = [0, 1].map(|k| held[k].map_or(EndCondition::Loose(drawn), EndCondition::Fixed));
-        let loose = Some(Loose { parts, drawn });
+        let loose = Some(LooseSection { parts, drawn });
         Some(CableSection { from, to, end_conditions, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
     };
     let along_route = || DrainedRoute::new(&surfaces, bodies, frame, &section_route(layout, part, instant).points);
@@ -146,7 +146,7 @@ mod tests {
             for k in 0..layout.sections.len() {
                 let laid = |sought| {
                     loose_section(&layout, k, &context, &instant, sought)
-                        .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
+                        .filter(|s| s.loose.as_ref().is_some_and(LooseSection::spreads))
                 };
                 let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
                 assert_eq!(format!("{any:?}"), format!("{none:?}"), "{name}");

@@ -3,8 +3,8 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::{SlackForm, SlackPart};
-use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::heap;
+use crate::model::spans::slack::slack_parts::SlackSolver;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and

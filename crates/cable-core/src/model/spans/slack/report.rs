@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::model::spans::boundary::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::boundary::{Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
@@ -26,7 +26,7 @@ struct Run {
     tension: [f64; 2],
 }
 
-impl Loose {
+impl LooseSection {
     /// Adds its nodes; what it lies on, by the index of the obstacle.
     pub fn report(
         &self,

@@ -1,7 +1,7 @@
 //! The contacts of a chain are the places of its nodes and bars that are near an obstacle.
 
 use crate::contact::Gap;
-use crate::contact::pairs::Pair;
+use crate::contact::obstacle_pairs::Pair;
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::Chain;
 use crate::model::fem::elastica::reference_curve::mobilised_friction;

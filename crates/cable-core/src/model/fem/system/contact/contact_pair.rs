@@ -1,7 +1,7 @@
 //! A contact pair is a node, or the inside of a segment, near a feature of an obstacle.
 
 use crate::contact::barrier::Barrier;
-use crate::contact::pairs::Pair;
+use crate::contact::obstacle_pairs::Pair;
 use crate::math::Vec2;
 
 /// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).

@@ -2,7 +2,7 @@
 //! neighbours that were listed for a step.
 
 use crate::contact::neighbour_lists::NeighbourLists;
-use crate::contact::pairs::Pair;
+use crate::contact::obstacle_pairs::Pair;
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::contact::contact_pair::ContactPair;

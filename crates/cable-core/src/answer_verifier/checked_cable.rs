@@ -1,0 +1,224 @@
+//! What the laws ask about a cable is worked out from its scene and its answer alone.
+
+use super::support_hold::{Role, SupportHold, series, support_holds};
+use super::surroundings::{Neighbours, Surroundings};
+use super::tolerance::{LENGTH, MATERIAL_TOLERANCE, MIN_STRAIN, REACH_DIAMETERS, REACH_M};
+use crate::math::{Vec2, larger, vec2};
+use crate::scene::{Cable, Scene, View};
+use crate::solution::{CableSolution, Node};
+use crate::verification_report::{Finding, Law};
+
+/// One cable with what there is to know of it.
+pub(super) struct CheckedCable<'a> {
+    pub surroundings: &'a Surroundings<'a>,
+    pub scene: &'a Scene,
+    pub cable: &'a Cable,
+    pub answer: &'a CableSolution,
+    /// The actions of its supports on it.
+    pub holds: Vec<SupportHold<'a>>,
+    /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
+    pub wheels: Vec<(Vec2, f64, f64)>,
+    /// Supports and loads. Wheels are among the obstacles.
+    pub points: Vec<AppliedForce>,
+    /// Weight and wind, N/m.
+    pub body: Vec2,
+    /// 1 + αΔT.
+    pub thermal: f64,
+    /// Greatest of the forces, N: what a residual is compared with.
+    pub scale: f64,
+}
+
+/// A force on a point of the cable, N.
+pub(super) struct AppliedForce {
+    pub arc_length: f64,
+    pub force: Vec2,
+}
+
+/// The cable from a node to the next.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CheckedBar<'a> {
+    /// Index of the first node.
+    pub index: usize,
+    pub from: &'a Node,
+    pub to: &'a Node,
+    /// Arc length, m.
+    pub length: f64,
+    /// From node to node, m.
+    pub way: Vec2,
+    /// Sizes of the internal forces of its nodes, N.
+    pub forces: [f64; 2],
+}
+
+impl<'a> CheckedCable<'a> {
+    /// The answer for a cable of a scene at a time, s.
+    pub fn new(
+        surroundings: &'a Surroundings<'a>,
+        scene: &'a Scene,
+        cable: &'a Cable,
+        answer: &'a CableSolution,
+        time_s: f64,
+    ) -> Self {
+        let env = &scene.environment;
+        let weight = match scene.view {
+            View::Elevation => Vec2::new(0.0, -cable.linear_density_kg_per_m * env.gravity_m_per_s2),
+            View::Plan => Vec2::zeros(),
+        };
+        let wind = series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m, time_s);
+        let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
+        let holds = support_holds(cable, answer, time_s);
+        let led = |hold: &SupportHold<'_>| match hold.role {
+            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
+            _ => None,
+        };
+        let wheels = holds.iter().filter_map(led).collect();
+        let points = point_forces(scene, cable, &holds, time_s);
+        let body = weight + wind;
+        let mut checked = Self { surroundings, scene, cable, answer, holds, wheels, points, body, thermal, scale: 0.0 };
+        checked.scale = checked.forces_scale();
+        checked
+    }
+}
+
+impl CheckedCable<'_> {
+    /// Returns where the scene's loads are on the cable, m.
+    pub fn scene_loads(&self) -> Vec<f64> {
+        self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
+    }
+
+    pub fn finding(&self, law: Law, node: usize, value: f64, limit: f64) -> Finding {
+        let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
+        Finding {
+            law,
+            cable: self.cable.name.clone(),
+            arc_length_m: n.arc_length_m,
+            at_m: [n.x_m, n.y_m],
+            with: String::new(),
+            value,
+            limit,
+        }
+    }
+
+    /// The greatest force on or in the cable, N; of one without any the least that anybody would
+    /// read.
+    fn forces_scale(&self) -> f64 {
+        let square = self.answer.nodes.iter().map(|n| n.force().norm_squared()).fold(0.0, f64::max);
+        let loads = self.points.iter().map(|p| p.force.norm()).fold(0.0, larger);
+        let load = self.body.norm() * self.cable.length_m;
+        larger(larger(square.sqrt(), loads), larger(load, MIN_STRAIN * self.cable.axial_stiffness_n))
+    }
+
+    /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
+    pub fn self_contact_forces(&self) -> impl Iterator<Item = AppliedForce> {
+        let self_contact_forces = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
+        self_contact_forces
+            .flat_map(|c| &c.samples)
+            .map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
+    }
+
+    /// Distance of the centre line from a surface at which they may push, m.
+    pub fn reach(&self) -> f64 {
+        0.5 * self.cable.diameter_m + larger(REACH_M, REACH_DIAMETERS * self.cable.diameter_m)
+    }
+
+    /// Returns what is near the line from each node to the next.
+    pub fn near(&self) -> Neighbours {
+        let reach = self.reach();
+        Neighbours::new(self.surroundings, self.answer.nodes.iter().map(Node::at), reach)
+    }
+
+    /// Returns where supports hold the cable by its axis, m.
+    pub fn held_at(&self) -> Vec<Vec2> {
+        self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
+    }
+
+    /// Returns whether a floor rubs on the whole cable.
+    pub fn floor_rubs(&self) -> bool {
+        self.scene.view == View::Plan && self.cable.friction > 0.0
+    }
+
+    /// Returns what may act on each metre of the cable without touching it at a place, N/m: weight
+    /// and wind, and in plan view the floor's friction.
+    pub fn spread_load(&self) -> f64 {
+        if !self.floor_rubs() {
+            return self.body.norm();
+        }
+        let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
+        self.body.norm() + self.cable.friction * weight
+    }
+
+    /// Internal force just before a node that is not the first, as what touches the bar before it
+    /// is all at its end, N.
+    pub fn force_before(&self, node: usize) -> Vec2 {
+        let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
+        a.force() - self.body * (b.arc_length_m - a.arc_length_m)
+    }
+
+    /// From each node to the next.
+    pub fn bars(&self) -> impl Iterator<Item = CheckedBar<'_>> {
+        let mut first = self.answer.nodes[0].force().norm();
+        self.answer.nodes.windows(2).enumerate().map(move |(k, pair)| {
+            let [from, to] = [&pair[0], &pair[1]];
+            let forces = [first, to.force().norm()];
+            first = forces[1];
+            CheckedBar {
+                index: k,
+                from,
+                to,
+                length: to.arc_length_m - from.arc_length_m,
+                way: to.at() - from.at(),
+                forces,
+            }
+        })
+    }
+
+    /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is
+    /// all at the end.
+    pub fn forces_at_end(&self, bar: &CheckedBar<'_>) -> [Vec2; 2] {
+        [bar.to.force(), bar.from.force() - self.body * bar.length]
+    }
+
+    /// Returns whether something touches a piece or a neighbour.
+    pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
+        !near.around(k, k + 1).is_empty() || self.is_at_wheel(k)
+    }
+
+    /// Returns whether an end of the bar from node k to the next is on a wheel.
+    pub fn is_at_wheel(&self, k: usize) -> bool {
+        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_on_wheel(k, w.0, w.1)))
+    }
+
+    /// Returns whether a node is on a wheel.
+    pub fn is_on_wheel(&self, node: usize, center: Vec2, radius: f64) -> bool {
+        let reach = self.reach() - 0.5 * self.cable.diameter_m;
+        (self.answer.nodes[node].at() - center).norm() <= radius + reach
+    }
+
+    /// Weight and wind of the cable from node k to the next and of its neighbours, N.
+    pub fn weight_beside(&self, k: usize) -> f64 {
+        let nodes = &self.answer.nodes;
+        let [from, to] = [k.saturating_sub(1), (k + 2).min(nodes.len() - 1)].map(|k| nodes[k].arc_length_m);
+        self.body.norm() * (to - from)
+    }
+
+    /// Rounding (m) of the way of so much material, m.
+    pub fn length_rounding(&self, material: f64) -> f64 {
+        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m
+    }
+}
+
+/// Supports and loads on a cable at a time, s.
+fn point_forces(scene: &Scene, cable: &Cable, holds: &[SupportHold<'_>], time_s: f64) -> Vec<AppliedForce> {
+    let held = holds.iter().filter_map(|hold| {
+        let force = match hold.role {
+            Role::Load => hold.dead_load(scene, time_s),
+            Role::Held | Role::Pulley => hold.force(),
+            Role::Wheel { .. } | Role::Clear { .. } | Role::Released => return None,
+        };
+        Some(AppliedForce { arc_length: hold.arc_length, force })
+    });
+    let loads = scene.loads.iter().filter(|l| l.cable == cable.name).map(|l| {
+        let force = series(l.force_n, &l.times_s, &l.forces_n, time_s);
+        AppliedForce { arc_length: l.arc_length_m, force }
+    });
+    held.chain(loads).collect()
+}

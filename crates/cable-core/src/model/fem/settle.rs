@@ -1,0 +1,132 @@
+//! The search for an equilibrium: which solver is asked, from which start, and which check its
+//! answer has to pass.
+
+use crate::error::SolveError;
+use crate::model::StepReport;
+use crate::model::fem::contact_free::touches_nothing;
+use crate::model::fem::equilibrium::slides_as_a_whole;
+use crate::model::fem::mesh_error::Refinement;
+use crate::model::fem::system::WorkBudget;
+use crate::model::fem::warm_start::SpansStart;
+use crate::model::fem::{FemModel, Part};
+use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
+use crate::solution::{Cost, Warning, WarningCause};
+use crate::state::State;
+
+impl FemModel {
+    /// Finds the equilibrium.
+    pub(super) fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
+        if touches_nothing(&self.problem) {
+            return self.equilibrium_without_contact();
+        }
+        self.elastica_answer = None;
+        self.bending_error = None;
+        if let Some(report) = self.elastica_from_flexible() {
+            return Ok(report);
+        }
+        self.stepper.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
+        let found = self.equilibrium_in_contact();
+        self.stepper.solver.work_left = WorkBudget::Unlimited;
+        found
+    }
+
+    /// Finds the equilibrium of a cable that can touch nothing. The continuation of a stiff cable
+    /// up in EI ends where its shape snaps over, as clamps against which it sags turn it upwards: a
+    /// chain of bars that is let go follows it there, as it does in contact.
+    pub(super) fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
+        self.make_present(Part::Statics)?;
+        self.elastica_answer = None;
+        let found = self.statics.settle(&self.dragged);
+        let Err(why) = found else { return found };
+        if !(self.problem.bending_stiffness > 0.0) || self.make_present(Part::Stepper).is_err() {
+            return Err(why);
+        }
+        match self.elastica_from_flexible() {
+            Some(report) => Ok(report),
+            None => {
+                self.make_present(Part::Statics)?;
+                Err(why)
+            }
+        }
+    }
+
+    /// Finds the equilibrium of a cable that can touch something.
+    pub(super) fn equilibrium_in_contact(&mut self) -> Result<StepReport, SolveError> {
+        let begins = !self.stepper.rested && self.stepper.cable.time() == 0.0;
+        let (start, spans) =
+            if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
+        if begins && !matches!(start, SpansStart::Accepted(_)) {
+            // Easier cables are to save work: together they may do as much as the search itself.
+            let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
+            self.start_from_own_statics(self.tuning().start.eased_loads, &mut work);
+        }
+        let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
+        let first = self.stepper.cable.state();
+        let before = if has_equilibrium { None } else { Some(self.stepper.clone()) };
+        let found = self.settle_mesh(has_equilibrium);
+        let found = match start {
+            SpansStart::Accepted(warnings) => found.map(|mut report| {
+                report.warnings.extend(warnings);
+                report
+            }),
+            SpansStart::Slides(slides) => self.rest_after_slide(found, &first, slides),
+            SpansStart::Rejected | SpansStart::Unknown => found,
+        };
+        if let (Err(_), Some(before)) = (&found, before) {
+            self.stepper = before;
+        }
+        let mut report = found?;
+        if let Some(cost) = self.elastica_from_mesh() {
+            report.cost = Cost { iterations: report.cost.iterations + cost.iterations, ..cost };
+            return Ok(report);
+        }
+        report.warnings.extend(self.coarse_bend_warning());
+        self.compare_meshes(spans);
+        report.warnings.extend(self.coarse_mesh_warning());
+        Ok(report)
+    }
+
+    /// Settles the mesh. If no other model `has_equilibrium` for the cable, what its nodes leave
+    /// unbalanced must not add up to a force that moves it.
+    pub(super) fn settle_mesh(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
+        let report = self.stepper.settle(&self.dragged)?;
+        match if has_equilibrium { None } else { slides_as_a_whole(&self.stepper.cable) } {
+            Some(why) => Err(SolveError::NoRestingPlace { why }),
+            None => Ok(report),
+        }
+    }
+
+    /// The rest of a cable that slides from its `first` place: it may rest elsewhere, if it came
+    /// down to there and does not slide on.
+    pub(super) fn rest_after_slide(
+        &self,
+        found: Result<StepReport, SolveError>,
+        first: &State,
+        slides: SolveError,
+    ) -> Result<StepReport, SolveError> {
+        let Ok(mut report) = found else { return Err(slides) };
+        let answer = self.stepper.solution();
+        let comes_down = work(&self.problem, first, &answer, self.stepper.cable.time()) > 0.0;
+        if !comes_down || slides_on(&self.problem, self.settings, &answer) {
+            return Err(slides);
+        }
+        report.warnings.push(slid_first(&self.problem, &slides));
+        Ok(report)
+    }
+
+    /// Estimates the errors of the mesh beside the solution of `spans` or another mesh, and refines
+    /// it where the scene leaves its number of bars open.
+    pub(super) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
+        let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
+        meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
+    }
+
+    /// A warning of a mesh that is coarser than the tolerance asks for.
+    pub(super) fn coarse_mesh_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.meshes.errors.relative(&self.stepper.solution())?, self.settings.tolerance);
+        let cause = WarningCause::CoarseForces { elements: self.stepper.cable.meshing.even_bars };
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
+    }
+}

@@ -1,0 +1,157 @@
+//! A step with inertia: predicted, minimised, accepted, and accounted for.
+
+use super::Stepper;
+use crate::math::Vec2;
+use crate::model::Inertia;
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::remesh::{Remeshed, remesh};
+use crate::model::fem::results;
+use crate::model::fem::state::{MovingMass, kinetic_energy, kinetic_energy_of_step, stored_energy};
+use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::time::{
+    Weights, account_for_step, forces_in_step, hands, keep_balanced_tensions, loss_memory, plastic_impact, work_in_step,
+};
+use crate::solution::Energy;
+
+impl Stepper {
+    /// One step of `h` (s) with inertia.
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let before = self.accounts_energy.then(|| self.begin_energy_account());
+        let weights = self.begin_step(h, dragged);
+        let (unknowns, done) = self.minimise_step(h)?;
+        self.accept_step(unknowns, weights, h, before);
+        self.take_off_rebounds(weights, h);
+        self.remesh_after_step(done.residual)?;
+        Ok(done)
+    }
+
+    /// Predicts the unknowns of a step of `h` (s) and minimises its incremental potential.
+    ///
+    /// # Errors
+    /// Why it has no minimum, or `CornerPulls` where a corner would have to pull.
+    fn minimise_step(&mut self, h: f64) -> Result<(Unknowns, Converged), Failure> {
+        let (mut unknowns, exact) =
+            (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
+        self.cable.contacts.prepare(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.positions,
+            &self.cable.motion.positions,
+        );
+        self.cable.input.stopping.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
+        let done = self.solver.minimise_with_friction(&mut self.cable, &mut unknowns);
+        self.cable.input.stopping.tolerance = exact;
+        let done = done?;
+        let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
+        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
+        }
+        Ok((unknowns, done))
+    }
+
+    /// Makes the unknowns of a step of `h` (s) the state of the cable, and accounts for momentum
+    /// and energy; `before` is the energy at its start, where that is accounted for.
+    fn accept_step(&mut self, unknowns: Unknowns, weights: Weights, h: f64, before: Option<Energy>) {
+        hands::report_held_back(&mut self.cable, &unknowns);
+        hands::keep_forces(&mut self.cable, &unknowns);
+        keep_balanced_tensions(&mut self.cable, &unknowns);
+        let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
+        let slid = MovingMass::of(&self.cable).sliding_momentum();
+        let work = before.map(|before| {
+            self.solver.ways.end(&unknowns.positions);
+            (before, work_in_step(&self.cable, &unknowns, &self.solver))
+        });
+        loss_memory::relax(&mut self.cable, h, &unknowns.positions);
+        self.cable.commit_contacts(&unknowns);
+        self.move_to(&unknowns, weights);
+        self.cable.mesh.slide(&unknowns.slides);
+        account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
+        self.solver.unknowns = unknowns;
+        self.cable.motion.time += h;
+        if let Some((before, work)) = &work {
+            let after = match work.stored() {
+                Some(rest) => Energy { kinetic_j: kinetic_energy_of_step(&self.cable, weights.rate), ..rest },
+                None => stored_energy(&self.cable),
+            };
+            self.cable.motion.energies.add(&work.between(*before, after), after);
+        }
+        results::gauge_tension(&mut self.cable);
+        let cable = &self.cable;
+        let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
+        self.cable.motion.note_step(h, smooth);
+        self.time_control.step_size.observe(&self.cable, h);
+    }
+
+    /// Makes the collisions of a step of `h` (s) perfectly inelastic, and closes its accounts.
+    fn take_off_rebounds(&mut self, weights: Weights, h: f64) {
+        plastic_impact::land_on_obstacles(&mut self.cable, h, weights.rate, &self.solver.ways);
+        plastic_impact::land_on_itself(&mut self.cable, h, weights.rate, &self.solver.ways);
+        if self.accounts_energy {
+            if !self.cable.meshing.was_contact_free {
+                self.cable.motion.energies.land(kinetic_energy(&self.cable));
+            }
+            self.cable.motion.energies.end_step();
+        }
+        let momentum = MovingMass::of(&self.cable).momentum();
+        self.cable.motion.account.close(self.cable.motion.time, momentum);
+        self.cable.contacts.outline_motion = None;
+    }
+
+    /// Adapts the mesh to where a step led, of a cable whose material can slide over something.
+    ///
+    /// # Errors
+    /// `CornerCrossed` where the changed mesh runs through an obstacle.
+    fn remesh_after_step(&mut self, residual: f64) -> Result<(), Failure> {
+        if self.cable.meshing.never_slides {
+            return Ok(());
+        }
+        self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
+        let changed = remesh(&mut self.cable, Inertia::Dynamic);
+        if self.accounts_energy && changed != Remeshed::default() {
+            self.cable.motion.energies.edit(stored_energy(&self.cable));
+            self.cable.motion.energies.end_step();
+        }
+        self.cable.answers.keeps = false;
+        self.cable.answers.stepped = self.cable.answers.kept.take();
+        match IntersectionCheck::of(&self.cable).crossing() {
+            Some(node) => Err(Failure { node, residual, cause: FailureCause::CornerCrossed }),
+            None => Ok(()),
+        }
+    }
+
+    /// Moves the cable to the unknowns of a step, and its history on by that step.
+    fn move_to(&mut self, unknowns: &Unknowns, weights: Weights) {
+        let Weights { now, past, rate: a, .. } = weights;
+        let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
+        for k in 0..unknowns.positions.len() {
+            let v = (unknowns.positions[k] - weights.place(m, k)) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + unknowns.slides[k] - s * now + m.previous_arc_length[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.older_positions.get_mut(k), m.older_velocities.get_mut(k)) {
+                (*x, *v) = (m.previous_positions[k], m.previous_velocities[k]);
+            }
+            m.previous_positions[k] = m.positions[k];
+            m.previous_velocities[k] = m.velocities[k];
+            m.previous_arc_length[k] = s;
+            m.previous_slide_rates[k] = m.slide_rates[k];
+            m.positions[k] = unknowns.positions[k];
+            m.velocities[k] = v;
+            m.slide_rates[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+    }
+
+    /// Begins a step of the energy account; returns the energy that the cable has.
+    fn begin_energy_account(&mut self) -> Energy {
+        let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
+        let mut energies = self.cable.motion.energies;
+        let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
+        self.cable.motion.energies = energies;
+        let motion = &self.cable.motion;
+        self.solver.ways.begin(&motion.positions, &motion.velocities, &self.cable.answers.reaction);
+        before
+    }
+}

@@ -1,0 +1,113 @@
+//! The equilibrium of a stiff cable in contact is that of an elastica, found from a flexible cable
+//! or from the mesh; where there is none, the bend that the mesh leaves out is warned of.
+
+use crate::model::fem::elastica::{self, Elastica};
+use crate::model::fem::{FemModel, Part, results};
+use crate::model::initial_equilibrium::initial_equilibrium;
+use crate::model::{Mechanics, StepReport};
+use crate::solution::{CableSolution, Cost, Node, ShownEquilibrium, Warning, WarningCause};
+use crate::state::State;
+
+/// The error estimate of a stiff cable's equilibrium must stay below this part of the tolerance.
+const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
+
+/// A stiff cable's equilibrium may differ from that of its mesh by this part of the cable's length.
+/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken
+/// for the same.
+const STIFF_SHIFT_LIMIT: f64 = 0.05;
+
+impl FemModel {
+    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None
+    /// where there is none.
+    pub(super) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose).ok()?;
+        let (time_s, tolerance) = (self.stepper.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
+        let flexible = lay.as_ref().map(|l| &l.answer);
+        let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
+        self.elastica_answer = Some(answer);
+        let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
+        warnings.extend(self.elastica_warning());
+        Some(StepReport { cost, warnings })
+    }
+
+    /// The same from the equilibrium that the mesh has found.
+    pub(super) fn elastica_from_mesh(&mut self) -> Option<Cost> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let answer = self.stepper.solution();
+        let bar = self.stepper.cable.even();
+        let found = Elastica::from_mesh(&self.problem, self.stepper.cable.time(), &self.dragged, &answer, bar)?;
+        let cost = self.accept_elastica(found)?;
+        // A shape that differs by more than the error of a mesh is another equilibrium.
+        let near = |n: &Node| {
+            let at =
+                self.elastica_answer.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
+            at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
+        };
+        if !answer.nodes.iter().all(near) {
+            self.elastica_answer = None;
+            return None;
+        }
+        Some(cost)
+    }
+
+    /// A warning of a stiff cable's equilibrium whose error is more than was asked for.
+    pub(super) fn elastica_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.elastica_answer.as_ref()?.error_estimate?, self.settings.tolerance);
+        let cause = WarningCause::BarContacts;
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
+    }
+
+    /// Raises an elastica to the whole stiffness and refines it; keeps its answer.
+    pub(super) fn accept_elastica(&mut self, mut found: Elastica) -> Option<Cost> {
+        if !found.stiffen(&self.problem) {
+            return None;
+        }
+        let (estimate, errors) =
+            elastica::refine(&mut found, &self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
+        let (iterations, residual_n) = found.cost();
+        self.elastica_answer =
+            Some(CableSolution { error_estimate: Some(estimate), errors, ..elastica::solution(&found, &self.problem) });
+        Some(Cost { iterations, residual_n, ..Cost::default() })
+    }
+
+    /// A warning of the bend of a stiff cable that the mesh leaves out, where that is more than was
+    /// asked for.
+    pub(super) fn coarse_bend_warning(&mut self) -> Option<Warning> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let (off, s) = results::bending_error(&self.stepper.cable);
+        self.bending_error = Some(off);
+        let limit = self.settings.tolerance;
+        if off <= limit {
+            return None;
+        }
+        let cause = WarningCause::CoarseBend { bars: self.stepper.cable.meshing.even_bars };
+        Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
+    }
+
+    /// A warning of the other equilibria of a stiff cable that is compressed: it may bow to another
+    /// side.
+    pub(super) fn bow_warning(&self) -> Option<Warning> {
+        if !(self.problem.bending_stiffness > 0.0) {
+            return None;
+        }
+        let free = || {
+            let mut statics = self.statics.clone();
+            if self.present == Part::Stepper || self.elastica_answer.is_some() {
+                // Without an answer it has no shapes, either.
+                let _ = statics.settle(&self.dragged);
+            }
+            statics.buckled_shapes()
+        };
+        let histories =
+            elastica::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
+        let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
+        Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
+    }
+}

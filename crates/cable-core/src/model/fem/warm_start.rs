@@ -1,0 +1,111 @@
+//! The search for an equilibrium in contact starts from one that is found more easily: that of
+//! `spans`, of the cable without obstacles, of a coarser mesh, of a cable that stretches more.
+
+use std::sync::Arc;
+
+use crate::error::SolveError;
+use crate::math::larger;
+use crate::model::fem::system::WorkBudget;
+use crate::model::fem::{FemModel, Part};
+use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
+use crate::model::{Mechanics, Settings};
+use crate::problem::Problem;
+use crate::solution::Warning;
+
+/// The outcome of starting from the solution of `spans`.
+pub(super) enum SpansStart {
+    /// The mesh rests in it, too; with the warnings about it.
+    Accepted(Vec<Warning>),
+    /// The mesh does not rest in it and relaxes from its own first shape.
+    Rejected,
+    /// `spans` has no solution, or was not asked.
+    Unknown,
+    /// The cable slides from its route: the error that says why.
+    Slides(SolveError),
+}
+
+impl FemModel {
+    /// Starts from the equilibrium of `spans` with the least sliding, if it has one: a cable that
+    /// relaxes by itself comes to lie in folds, which friction then holds. Returns the outcome, and
+    /// the solution of `spans` where it is one of this cable.
+    pub(super) fn start_from_spans(&mut self) -> (SpansStart, Option<InitialEquilibrium>) {
+        let first = match initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose) {
+            Ok(Some(first)) => first,
+            Ok(None) => return (SpansStart::Unknown, None),
+            Err(slides) => return (SpansStart::Slides(slides), None),
+        };
+        let is_flexible = self.problem.bending_stiffness == 0.0;
+        let before = self.stepper.clone();
+        let rests =
+            self.stepper.warm_start(&first.answer, before.cable.time(), &self.dragged).is_ok() && self.stepper.rested;
+        let greatest = first.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let found = self.stepper.solution();
+        let pairs = first.answer.supports.iter().zip(&found.supports);
+        let change = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
+        let tuning = self.tuning().start;
+        let most =
+            if self.problem.bending_stiffness > 0.0 { tuning.max_stiff_force_change } else { tuning.max_force_change };
+        let outcome = if rests && change.fold(0.0, larger) <= most * greatest {
+            SpansStart::Accepted(first.warnings.clone())
+        } else {
+            self.stepper = before;
+            SpansStart::Rejected
+        };
+        (outcome, is_flexible.then_some(first))
+    }
+
+    /// Starts from the equilibrium of a cable whose equilibrium is found more easily: on a coarser
+    /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
+    /// relaxation as there are bars; and of less axial stiffness (continuation), as the search
+    /// among bars that hardly stretch is ill-conditioned, and where they rest is hardly another
+    /// place. That one may begin at one that is easier still. Of cables of less than `eased_loads`
+    /// axial stiffness, in whole loads, the search is not made easier so. All of them share the
+    /// `work`.
+    pub(super) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
+        let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
+        let tuning = self.tuning().clone();
+        let segments = if fine > tuning.start.two_mesh_bars {
+            Some(fine / tuning.start.mesh_ratio)
+        } else {
+            self.settings.segments
+        };
+        let (own, load, start) = (self.problem.axial_stiffness, self.problem.whole_load(), tuning.start);
+        let is_eased = load > 0.0 && own >= eased_loads * load;
+        let axial_stiffness = if is_eased { own / start.stiffness_ratio } else { own };
+        if segments == self.settings.segments && axial_stiffness == own {
+            return;
+        }
+        let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
+        let settings = Settings { segments, ..self.settings };
+        let Ok(easier) = Self::with_tuning(Arc::new(problem), settings, tuning.clone()) else { return };
+        let mut easier = Self { dragged: self.dragged.clone(), present: Part::Stepper, ..easier };
+        if let Some(to) = self.robot_pose {
+            easier.set_robot_pose(to);
+        }
+        easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
+        easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
+        easier.stepper.solver.work_left = *work;
+        let found = easier.settle_mesh(false);
+        *work = easier.stepper.solver.work_left;
+        if found.is_err() {
+            return;
+        }
+        let before = self.stepper.clone();
+        let time_s = before.cable.time();
+        let own = std::mem::replace(&mut self.stepper.solver.work_left, *work);
+        let started = self.stepper.warm_start(&easier.solution(), time_s, &self.dragged);
+        *work = std::mem::replace(&mut self.stepper.solver.work_left, own);
+        if started.is_err() {
+            self.stepper = before;
+        }
+    }
+
+    /// Starts where the cable would rest among no obstacles, and then where one rests that is
+    /// solved more easily.
+    pub(super) fn start_from_own_statics(&mut self, eased_loads: f64, work: &mut WorkBudget) {
+        if self.statics.settle(&self.dragged).is_ok() {
+            self.stepper.start_from_shape(&self.statics.state(), &self.dragged);
+        }
+        self.start_from_easier_cable(eased_loads, work);
+    }
+}

@@ -1,0 +1,286 @@
+//! This module finds tensions along stretches, and the spans over concave kinks in which the cable
+//! has some.
+//!
+//! On slopes steeper than the friction cone the cable pulls on the cable above it, through every
+//! kink on the way. With slopes m₁ and m₂ of the edges on either side, seen along the way, and H
+//! the force across the load, a span leaves the one and meets the other along its tangent:
+//!
+//! ```text
+//! bσ = H (m₂ − m₁),   u = τ (Hσ/EA + H (asinh m₂ − asinh m₁)/b),   v = τ ((T₂ − T₁)/b + H² (m₂² − m₁²)/2bEA)
+//! x₁ t₁ + x₂ t₂ = (u, v),   T₁(x₁) = H √(1 + m₁²)
+//! ```
+//!
+//! with x₁ and x₂ the lengths of the edges that it does not touch and T₁(x₁) the tension that comes
+//! along the first: one equation for H.
+//!
+//! Up a wall the same span leaves what lies at its foot and meets the round above: from the point
+//! it leaves follow T₁, H and the whole catenary; of all such points that is the one whose catenary
+//! is as far from the centre of the round as its radius, where it is nearest.
+
+use crate::math::{Vec2, cross, larger};
+use crate::model::spans::boundary::{LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::slack::slack_parts::{HALVINGS, LooseShapes, STRAIGHT_TURN, SlackSolver};
+use crate::numerics::bisect;
+
+/// Doublings of the force across the load in the search for one that is too large.
+const MOST_DOUBLED: usize = 60;
+
+/// Distance from a round, of its radius, at which a span touches it. Larger: a place where the
+/// distance jumps could be taken for a root. Smaller: where tension hardly changes along the
+/// ground, rounding of p leaves more.
+const TANGENCY_FRACTION: f64 = 1e-3;
+
+/// A span from one stretch to the next, seen from where its tension comes.
+#[derive(Clone, Copy, Debug)]
+struct KinkSpan {
+    /// Places at which it leaves the one and meets the other.
+    coordinates: [f64; 2],
+    /// Tensions where it leaves and where it meets, N.
+    tension: [f64; 2],
+    material: f64,
+}
+
+/// The tensions along stretches as they come from one end.
+pub(super) struct StretchTensions {
+    /// Stretches as the spans over kinks leave them.
+    pub stretches: Vec<LyingStretch>,
+    /// Tension where each is entered, N.
+    pub enters: Vec<f64>,
+    /// The span that begins behind each, as the cable goes, and the stretch at which it ends.
+    pub spans: Vec<Option<(SlackPart, usize)>>,
+    /// Tension where the last one is left, N.
+    pub leaves: f64,
+}
+
+impl SlackSolver<'_> {
+    /// Tensions along stretches from their start (side 0) or end, as little as friction lets them
+    /// have, from a tension there (N); `walls`: material up what hangs behind each, as the cable
+    /// goes, m. None where a kink cannot be bridged.
+    pub(super) fn profile(
+        &self,
+        stretches: &[LyingStretch],
+        walls: &[Option<f64>],
+        side: usize,
+        begins: f64,
+    ) -> Option<StretchTensions> {
+        let n = stretches.len();
+        let mut out = StretchTensions {
+            stretches: stretches.to_vec(),
+            enters: vec![0.0; n],
+            spans: vec![None; n],
+            leaves: begins,
+        };
+        for i in 0..n {
+            let k = if side == 0 { i } else { n - 1 - i };
+            let (s, enters) = (out.stretches[k], out.leaves);
+            out.enters[k] = enters;
+            out.leaves = self.least(&s, side, enters, s.coordinates[1 - side]);
+            if self.sought == LooseShapes::NoTension && out.leaves > self.most {
+                return None;
+            }
+            let first = if side == 0 { k } else { k.wrapping_sub(1) };
+            let (Some(a), Some(b)) =
+                (out.stretches.get(first).copied(), out.stretches.get(first.wrapping_add(1)).copied())
+            else {
+                continue;
+            };
+            let ([from, to], way) = if side == 0 { ([&a, &b], 1.0) } else { ([&b, &a], -1.0) };
+            let mut left = k;
+            let over = match walls.get(first).copied().flatten() {
+                Some(height) if out.leaves > self.most && height * way > 0.0 => loop {
+                    let from = LyingStretch {
+                        coordinates: bounds(
+                            side,
+                            out.stretches[left].coordinates[side],
+                            stretches[left].coordinates[1 - side],
+                        ),
+                        ..stretches[left]
+                    };
+                    let enters = out.enters[left];
+                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
+                        break over;
+                    }
+                    // From further away.
+                    left = if side == 0 { left.checked_sub(1)? } else { left + 1 };
+                    let between = if side == 0 { left } else { left - 1 };
+                    if left >= n || walls[between].is_some() {
+                        return None;
+                    }
+                    out.spans[between] = None;
+                },
+                Some(height) => {
+                    // It hangs plumb from the round, and draws at the foot by what it draws at the
+                    // round less its weight.
+                    out.leaves = larger(out.leaves + self.context.law.load.norm() * height * way, 0.0);
+                    if out.leaves > self.most {
+                        return None;
+                    }
+                    continue;
+                }
+                None if out.leaves > self.most && self.bends_in(&a, &b) => {
+                    self.over([from, to], way, &|p| self.least(&s, side, enters, p))?
+                }
+                None => continue,
+            };
+            let (before, after) = if side == 0 { (left, first + 1) } else { (first, left) };
+            let [p, ends] = [over.coordinates, over.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
+            (out.stretches[before].coordinates[1], out.stretches[after].coordinates[0]) = (p[0], p[1]);
+            let place = out.stretches[before].place(self.context, p[0]);
+            let form = SlackForm::Spans { from: place.at, force: place.tangent * ends[0] };
+            out.spans[before] = Some((SlackPart { arc_lengths: [0.0, over.material], tension: ends, form }, after));
+            out.leaves = over.tension[1];
+        }
+        Some(out)
+    }
+
+    /// Tension at p of a stretch that is entered on a side with another: as little as friction lets
+    /// it have, N.
+    fn least(&self, s: &LyingStretch, side: usize, enters: f64, p: f64) -> f64 {
+        let friction = s.friction(self.context);
+        let against = if side == 0 { -friction } else { friction };
+        larger(s.slide(self.context, s.coordinates[side], p, enters, against).tension, 0.0)
+    }
+
+    /// True if a cable under tension would bridge the gap between two stretches.
+    pub(super) fn bends_in(&self, a: &LyingStretch, b: &LyingStretch) -> bool {
+        let [before, after] = [a.place(self.context, a.coordinates[1]), b.place(self.context, b.coordinates[0])];
+        cross(before.tangent, after.tangent) * self.context.curves[a.curve].sense > STRAIGHT_TURN
+    }
+
+    /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where
+    /// it is against it; from the tension at each p of the first. None where it does not leave and
+    /// meet them.
+    fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<KinkSpan> {
+        let end = usize::from(way > 0.0);
+        let (kink, next) =
+            (from.place(self.context, from.coordinates[end]), to.place(self.context, to.coordinates[1 - end]));
+        if kink.turn != 0.0 || next.turn != 0.0 {
+            return None;
+        }
+        let sight = SpanFrame::new(self, kink.tangent * way)?;
+        let t = [kink.tangent, next.tangent].map(|t| sight.seen(t * way));
+        let det = cross(t[0], t[1]);
+        if !(t[1].x > 0.0 && det > 0.0) {
+            return None;
+        }
+        let [m1, m2] = t.map(|t| t.y / t.x);
+        let aside = |h: f64| {
+            let (material, d) = sight.catenary(h, m1, m2);
+            ([(d.x * t[1].y - d.y * t[1].x) / det, (t[0].x * d.y - t[0].y * d.x) / det], material)
+        };
+        let room = |s: &LyingStretch| s.coordinates[1] - s.coordinates[0];
+        // Beyond the edge the tension is what it is at its start.
+        let comes = |x: f64| tension(from.coordinates[end] - way * if x < room(from) { x } else { room(from) });
+        let lacks = |h: f64| h * 1.0f64.hypot(m1) < comes(aside(h).0[0]);
+        let (mut low, mut high) = (0.0, tension(from.coordinates[end]));
+        for _ in 0..MOST_DOUBLED {
+            if !lacks(high) {
+                break;
+            }
+            (low, high) = (high, 2.0 * high);
+        }
+        let [low, high] = bisect([low, high], HALVINGS, lacks);
+        let h = 0.5 * (low + high);
+        let ([x1, x2], material) = aside(h);
+        let p = [from.coordinates[end] - way * x1, to.coordinates[1 - end] + way * x2];
+        let tension = [m1, m2].map(|m| h * 1.0f64.hypot(m));
+        (x1 < room(from) && x2 < room(to)).then_some(KinkSpan { coordinates: p, tension, material })
+    }
+
+    /// The span from a stretch at the foot of a wall up to the round above it; from the tension at
+    /// each p of the first. Some(None) where it leaves from before that.
+    fn climb(
+        &self,
+        [from, to]: [&LyingStretch; 2],
+        way: f64,
+        tension: &dyn Fn(f64) -> f64,
+    ) -> Option<Option<KinkSpan>> {
+        let end = usize::from(way > 0.0);
+        let above = to.place(self.context, to.coordinates[1 - end]);
+        if above.turn == 0.0 {
+            return None;
+        }
+        let radius = above.stretch;
+        let foot = from.place(self.context, from.coordinates[end]);
+        let sight = SpanFrame::new(self, foot.tangent * way)?;
+        let center = sight.seen(above.at - above.normal * radius);
+        // The catenary from p: its tension across the load, its slopes at both ends, the material,
+        // and how far it is from the round.
+        let seen = |p: f64| {
+            let place = from.place(self.context, p);
+            let t = sight.seen(place.tangent * way);
+            let begins = sight.seen(place.at);
+            let (h, m1) = (tension(p) * t.x, t.y / t.x);
+            let at = |angle: f64| begins + sight.catenary(h, m1, angle.tan()).1 - center;
+            let [low, _] = bisect([m1.atan(), std::f64::consts::FRAC_PI_2], HALVINGS, |angle| {
+                let (sin, cos) = angle.sin_cos();
+                at(angle).dot(&Vec2::new(cos, sin)) < 0.0
+            });
+            // With the centre on its right: beyond it the span would be in the wall.
+            let (sin, cos) = low.sin_cos();
+            (h, [m1, low.tan()], cross(Vec2::new(cos, sin), at(low)) - radius)
+        };
+        // From the foot it leads into the wall, from where there is no tension plumb up beside it.
+        let [_, near] = bisect([from.coordinates[1 - end], from.coordinates[end]], HALVINGS, |p| {
+            !(tension(p) > 0.0) || seen(p).2 > 0.0
+        });
+        if tension(from.coordinates[1 - end]) > 0.0 && !(seen(from.coordinates[1 - end]).2 > 0.0) {
+            return Some(None);
+        }
+        let (h, [m1, m2], off) = seen(near);
+        if !(off.abs() <= TANGENCY_FRACTION * radius && h > 0.0) {
+            return None;
+        }
+        let (material, _) = sight.catenary(h, m1, m2);
+        // The direction in which it meets the round, as the cable goes.
+        let meets = sight.back(Vec2::new(1.0, m2).normalize()) * way;
+        let turned = cross(above.tangent, meets).atan2(above.tangent.dot(&meets));
+        let p = to.coordinates[1 - end] + turned / above.turn;
+        let inside = p >= to.coordinates[0] && p <= to.coordinates[1];
+        inside.then_some(Some(KinkSpan {
+            coordinates: [near, p],
+            tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)),
+            material,
+        }))
+    }
+}
+
+/// The p of a stretch that is entered on a side.
+fn bounds(side: usize, enters: f64, leaves: f64) -> [f64; 2] {
+    if side == 0 { [enters, leaves] } else { [leaves, enters] }
+}
+
+/// The plane as a span sees it that goes to the right against the load.
+struct SpanFrame<'a> {
+    drape: &'a SlackSolver<'a>,
+    /// 1 or −1.
+    right: f64,
+}
+
+impl<'a> SpanFrame<'a> {
+    /// That of a span that leaves in a direction; None where that is plumb.
+    fn new(drape: &'a SlackSolver<'a>, leaves: Vec2) -> Option<Self> {
+        let across = drape.frame.split(leaves).x;
+        (across != 0.0).then(|| Self { drape, right: across.signum() })
+    }
+
+    fn seen(&self, at: Vec2) -> Vec2 {
+        let at = self.drape.frame.split(at);
+        Vec2::new(at.x * self.right, at.y)
+    }
+
+    fn back(&self, at: Vec2) -> Vec2 {
+        self.drape.frame.point(at.x * self.right, at.y)
+    }
+
+    /// Material of a catenary with h across the load from one slope to another, m, and the way from
+    /// its start to its end.
+    fn catenary(&self, h: f64, m1: f64, m2: f64) -> (f64, Vec2) {
+        let law = &self.drape.context.law;
+        let b = law.load.norm();
+        let (material, [t1, t2]) = (h * (m2 - m1) / b, [m1, m2].map(|m| h * 1.0f64.hypot(m)));
+        let u = law.thermal * (h * material * law.compliance + h * (m2.asinh() - m1.asinh()) / b);
+        let v = law.thermal * ((t2 - t1) / b + 0.5 * h * h * (m2 * m2 - m1 * m1) / b * law.compliance);
+        (material, Vec2::new(u, v))
+    }
+}

@@ -1,0 +1,177 @@
+//! A piece advances until its tension reaches the breaking tension, and the instant of that is
+//! found between two of its steps.
+
+use super::piece::Piece;
+use crate::breakage::rupture::{self, Rupture};
+use crate::error::SolveError;
+use crate::model::tension_gauge::Limit;
+use crate::model::{Inertia, StepReport};
+use crate::solution::TensionPeaks;
+use crate::state::State;
+
+/// Longest step with inertia at whose end a break is looked for, s: a longer one in which the piece
+/// breaks is taken again in parts. Longer: the place of the break is blurred; shorter: more steps
+/// for each break. It is the inner step of `fem`.
+const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
+
+/// Parts of a step without inertia that ends beyond the breaking tension. The moment of the break
+/// is interpolated within one of them: with 16 the end of a cable pulled from slack to taut in one
+/// step is found to 1e-2 of the step.
+const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
+
+/// A break in the last such part of a step is put at its end: over a millionth of a step the forces
+/// of inertia would be rounding.
+const MIN_STEP_REMAINDER: f64 = 0.1;
+
+/// The break of a piece.
+pub(super) struct BreakPoint {
+    /// When, s.
+    pub time_s: f64,
+    /// The state of the piece then.
+    pub state: State,
+    /// The place on it.
+    pub at: Rupture,
+}
+
+/// The outcome of a step of a piece.
+pub(super) enum StepOutcome {
+    Intact,
+    Broke(Box<BreakPoint>),
+}
+
+impl Piece {
+    /// Advances until it breaks, at most by `dt_s`.
+    pub fn advance(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
+        match (inertia, breaking_n) {
+            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n, sum),
+            (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
+            (Inertia::QuasiStatic, None) => {
+                self.gauge.forget();
+                sum.add(self.mechanics.advance(dt_s, inertia)?);
+                self.refresh_answer();
+                Ok(StepOutcome::Intact)
+            }
+        }
+    }
+
+    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
+    /// that happens is taken again in parts, to have the cable where it breaks.
+    fn advance_dynamic(
+        &mut self,
+        dt_s: f64,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
+        let parts = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
+        if parts > 1.0 && self.unwatched_steps == 0 {
+            // What cannot break is never taken again.
+            let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));
+            let report = self.gauged_step(dt_s, breaking_n)?;
+            let Some(before) = before.filter(|_| self.gauge.reached().is_some()) else {
+                self.refresh_answer();
+                self.accumulate_momentum();
+                sum.add(report);
+                return Ok(StepOutcome::Intact);
+            };
+            (self.mechanics, self.gauge) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / parts);
+        let mut peaks: Option<TensionPeaks> = None;
+        for _ in 0..parts as usize {
+            let state = self.mechanics.state();
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
+            let done = self.gauged_step(step_s, breaking_n);
+            self.refresh_answer();
+            self.accumulate_momentum();
+            sum.add(done?);
+            self.gauge.add_peaks(peaks);
+            peaks = self.gauge.peaks();
+            left_s -= step_s;
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
+            if let Some(reached) = self.gauge.reached() {
+                let now = self.mechanics.state();
+                let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
+                let at = Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let state =
+                    if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
+            }
+        }
+        Ok(StepOutcome::Intact)
+    }
+
+    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
+    /// break.
+    fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
+        let tension_n = breaking_n.unwrap_or(f64::INFINITY);
+        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.breakable_range() };
+        self.gauge.watch(limit);
+        self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
+    }
+
+    /// Without inertia it breaks at once.
+    fn advance_quasi_static(
+        &mut self,
+        dt_s: f64,
+        breaking_n: f64,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
+        let inertia = Inertia::QuasiStatic;
+        self.gauge.forget();
+        if rupture::greatest(&self.answer.nodes) < breaking_n {
+            let before = (self.mechanics.boxed_clone(), std::mem::take(&mut self.answer));
+            let report = match self.mechanics.advance(dt_s, inertia) {
+                Ok(report) => report,
+                Err(error) => {
+                    self.answer = before.1;
+                    return Err(error);
+                }
+            };
+            self.refresh_answer();
+            if rupture::greatest(&self.answer.nodes) < breaking_n {
+                self.unwatched_steps = self.unwatched_steps.saturating_sub(QUASI_STATIC_SUBSTEPS as u32);
+                sum.add(report);
+                return Ok(StepOutcome::Intact);
+            }
+            (self.mechanics, self.answer) = before;
+        }
+        let (mut left_s, h) = (dt_s, dt_s / QUASI_STATIC_SUBSTEPS);
+        for _ in 0..QUASI_STATIC_SUBSTEPS as usize {
+            let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
+            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let done = self.mechanics.advance(step_s, inertia);
+            self.refresh_answer();
+            sum.add(done?);
+            left_s -= step_s;
+            let now = self.mechanics.state();
+            let awake = self.unwatched_steps == 0;
+            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
+            let [low, high] = self.breakable_range();
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
+            {
+                let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
+                let rest = 1.0 - at.fraction;
+                let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s, state, at })));
+            }
+        }
+        Ok(StepOutcome::Intact)
+    }
+
+    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
+    /// break.
+    fn breakable_range(&self) -> [f64; 2] {
+        let least = 0.5 * self.element();
+        let new = |end: Option<&Option<usize>>| end == Some(&None);
+        let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
+        let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
+        [low, high]
+    }
+}
