@@ -1,5 +1,5 @@
-//! Stiff cables between ends that stand on a floor: slack ones bow, clamps hold their angle, and one
-//! that is laid straight lies there.
+//! Stiff cables between ends that stand on a floor: slack ones bow, clamps hold their angle, and
+//! one that is laid straight lies there.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -84,8 +84,8 @@ fn a_stiff_cable_that_is_laid_straight_lies_there() {
     }
 }
 
-/// Curvatures were read on a straight line between the nodes of the mesh, 7 % off beside a load, and
-/// the law of moments refused the answer.
+/// Curvatures were read on a straight line between the nodes of the mesh, 7 % off beside a load,
+/// and the law of moments refused the answer.
 #[test]
 fn the_curvature_beside_a_load_follows_the_shear() {
     let supports = vec![Support::fixed("a", [0.0, 0.0]), Support::fixed("b", [3.7464, 0.6403])];

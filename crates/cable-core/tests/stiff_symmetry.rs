@@ -238,8 +238,8 @@ fn campaign(name: &str, scenes: impl Fn(u64) -> Case, (most, also): (u64, &[u64]
 }
 
 /// Scenes beyond those always asked that once differed: chains thrown about by friction (70, 115),
-/// a greatest tension between two nodes (133), posts that were sprung through (117, 159), a flexible
-/// answer that stood for a stiff one (5012), a new contact that did not rub (5173).
+/// a greatest tension between two nodes (133), posts that were sprung through (117, 159), a
+/// flexible answer that stood for a stiff one (5012), a new contact that did not rub (5173).
 const ALSO: [u64; 7] = [70, 115, 117, 133, 159, 5012, 5173];
 
 #[test]

@@ -527,8 +527,8 @@ fn over_one_wheel(seed: u64) -> Scene {
 }
 
 /// A run in motion began with the material of the middle of the arc at the top of the wheel, and
-/// friction held it there: tensions jumped by up to 53 % in the first step, and where nodes were left
-/// on the wheel no rest was found.
+/// friction held it there: tensions jumped by up to 53 % in the first step, and where nodes were
+/// left on the wheel no rest was found.
 #[test]
 fn what_rests_on_a_rubbing_wheel_stays_when_time_runs() {
     let count = number("WHEELS_CASES", 60);

@@ -42,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         Item::Load(k) | Item::LoadHead(k) => loads::form(ui, state, k, commands),
         Item::Cable(_) => cable::ui(ui, state, commands),
         Item::Robot | Item::PathLeg(_) => {
-            scene::ui(ui, state, commands);
+            scene::robot::ui(ui, state, commands);
             robot::ui(ui, state, commands);
         }
         Item::Scene => scene::ui(ui, state, commands),

@@ -112,7 +112,7 @@ mod tests {
     fn the_last_number_of_an_axis_is_whole_and_has_the_unit() {
         let across = |end: f64| {
             let text = |value| tick_across(GridMark { value, step_size: 0.5 }, &(0.0..=end), "m", 300.0);
-            ([0.0, 2.5, 3.0].map(text), ends_across(0.0..=end, 6.0, "m", 300.0))
+            ([0.0, 2.5, 3.0].map(text), ends_across(0.0..=end, 7.0, "m", 300.0))
         };
         let three = |a: &str, b: &str, c: &str| [a.to_owned(), b.to_owned(), c.to_owned()];
         let (first, last) = (Some("0.0".to_owned()), Some("3.0 m".to_owned()));

@@ -51,7 +51,8 @@ pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
+use crate::scene::SupportKind;
+use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
@@ -59,6 +60,10 @@ use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
+
+/// Part of the tolerance up to which what bending changes is nothing. Smaller: layers of micrometres
+/// are resolved; larger: flexible answers for cables whose stiffness shows.
+const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
 /// Layers of bending with which the continuation in EI begins, one after the other, in parts of the
 /// shortest free piece. Larger: the first guess, a flexible cable with layers, is too rough, and
@@ -81,6 +86,9 @@ pub fn rest(
     flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
+    if let Some(limit) = flexible.and_then(|flexible| flexible_limit(problem, flexible, tolerance)) {
+        return Some((limit, Cost::default()));
+    }
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.filter(|flexible| !chain::is_folded(problem, flexible)).and_then(|flexible| {
         let bent_from_layer = |first_layer: f64| {
@@ -155,6 +163,41 @@ fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
 fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(f64::MIN_POSITIVE, larger);
     (problem.bending_stiffness / greatest).sqrt()
+}
+
+/// The answer for the flexible cable, where its stiffness changes next to nothing; None where it may
+/// change more, or where the flexible shape has angles, which stiffness rounds off.
+///
+/// A bend of curvature κ lowers the tension by EI κ²/2, and where it begins or ends, over a length λ =
+/// √(EI/T), the cable is led κλ² aside. Of that a cable takes up no more than a bar that is as long,
+/// EA κλ²/L at each such place.
+fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
+    let has_angles = problem.supports.len() > 2
+        || !problem.loads.is_empty()
+        || problem.supports.iter().any(|s| s.angle.is_some() || s.kind == SupportKind::Pulley);
+    if has_angles || !flexible.breaks.is_empty() {
+        return None;
+    }
+    let (mut fall_n, mut aside_m, mut greatest_n) = (0.0f64, 0.0f64, 0.0f64);
+    for n in &flexible.nodes {
+        let moment = problem.bending_stiffness * n.curvature_per_m.abs();
+        fall_n = larger(fall_n, moment * n.curvature_per_m.abs());
+        aside_m = larger(aside_m, if moment > 0.0 { moment / n.tension_n } else { 0.0 });
+        greatest_n = larger(greatest_n, n.tension_n);
+    }
+    let places = (2 + 2 * flexible.contacts.len()) as f64;
+    let force_n = fall_n + places * aside_m * problem.axial_stiffness / problem.length;
+    if !(force_n <= NEGLIGIBLE_FRACTION * tolerance * greatest_n) {
+        return None;
+    }
+    let bent = ErrorEstimates {
+        max_tension_n: Some(force_n),
+        support_force_n: Some(force_n),
+        contact_force_n: (!flexible.contacts.is_empty()).then_some(force_n),
+        position_m: Some(places * aside_m),
+    };
+    let assumptions = Assumptions { bending_stiffness_n_m2: problem.bending_stiffness, ..flexible.assumptions };
+    Some(CableSolution { assumptions, ..flexible.clone() }.known_to(flexible.errors.plus(&bent)))
 }
 
 /// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the

@@ -13,8 +13,9 @@ const DIFFERENCE: f64 = 1e-2;
 /// than their order; larger: errors of shear are seen as bends.
 const RESOLVED_LAYERS: f64 = 2.0;
 
-/// Turn of a layer (rad) that may be left at the node where elements become long beside it. Smaller:
-/// layers are refused that elements show well enough; larger: bends between nodes are not seen.
+/// Turn of a layer (rad) that may be left at the node where elements become long beside it.
+/// Smaller: layers are refused that elements show well enough; larger: bends between nodes are not
+/// seen.
 const MAX_LEFT_TURN: f64 = 0.05;
 
 impl Elastica {
@@ -79,8 +80,8 @@ impl Elastica {
     }
 
     /// The state at the part `z` of a free element that is long beside its layer. Its force changes
-    /// by its weight alone, so it is linear; the cable's direction is that of the force but for what
-    /// shear turns it by, which is small, as the moment is.
+    /// by its weight alone, so it is linear; the cable's direction is that of the force but for
+    /// what shear turns it by, which is small, as the moment is.
     fn outer_state(&self, [a, b]: [&[f64; STATES]; 2], z: f64, h: f64) -> [f64; STATES] {
         let mut u: [f64; STATES] = std::array::from_fn(|i| a[i] + z * (b[i] - a[i]));
         let angle_between = |v: Vec2, w: Vec2| cross(v, w).atan2(v.dot(&w));

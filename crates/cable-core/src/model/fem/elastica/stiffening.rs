@@ -18,8 +18,8 @@ const LEAST_RISE: f64 = 1.001;
 /// Part of the whole stiffness from which a rise goes to all of it.
 const LAST_RISE_FRACTION: f64 = 0.999;
 
-/// Turn of a piece, rad, up to which it is straight. Larger: bows, which bear more than a strut, are
-/// taken for struts.
+/// Turn of a piece, rad, up to which it is straight. Larger: bows, which bear more than a strut,
+/// are taken for struts.
 const STRAIGHT_TURN: f64 = 0.5;
 
 impl Elastica {

@@ -65,9 +65,9 @@ const PERTURBATION_FRACTION: f64 = 1e-2;
 /// Euler's force of a strut that is clamped at both ends, in EI/l².
 pub(in crate::model::fem::elastica) const CLAMPED_EULER: f64 = 4.0 * std::f64::consts::PI * std::f64::consts::PI;
 
-/// Push of a strut that lies on a surface, in EI/l², from which it bows away from it: Euler's force of
-/// one that is clamped at its middle too. Smaller: heavy struts that lie well are lifted, and come to
-/// one of several bows; larger: cables with slack are crushed along the ground.
+/// Push of a strut that lies on a surface, in EI/l², from which it bows away from it: Euler's force
+/// of one that is clamped at its middle too. Smaller: heavy struts that lie well are lifted, and
+/// come to one of several bows; larger: cables with slack are crushed along the ground.
 pub(in crate::model::fem::elastica) const LYING_EULER: f64 = 4.0 * CLAMPED_EULER;
 
 /// Cosine of the angle between two bars up to which a stretch is straight: half a radian.
@@ -236,8 +236,8 @@ impl Chain<'_> {
     }
 
     /// Bows each straight stretch that is pressed with more than [`LYING_EULER`] away from what it
-    /// lies on, as far as its material wants; returns whether there was any that could
-    /// be. What lies on a surface is held by it and stays straight however much it is pressed, unless
+    /// lies on, as far as its material wants; returns whether there was any that could be. What
+    /// lies on a surface is held by it and stays straight however much it is pressed, unless
     /// something lifts it: no cable is laid as straight as that.
     pub(super) fn bow_crushed(&mut self) -> bool {
         let ei = self.chain_input.problem.bending_stiffness;
@@ -261,8 +261,8 @@ impl Chain<'_> {
         bowed
     }
 
-    /// Moves the nodes between two into half a wave that is longer than their chord by what the push
-    /// (N) has pressed out of their material; returns whether there is room for it.
+    /// Moves the nodes between two into half a wave that is longer than their chord by what the
+    /// push (N) has pressed out of their material; returns whether there is room for it.
     fn bow(&mut self, [from, to]: [usize; 2], length: f64, push: f64) -> bool {
         let chord = self.positions[to] - self.positions[from];
         let normals = self.contacts.iter().filter(|t| (from..=to).contains(&t.node)).map(|t| t.gap.normal);

@@ -22,8 +22,8 @@ const CHAIN_CONTACT_BARS: f64 = 2.5;
 /// Length, in bars, from which a reported contact is a stretch.
 const REPORTED_STRETCH_BARS: f64 = 3.0;
 
-/// Distance, in bars, of a stretch of a chain's contacts from the cable's end up to which it reaches
-/// that end.
+/// Distance, in bars, of a stretch of a chain's contacts from the cable's end up to which it
+/// reaches that end.
 const END_BARS: f64 = 2.0;
 
 /// Part of a wheel's friction from which it counts as slipping: the rest is rounding.
@@ -100,8 +100,8 @@ impl ElasticaGuess<'_> {
         }
     }
 
-    /// A stretch of contact, from the cable's end on or up to it where it comes within two bars of an
-    /// end that stands on a surface: a chain has no contact where it is held.
+    /// A stretch of contact, from the cable's end on or up to it where it comes within two bars of
+    /// an end that stands on a surface: a chain has no contact where it is held.
     fn to_lying_ends(&self, [from, to]: [f64; 2], bar: f64) -> [f64; 2] {
         let within = CONTACT_DISTANCE_FRACTION * self.problem.radius;
         let lies = |s: f64| {
