@@ -61,8 +61,8 @@ use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 /// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
 
-/// Part of the tolerance up to which what bending changes is nothing. Smaller: layers of micrometres
-/// are resolved; larger: flexible answers for cables whose stiffness shows.
+/// Part of the tolerance up to which what bending changes is nothing. Smaller: layers of
+/// micrometres are resolved; larger: flexible answers for cables whose stiffness shows.
 const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
 /// Layers of bending with which the continuation in EI begins, one after the other, in parts of the
@@ -165,12 +165,12 @@ fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     (problem.bending_stiffness / greatest).sqrt()
 }
 
-/// The answer for the flexible cable, where its stiffness changes next to nothing; None where it may
-/// change more, or where the flexible shape has angles, which stiffness rounds off.
+/// The answer for the flexible cable, where its stiffness changes next to nothing; None where it
+/// may change more, or where the flexible shape has angles, which stiffness rounds off.
 ///
-/// A bend of curvature κ lowers the tension by EI κ²/2, and where it begins or ends, over a length λ =
-/// √(EI/T), the cable is led κλ² aside. Of that a cable takes up no more than a bar that is as long,
-/// EA κλ²/L at each such place.
+/// A bend of curvature κ lowers the tension by EI κ²/2, and where it begins or ends, over a length
+/// λ = √(EI/T), the cable is led κλ² aside. Of that a cable takes up no more than a bar that is as
+/// long, EA κλ²/L at each such place.
 fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
     let has_angles = problem.supports.len() > 2
         || !problem.loads.is_empty()
