@@ -199,9 +199,6 @@ fn campaign(name: &str, scenes: impl Fn(u64) -> Case, (most, also): (u64, &[u64]
     for k in (first..first + count).chain(also.iter().copied()) {
         let Case { kind, scene } = scenes(k);
         let length = scene.cables[0].length_m;
-        if let Ok(folder) = std::env::var("SYMMETRY_ALL") {
-            std::fs::write(format!("{folder}/{name}_{k}_{kind}.toml"), scene.to_toml()).unwrap();
-        }
         let found = rest(&scene);
         let before = came.wrong.len() + came.refused.len();
         let readings: [(&str, Scene, Back); 3] = [

@@ -65,11 +65,6 @@ const BOW_TOLERANCE: f64 = 1e-4;
 /// micrometres are resolved; larger: flexible answers for cables whose stiffness shows.
 const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
-/// Layers of bending with which the continuation in EI begins, one after the other, in parts of the
-/// shortest free piece. Larger: the first guess, a flexible cable with layers, is too rough, and
-/// Newton's method ends nowhere or at a curl; smaller: more steps.
-const FIRST_LAYERS: [f64; 2] = [0.05, 0.005];
-
 /// Turn of a stretch in contact up to which it is straight, °. Larger: wraps are taken for struts.
 const MAX_STRAIGHT_TURN_DEG: f64 = 30.0;
 
@@ -91,16 +86,13 @@ pub fn rest(
     }
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.filter(|flexible| !chain::is_folded(problem, flexible)).and_then(|flexible| {
-        let bent_from_layer = |first_layer: f64| {
-            let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible, first_layer)?;
-            let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
-            keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
-        };
-        FIRST_LAYERS.into_iter().find_map(bent_from_layer)
+        let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
+        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+        keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
     });
     let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
     if crushed {
-        // What is pressed so bows, if anything lifts it.
+        // A cable that is pressed so bows, if anything lifts it.
         let rest = rest_by_chain(chain_input, chain::rest_of_flexible(chain_input), tolerance);
         return rest.filter(|(answer, _)| !lies_crushed(problem, answer)).or(bent);
     }

@@ -37,9 +37,8 @@ struct Attachment {
 
 /// The part of an answer from which contacts are read.
 enum ContactSource<'a> {
-    /// Nodes of a flexible cable that touch something; its first layer of bending is this part of
-    /// the shortest free piece.
-    Nodes { first_layer: f64 },
+    /// Nodes of a flexible cable that touch something.
+    Nodes,
     /// The contacts that a mesh with bars of this length (m) reports.
     Reports { bar: f64 },
     /// The contacts of a chain with bars of this length (m).
@@ -59,17 +58,15 @@ struct ElasticaGuess<'a> {
 }
 
 impl Elastica {
-    /// A first guess from the answer for a flexible cable, at rest at a time (s), with a layer of
-    /// bending that is `first_layer` of its shortest free piece; None where the scene or the answer
-    /// has things that an elastica does not model.
+    /// A first guess from the answer for a flexible cable, at rest at a time (s); None where the
+    /// scene or the answer has things that an elastica does not model.
     pub fn from_flexible(
         problem: &Problem,
         time_s: f64,
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
-        first_layer: f64,
     ) -> Option<Self> {
-        ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Nodes { first_layer })
+        ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Nodes)
     }
 
     /// The same from the answer of a mesh for the cable as stiff as it is. `bar` is the length of
@@ -176,13 +173,13 @@ impl<'a> ElasticaGuess<'a> {
     /// with the bends at the ends of its free pieces; the others are bent as their nodes are.
     fn elastica_of(mut self, source: &ContactSource<'_>) -> Option<Elastica> {
         match *source {
-            ContactSource::Nodes { .. } => self.attach_touching_nodes(),
+            ContactSource::Nodes => self.attach_touching_nodes(),
             ContactSource::Reports { bar } => self.attach_reported_contacts(bar),
             ContactSource::Chain { bar, contacts } => self.attach_chain_contacts(bar, contacts),
         }
         self.attachments.sort_by(|a, b| a.from.total_cmp(&b.from));
-        if let ContactSource::Nodes { first_layer } = *source {
-            self.reduce_stiffness(first_layer);
+        if let ContactSource::Nodes = source {
+            self.reduce_stiffness();
             self.divide()?;
             self.add_end_layers()?;
         } else {

@@ -12,6 +12,10 @@ const FREE_ELEMENTS: usize = 32;
 /// See `FREE_ELEMENTS`.
 const LYING_ELEMENTS: usize = 8;
 
+/// Layer λ with which the continuation in EI begins, in parts of the shortest free piece. Larger:
+/// its first guess, a flexible cable with layers, is too rough; smaller: more steps.
+const FIRST_LAYER: f64 = 0.05;
+
 /// Shortest free piece that counts for that, in parts of the cable's length.
 const LEAST_FREE_PIECE_FRACTION: f64 = 1e-6;
 
@@ -30,9 +34,8 @@ fn turn_over(curve: &ReferenceCurve<'_>, a: &Attachment, length: f64) -> f64 {
 }
 
 impl ElasticaGuess<'_> {
-    /// Reduces the bending stiffness to the one with which the continuation begins: that of a layer
-    /// of so many parts of the shortest free piece.
-    pub(super) fn reduce_stiffness(&mut self, first_layer: f64) {
+    /// Reduces the bending stiffness to the one with which the continuation begins.
+    pub(super) fn reduce_stiffness(&mut self) {
         let elastica = &mut self.elastica;
         let (mut last, mut shortest) = (0.0, elastica.length);
         for a in &self.attachments {
@@ -46,7 +49,7 @@ impl ElasticaGuess<'_> {
         if free > LEAST_FREE_PIECE_FRACTION * elastica.length && free < shortest {
             shortest = free;
         }
-        let layer = first_layer * shortest;
+        let layer = FIRST_LAYER * shortest;
         let soft = elastica.scale * layer * layer;
         if soft < elastica.bending {
             elastica.bending = soft;
