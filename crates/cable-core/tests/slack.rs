@@ -3,7 +3,7 @@
 //! looked at with what is written here alone: contacts and supports carry the weight, nothing
 //! pushes, no support is pushed, and no bar is longer than its material.
 
-use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, View, catalog};
+use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, SupportKind, View, catalog};
 use cable_core::{Model, Simulation};
 
 const GRAVITY: f64 = 9.80665;
@@ -199,6 +199,32 @@ fn a_slack_cable_over_a_beam_stays_on_it() {
     let answer = Simulation::new(s, Model::Auto).unwrap().settle().unwrap();
     let over = answer.cables[0].nodes.iter().filter(|n| (4.1..5.9).contains(&n.x_m));
     assert!(over.clone().count() > 0 && over.clone().all(|n| n.y_m > 1.0), "{:?}", over.collect::<Vec<_>>());
+}
+
+/// A tail along its route over a crest, through the points at which it leaves both slopes: by their
+/// rounding nothing was below the route there, and all of the tail lay in one heap at its held end.
+#[test]
+fn a_tail_lies_along_its_route_over_a_crest() {
+    let radius = 0.005;
+    for k in 0..40 {
+        let (a, b) = (0.02 + 0.003 * f64::from(k), 0.25 - 0.002 * f64::from(k));
+        let (left, right) = ([-a.sin(), a.cos()], [b.sin(), b.cos()]);
+        let on = |n: [f64; 2], along: f64, far: f64| {
+            [n[0] * radius + along * far * n[1], n[1] * radius - along * far * n[0]]
+        };
+        let (tip, held) = (on(left, -1.0, 17.7), on(right, 1.0, 5.2));
+        let (_, mut s) = scene(0);
+        let points_m = vec![[-60.0 * a.cos(), -60.0 * a.sin()], [0.0, 0.0], [60.0 * b.cos(), -60.0 * b.sin()]];
+        s.obstacles = vec![Obstacle { name: "g".to_owned(), shape: Shape::Terrain { points_m }, friction: Some(0.8) }];
+        let c = &mut s.cables[0];
+        (c.length_m, c.diameter_m, c.friction) = (22.9 + radius * (a + b), 2.0 * radius, 0.8);
+        c.route_m = vec![tip, on(left, 0.0, 0.0), on(right, 0.0, 0.0), held];
+        c.supports = vec![Support::new("tip", SupportKind::Free), Support::fixed("held", held)];
+        let answer = Simulation::new(s, Model::Auto).unwrap().settle().unwrap();
+        let first = answer.cables[0].nodes[0];
+        let off = (first.x_m - tip[0]).hypot(first.y_m - tip[1]);
+        assert!(off < 0.1, "{k}: the tip lies {off} m from where its route begins");
+    }
 }
 
 #[test]

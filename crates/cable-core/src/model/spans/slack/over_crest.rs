@@ -73,7 +73,7 @@ impl SlackSolver<'_> {
             // From a support down, or up to one.
             let begins = held[0] && self.rise(alone.0) < 0.0;
             let ends = held[1] && self.rise(alone.0) > 0.0;
-            out.push(self.hanging_part(alone));
+            out.push(self.hanging_part(alone.0, alone.1));
             return if begins || ends { Ok(false) } else { Err(None) };
         }
         if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
@@ -85,9 +85,9 @@ impl SlackSolver<'_> {
             out.pop();
             out.push(found.part.clone());
         }
-        out.extend(first.map(|hung| self.hanging_part(hung)));
+        out.extend(first.map(|(ends, s)| self.hanging_part(ends, s)));
         self.lay_over_crest(&crest, out)?;
-        out.extend(last.map(|hung| self.hanging_part(hung)));
+        out.extend(last.map(|(ends, s)| self.hanging_part(ends, s)));
         if let Some(found) = crest.bridge.filter(|_| crest.tight == Some(1)) {
             out.push(found.part);
             return Ok(true);
@@ -104,7 +104,7 @@ impl SlackSolver<'_> {
     }
 
     /// A part that hangs plumb, with so much material, m.
-    fn hanging_part(&self, (ends, s): ([Vec2; 2], f64)) -> SlackPart {
+    fn hanging_part(&self, ends: [Vec2; 2], s: f64) -> SlackPart {
         let t = self.context.law.load.norm() * s;
         let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
         SlackPart { arc_lengths: [0.0, s], tension, form: SlackForm::Hangs(ends) }
