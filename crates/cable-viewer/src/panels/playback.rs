@@ -144,7 +144,7 @@ fn speed(ui: &mut Ui, state: &AppState, with_slider: bool, commands: &mut Vec<Co
     }
 }
 
-/// How time runs and how the solver is doing.
+/// The pace of time and the state of the solver.
 fn status(state: &AppState) -> Vec<StatusItem> {
     let plain = |text: String, help: String, importance| StatusItem { text, help, tone: Tone::Plain, importance };
     let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
@@ -181,7 +181,7 @@ fn status(state: &AppState) -> Vec<StatusItem> {
     items
 }
 
-/// How fast time runs.
+/// The speed at which time runs.
 fn pace(state: &AppState) -> StatusItem {
     let item = |text: String, help: String, tone| StatusItem { text, help, tone, importance: Importance::Time };
     // The last frame keeps the speed that it was reached at.

@@ -90,7 +90,7 @@ fn a_reset_after_a_break_is_taken_back_whole() {
     assert_eq!(shown(&harness).cables, shown(&straight).cables);
 }
 
-/// What was edited after a reset belonged to the run that the undo of the reset brought back.
+/// An edit after a reset belonged to the run that the undo of the reset brought back.
 #[test]
 fn the_undo_of_a_reset_brings_its_scene_back_too() {
     let mut harness = open(catalog::hanging_span());

@@ -353,7 +353,7 @@ impl Engine {
     /// unless the scene, the model or the mesh is another than then, which is an edit of then.
     fn undo_reset(&mut self, edit: Edit) -> Option<Result<(), Error>> {
         let EndedRun { run, edit: before, phase, snapshot } = *self.ended_run.take()?;
-        // What has run since takes its place.
+        // The run since then takes its place.
         self.keep_ended_run();
         let of = |e: &Edit| (e.scene.clone(), e.model, e.settings);
         let is_same = before.as_ref().is_some_and(|before| of(before) == of(&edit));
