@@ -37,6 +37,54 @@ fn shaken(length_m: f64, reach: [f64; 2]) -> Scene {
     scene
 }
 
+const CREST: &str = r#"
+version = 1
+name = "x"
+
+[environment]
+
+[[cables]]
+name = "c"
+length_m = 4.136591221040085
+linear_density_kg_per_m = 1.0
+axial_stiffness_n = 200000.0
+bending_stiffness_n_m2 = 0.0
+diameter_m = 0.01
+damping_ratio = 0.02
+service_tension_n = 1000000000000.0
+breaking_tension_n = 1000000000000.0
+friction = 0.0
+route_m = [[-1.5911035324732896, -1.8468261745737717], [0, 0.005], [1.4103285992028258, -0.9341700985018764]]
+  [[cables.supports]]
+  name = "A"
+  kind = "free"
+  [[cables.supports]]
+  name = "B"
+  kind = "fixed"
+  at_m = [1.4103285992028258, -0.9341700985018764]
+  release_s = 0.1
+
+[[obstacles]]
+name = "wedge"
+kind = "terrain"
+points_m = [[-7.813821178520827, -9.107370564004706], [0, 0], [9.984733558806683, -6.656207310446364]]
+friction = 0.0
+"#;
+
+/// A cable over a crest without friction is let go and slides for ever: the run without inertia
+/// beside it looked for a rest that there is not, for minutes.
+#[test]
+fn issue_019_a_cable_that_slides_for_ever_has_no_run_without_inertia() {
+    let scene = Scene::from_toml(CREST).expect("a sound scene");
+    let question = Question::History(Inertia::Dynamic);
+    let mut sim = Simulation::for_question(scene, Model::Auto, Settings::default(), question).unwrap();
+    sim.settle().unwrap();
+    let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_next_cheaper();
+    let answer = timeline.at(Instant::nearest(0.15), |_| ()).unwrap();
+    let without = answer.next_cheaper.expect("a run beside it");
+    assert_eq!((without.neglects, without.force_error), (NeglectedEffect::Inertia, None));
+}
+
 /// The run of a scene by `auto`, with errors and with a run without inertia.
 fn effect(scene: &Scene) -> InertiaEffect {
     let question = Question::History(Inertia::Dynamic);

@@ -49,6 +49,17 @@ impl Geometry {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
     }
 
+    /// The bodies that are in the way from one place to another (m), in order.
+    #[must_use]
+    pub(crate) fn bodies_between(&self, from: Vec2, to: Vec2) -> Vec<usize> {
+        let sweep = Sweep::new([from; 2], [to; 2], 0.0);
+        let parts: Vec<ObstaclePart> = self.parts(sweep.low, sweep.high, sweep.margin).collect();
+        let of_one_body = parts.chunk_by(|a, b| a.body == b.body);
+        let blocks =
+            |parts: &&[ObstaclePart]| self.free_fraction_among(parts.iter().copied(), &sweep, [None, None]) < 1.0;
+        of_one_body.filter(blocks).filter_map(|parts| parts.first()).map(|part| part.body).collect()
+    }
+
     /// The same among `parts`, which hold all within the sweep's margin of its box.
     pub(crate) fn free_fraction_among(
         &self,

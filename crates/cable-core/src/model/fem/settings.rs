@@ -313,19 +313,11 @@ pub struct EquilibriumTuning {
     /// Rounds of refreshing the normal forces of friction in a step. Fewer: steps are halved. More:
     /// a cycle costs more.
     pub lag_rounds: usize,
-    /// Rounds after which normal forces are taken in part only: where a contact that rubs more
-    /// lifts its neighbour, which then rubs less, they never end. A step of relaxation, which need
-    /// not end, has no others. Fewer: what converges by itself takes longer. More: fewer rounds are
-    /// left.
+    /// Rounds after which the limits of friction are sought between two that were tried: where a
+    /// contact that rubs more lifts its neighbour, which then rubs less, taking what the last round
+    /// allows never ends. A step of relaxation, which need not end, has no others. Fewer: what
+    /// converges by itself takes longer. More: fewer rounds are left.
     pub whole_lag_rounds: usize,
-    /// Least such part. Smaller: the last rounds change nothing. Larger: what goes round and round
-    /// does not end.
-    pub min_lag_fraction: f64,
-    /// Factor of the part after a round that brought the forces nearer. Smaller: slow. Larger: they
-    /// go round again.
-    pub lag_growth: f64,
-    /// Factor of the part after a round that did not. Smaller: slow. Larger: more rounds.
-    pub lag_shrinkage: f64,
     /// Whole load, in weights of the cable, from which dead loads set the first resistance.
     /// Smaller: a way down with a little load is slower than it need be. Larger: loads of that many
     /// weights throw the cable about.
@@ -365,9 +357,6 @@ impl Default for EquilibriumTuning {
             max_relaxation_steps: 600,
             lag_rounds: 25,
             whole_lag_rounds: 8,
-            min_lag_fraction: 0.03,
-            lag_growth: 1.1,
-            lag_shrinkage: 0.6,
             dead_load_weights: 2.0,
             squeezed_residual: 1e3,
             unheld_load_fraction: 1e-4,

@@ -54,6 +54,8 @@ pub struct SwitchingModel {
     refusal: Option<SolveError>,
     /// Answers until the next offer, and after that.
     interval: [usize; 2],
+    /// The most work of a search for an equilibrium or an advance, where that is bounded.
+    max_work: Option<usize>,
 }
 
 impl SwitchingModel {
@@ -77,6 +79,7 @@ impl SwitchingModel {
             reason: None,
             refusal: None,
             interval: [FIRST_INTERVAL; 2],
+            max_work: None,
         })
     }
 
@@ -121,6 +124,9 @@ impl SwitchingModel {
         refuse_mobilised(Model::Fem, &self.problem)?;
         let mut fem = FemModel::new(self.problem.clone(), self.settings)?;
         fem.start_without_spans();
+        if let Some(work) = self.max_work {
+            fem.limit_work(work);
+        }
         if let Some(robot_pose) = self.robot_pose {
             fem.set_robot_pose(robot_pose);
         }
@@ -382,6 +388,7 @@ impl Mechanics for SwitchingModel {
     }
 
     fn limit_work(&mut self, work: usize) {
+        self.max_work = Some(work);
         if let Some(fem) = &mut self.fem {
             fem.limit_work(work);
         }
@@ -435,6 +442,7 @@ impl Mechanics for SwitchingModel {
             reason: self.reason.clone(),
             refusal: self.refusal.clone(),
             interval: self.interval,
+            max_work: self.max_work,
         })
     }
 

@@ -3,6 +3,7 @@
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
+use crate::model::fem::equilibrium::lagged_friction::rounding_of_bars;
 use crate::model::fem::equilibrium::relaxation::moved_away;
 use crate::model::fem::first_shape::{bow, depenetrate};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
@@ -13,11 +14,6 @@ use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, load_scale, tolerance};
 use crate::model::{Model, StepReport};
 use crate::state::State;
-
-/// Roundings of a coordinate that the lengths of the bars beside a node may be off by together.
-/// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
-/// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
-const LENGTH_ROUNDINGS: f64 = 2.0;
 
 /// Depth of the centre line's touching distance, in radii of the cable, from which it is said to
 /// run through an obstacle: one that touches it has a depth of 0. Smaller: cables that press on an
@@ -64,7 +60,7 @@ impl Stepper {
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = self.rollback.with_saved();
         let (exact, to) = (self.cable.input.stopping.tolerance, self.cable.motion.time);
-        let rounding = self.rounding_of_bars();
+        let rounding = rounding_of_bars(&self.cable);
         let mut all = found;
         let tuning = self.cable.mesh.tuning.equilibrium;
         let stages = [
@@ -90,14 +86,6 @@ impl Stepper {
         self.cable.input.stopping.tolerance = exact;
         self.rollback = kept;
         all
-    }
-
-    /// Force that the rounding of coordinates makes at a node of even bars, N: it grows with the
-    /// number of bars.
-    fn rounding_of_bars(&self) -> f64 {
-        let (cable, problem) = (&self.cable, &self.cable.problem);
-        let farthest = cable.motion.positions.iter().map(|x| x.norm()).fold(0.0, larger);
-        LENGTH_ROUNDINGS * f64::EPSILON * farthest * problem.axial_stiffness / cable.even()
     }
 
     /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the

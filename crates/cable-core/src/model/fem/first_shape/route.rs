@@ -6,22 +6,12 @@ use crate::model::fem::mesh::Mesh;
 use crate::numerics::bisect;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
+use crate::problem::way_over::{bodies_in_the_way, hull_over};
 use crate::scene::SupportKind;
 
 /// Steps of the half turn by which an end is leaned to either side until it is clear of what is
 /// below it. More: the same at more cost; fewer: it begins higher than it needs to.
 const LEANS: i32 = 36;
-
-/// Clearance of a route over a corner or circle, in distances of the centre line of a touching
-/// cable … Smaller: the route is pushed out of the obstacle once more; larger: it begins farther
-/// from its rest. A choice, tuned on no campaign, as are the two below.
-const TOP_CLEARANCE: f64 = 1.05;
-/// … and this much more, m, for cables so thin that the factor is nothing. Smaller and larger: as
-/// above.
-const TOP_CLEARANCE_M: f64 = 2e-3;
-/// Radius of the polygon round a circle in clearances, so that its sides are clear as well: 1/cos
-/// of half a side, 5.6°, is 1.005. Smaller: sides cut into the circle; larger: as of the clearance.
-const CIRCLE_POLYGON: f64 = 1.02;
 
 /// Halvings in the search for the angle of an arc: rounding.
 const ARC_HALVINGS: usize = 52;
@@ -164,56 +154,19 @@ fn straight(problem: &Problem) -> Vec<Vec2> {
     points
 }
 
-/// Each leg that meets an obstacle is replaced by the upper hull of its ends and the obstacle
-/// corners between.
+/// Each leg that meets an obstacle is replaced by the upper hull of its ends and of what is in the
+/// way.
 fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = points.first().copied().into_iter().collect();
     for leg in points.windows(2) {
         let (a, b) = (leg[0], leg[1]);
         let blocked = !problem.world.is_empty() && (problem.world.free_fraction([a, a], [b, b], 0.0) < 1.0);
         if blocked && (b.x - a.x).abs() > 1e-9 {
-            let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-            let mut corners: Vec<Vec2> =
-                obstacle_tops(problem).into_iter().filter(|p| p.x > low && p.x < high).collect();
-            corners.push(a);
-            corners.push(b);
-            corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
-            let mut hull: Vec<Vec2> = Vec::new();
-            for p in corners {
-                while let [.., u, v] = hull[..] {
-                    if cross(v - u, p - u) < 0.0 {
-                        break;
-                    }
-                    hull.pop();
-                }
-                hull.push(p);
-            }
-            if a.x > b.x {
-                hull.reverse();
-            }
+            let bodies = bodies_in_the_way(&problem.world, a, b);
+            let hull = hull_over(&problem.world, &bodies, a, b);
             out.extend(hull.iter().skip(1));
         } else {
             out.push(b);
-        }
-    }
-    out
-}
-
-/// Points just clear of the top of every corner and circle.
-fn obstacle_tops(problem: &Problem) -> Vec<Vec2> {
-    let mut out = Vec::new();
-    for body in problem.world.geometry().bodies() {
-        let clear = TOP_CLEARANCE * body.offset + TOP_CLEARANCE_M;
-        for k in 0..=body.edges.len() {
-            if let Some(c) = body.corner(k) {
-                out.extend([-clear, 0.0, clear].map(|dx| c.at + Vec2::new(dx, clear)));
-            }
-        }
-        if let Some(c) = body.center {
-            out.extend((0..=16).map(|k| {
-                let angle = std::f64::consts::PI * f64::from(k) / 16.0;
-                c + Vec2::new(angle.cos(), angle.sin()) * (CIRCLE_POLYGON * clear)
-            }));
         }
     }
     out

@@ -103,7 +103,7 @@ impl Stepper {
                         cause: FailureCause::StateNotFinite,
                     });
                     self.rollback.restore(&mut self.cable);
-                    if !self.recover(failure, &mut progress) {
+                    if !self.recover(failure, &mut progress, request.inertia) {
                         *halved += 1;
                         self.halve(failure, &mut progress, request.inertia)?;
                     }
@@ -141,14 +141,19 @@ impl Stepper {
 
     /// Mends what made a step fail, where that can be done without halving it; returns whether it
     /// was.
-    fn recover(&mut self, failure: Failure, progress: &mut Progress) -> bool {
+    fn recover(&mut self, failure: Failure, progress: &mut Progress, inertia: Inertia) -> bool {
         if failure.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, failure.node) {
             renew_input(&mut self.cable);
             return true;
         }
-        // A cable that cannot get out of the way of the robot holds it.
-        let waits =
-            progress.depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && outline_waits(&mut self.cable);
+        // A cable that cannot get out of the way of the robot holds it. One that finds no balance
+        // without inertia may slide on to one first: a robot was stopped by what lay loose.
+        let tuning = &self.cable.mesh.tuning;
+        let tried = match inertia {
+            Inertia::Dynamic => tuning.step.halvings_before_robot_waits,
+            Inertia::QuasiStatic => tuning.equilibrium.halvings_before_relaxation,
+        };
+        let waits = progress.depth >= tried && outline_waits(&mut self.cable);
         if waits {
             (progress.depth, progress.size) = (0, progress.left);
         }

@@ -8,7 +8,7 @@
 //! friction the answer had is what a contact remembers from then on. Corners and posts get their
 //! sliding nodes at once, with the material the answer has there.
 
-use crate::math::{Vec2, larger, perp};
+use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, angle_between, rotate, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::{clear_of_nodes, insert, remove};
@@ -24,17 +24,8 @@ const NEAR: f64 = 1e-3;
 const ON_ROUND: f64 = 1e-3;
 
 /// Part of the greatest tension below which there is none. Smaller: the rounding of an answer is a
-/// tension, and folds are given away; larger: bars that pull are given too much material.
+/// tension, and loose cable is given away; larger: bars that pull are given too much material.
 const SLACK: f64 = 1e-6;
-
-/// Part of its material that the way of a bar in a fold is at most. Larger: what lies loose but
-/// along its way is a fold, and gives nothing to the spans beside it; smaller: folds are given
-/// away.
-const FOLDED_WAY: f64 = 0.5;
-
-/// Part of their material that folds may give to bars beside them. More: folds are drawn out by
-/// what was read amiss elsewhere; less: spans in the air give it, and pull.
-const MOST_OF_FOLDS: f64 = 0.5;
 
 /// An answer's nodes read as a curve.
 pub(in crate::model::fem) struct SolutionCurve<'a>(pub(in crate::model::fem) &'a [Node]);
@@ -231,27 +222,23 @@ pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &Solut
 fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
     let s = cable.mesh.arc_length.clone();
     let greatest = curve.0.iter().map(|n| n.tension_n).fold(0.0, larger);
-    // Material of each bar of the run, and whether it lies in a fold: there is more of it than way,
-    // without tension.
-    let mut bars: Vec<(f64, bool)> = (first..last)
+    // A loose bar has no tension and more material than way: it keeps its material.
+    let mut bars: Vec<BarMaterial> = (first..last)
         .map(|e| {
             let (material, tension) = (s[e + 1] - s[e], curve.tension(0.5 * (s[e] + s[e + 1])));
             let strained = cable.mesh.thermal_stretch * (1.0 + tension / cable.mesh.axial_stiffness);
-            let length = cable.mesh.path(e, &cable.motion.positions).length / strained;
-            let folds = tension <= SLACK * greatest && length < FOLDED_WAY * material;
-            (if folds { material } else { length }, folds)
+            let taut = cable.mesh.path(e, &cable.motion.positions).length / strained;
+            let loose = tension <= SLACK * greatest && taut < material;
+            BarMaterial {
+                length: if loose { material } else { taut },
+                spare: if loose { material - taut } else { 0.0 },
+            }
         })
         .collect();
-    let mut taken = bars.iter().map(|b| b.0).sum::<f64>() - (s[last] - s[first]);
-    let in_folds: f64 = bars.iter().filter(|b| b.1).map(|b| b.0).sum();
-    // Folds have it to spare.
-    if in_folds > 0.0 && taken < MOST_OF_FOLDS * in_folds {
-        bars.iter_mut().filter(|b| b.1).for_each(|b| b.0 *= 1.0 - taken / in_folds);
-        taken = 0.0;
-    }
+    let taken = share_with_loose_bars(&mut bars, s[last] - s[first]);
     let mut lengths = vec![0.0; last + 1 - first];
     for (k, bar) in bars.iter().enumerate() {
-        lengths[k + 1] = lengths[k] + bar.0;
+        lengths[k + 1] = lengths[k] + bar.length;
     }
     let before = (0..first).rev().find(|&k| k == 0 || !cable.meshing.removable(&cable.mesh, k)).unwrap_or(0);
     let give = |k: usize, length: f64| {
@@ -271,6 +258,29 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
             cable.mesh.arc_length[first + k] = from + length;
         }
     }
+}
+
+/// Material of a bar beside obstacles.
+struct BarMaterial {
+    /// Its material, m.
+    length: f64,
+    /// What it has more than it needs to be straight, m.
+    spare: f64,
+}
+
+/// Makes bars as long together as a length (m), as far as loose bars can: they give what they have
+/// to spare and take what is over. Returns what the bars have more than that length, m.
+fn share_with_loose_bars(bars: &mut [BarMaterial], length: f64) -> f64 {
+    let over = bars.iter().map(|b| b.length).sum::<f64>() - length;
+    let spare: f64 = bars.iter().map(|b| b.spare).sum();
+    if !(spare > 0.0) {
+        return over;
+    }
+    let given = smaller(over, spare);
+    for bar in bars {
+        bar.length -= given * bar.spare / spare;
+    }
+    over - given
 }
 
 /// Plan view: every node remembers the sliding with which the floor does what the answer asks

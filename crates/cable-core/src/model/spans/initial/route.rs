@@ -5,6 +5,7 @@ use crate::contact::World;
 use crate::math::{Vec2, bounded};
 use crate::model::spans::section::BoundaryConditions;
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
+use crate::problem::way_over::bodies_in_the_way;
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear
 /// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.
@@ -168,7 +169,7 @@ pub(in crate::model::spans) fn section_route(
 }
 
 /// A way from `a` to `b` where the straight one is blocked: out from under what either is under,
-/// then above everything between.
+/// then above everything that is in the way.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
     if world.is_empty() || free(a, b) {
@@ -177,7 +178,7 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
     let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
-    for body in world.geometry().bodies() {
+    for body in bodies_in_the_way(world, a, b).into_iter().filter_map(|k| world.geometry().bodies().get(k)) {
         let points = body.edges.iter().flat_map(|e| [e.from, e.to]).chain(body.center);
         for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
             top = top.max(q.y + 2.0 * body.offset + clear);

@@ -221,24 +221,6 @@ impl ContactSet {
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
-    /// Sets the friction limit of every contact to a `part` of the way from that `before` to the
-    /// present one (0 where there is no contact); returns the greatest difference of the two, N.
-    pub fn blend_friction(&mut self, before: &[FrictionContact], part: f64) -> f64 {
-        let gone =
-            |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
-        let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.friction_contacts, b)).copied().collect();
-        self.friction_contacts.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
-        self.friction_contacts.sort_by_key(|r| r.touch.node);
-        let mut off = 0.0;
-        for rub in &mut self.friction_contacts {
-            let was = of_node(before, rub.touch.node).find(|b| b.is_of(&rub.touch)).map_or(0.0, |b| b.limit);
-            off = larger(off, (rub.limit - was).abs());
-            rub.limit = if part < 1.0 { was + part * (rub.limit - was) } else { rub.limit };
-        }
-        self.friction_contacts.retain(|r| r.limit != 0.0);
-        off
-    }
-
     /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of
     /// sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {

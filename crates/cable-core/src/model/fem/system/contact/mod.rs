@@ -9,6 +9,7 @@
 //! | `contact_energy.rs` | barrier and friction added to energy, gradient and Hessian |
 //! | `barrier_stiffness.rs` | barrier stiffness that follows the greatest tension between steps |
 //! | `friction_contact.rs` | friction of one contact in a step: frozen normal force, sliding from an anchor |
+//! | `friction_limits.rs` | the limits with which a lagged step finds the normal forces that made them |
 //! | `friction_memory.rs` | how far each contact has slid from its anchor, kept between steps |
 //! | `floor_friction.rs` | plan view: floor friction of cable that slides round a corner or post |
 //! | `self_contact.rs` | contact of the cable with itself: barrier, friction and its memory |
@@ -21,6 +22,7 @@ pub(in crate::model::fem) mod contact_search;
 pub(in crate::model::fem) mod contact_set;
 pub(in crate::model::fem) mod floor_friction;
 pub(in crate::model::fem) mod friction_contact;
+pub(in crate::model::fem) mod friction_limits;
 pub(in crate::model::fem) mod friction_memory;
 pub(in crate::model::fem) mod outline_motion;
 pub(in crate::model::fem) mod self_contact;
