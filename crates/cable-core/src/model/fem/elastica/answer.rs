@@ -1,4 +1,4 @@
-//! A solved elastica is written as an answer, with its error.
+//! This module writes a solved elastica as an answer, with its error estimates.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
@@ -10,31 +10,33 @@ use crate::solution::{
     Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Cost, Node, SupportReaction,
 };
 
-/// Most nodes of a piece in an answer.
+/// Maximum number of nodes of a piece in an answer.
 const MOST_PARTS: f64 = 400.0;
 
-/// Part of its diameter, and m, by which a line between two nodes may leave the cable.
+/// Distance by which the straight line between two nodes may leave the cable: a fraction of its
+/// diameter, and a length in m.
 const FLATNESS: [f64; 2] = [0.01, 5e-4];
 
-/// Part of a piece that lies by which a node stands before its end.
+/// Distance of the last node before the end of a piece in contact, as a fraction of the piece.
 const END_NODE_OFFSET: f64 = 1e-6;
 
-/// Part of an element by which two nodes of an answer are apart at least.
+/// Least distance of two nodes of an answer, as a fraction of an element.
 const NODE_SPACING_FRACTION: f64 = 1e-3;
 
-/// Halvings of an element by which the place of its greatest tension is found: what is left of it
-/// is squared.
+/// Number of halvings of an element that locate its greatest tension: the error of that tension is
+/// the square of the interval that is left.
 const PEAK_HALVINGS: usize = 24;
 
-/// Part of what halving the elements changes that may be left of an error: a fifteenth by the
-/// fourth order, twice that where the last elements beside a contact do not have it yet.
+/// Error that may be left after the elements are halved, as a fraction of the change by halving:
+/// 1/15 by the fourth order, and twice that because the last elements beside a contact may not have
+/// reached this order.
 const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 
-/// Elements of all pieces together that are refined to.
+/// Maximum number of elements of all pieces together after refinement.
 const MOST_ELEMENTS: usize = 4000;
 
-/// Raises the elastica to the whole stiffness and refines it; returns its answer with the error.
-/// None where that is not found.
+/// Raises the bending stiffness of the elastica to that of the cable and refines its elements.
+/// Returns the answer with its error, and None if the continuation fails.
 pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
     if !elastica.stiffen(problem) {
         return None;
@@ -45,9 +47,9 @@ pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: 
     Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
 }
 
-/// Halves the elements until the forces change by less than `tolerance` of the greatest, or until
-/// the next halving is not solved; returns what error is left, in parts of the greatest tension.
-/// None where the first halving is not solved: nothing is known of the error then.
+/// Halves the elements until the forces change by less than the fraction `tolerance` of the
+/// greatest tension, or until the next halving fails. Returns the answer's error relative to the
+/// greatest tension, and None if the first halving fails: then nothing is known of the error.
 pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
     let mut known = None;
     loop {
@@ -113,7 +115,8 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
                 ..Node::default()
             };
             match out.last_mut() {
-                // The greater tension counts where two pieces meet, and the force beyond.
+                // Where two pieces meet, the greater tension and the force of the second piece
+                // count.
                 Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
                     if node.tension_n > l.tension_n {
                         *l = node;
@@ -196,7 +199,7 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         let (k, stretch) = match *joint {
             Joint::PointContact(k) => (k, None),
             Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
-            // The stretch that the cable begins with.
+            // The cable begins with this stretch.
             Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
             _ => continue,
         };
@@ -217,7 +220,7 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         };
         let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
         if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
-            // The point force comes after what lies.
+            // The point force follows the stretch.
             samples = along(elastica, problem, p);
             samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
         } else if let Some(p) = stretch {
@@ -277,7 +280,7 @@ fn pressed_along(elastica: &Elastica, contact: &Contact, piece: &Piece) -> f64 {
     piece.nodes.windows(2).zip(piece.grid.windows(2)).map(of_element).sum()
 }
 
-/// The contact of a cable that lies on one surface from end to end; None where it does not.
+/// The contact of a cable that lies on one surface from end to end; None if it does not.
 fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactReport> {
     let [piece] = elastica.pieces.as_slice() else { return None };
     let contact = elastica.contacts.get(piece.contact?)?;
@@ -305,13 +308,13 @@ fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactRepo
     Some(report)
 }
 
-/// A piece at as many places as it takes to draw it with straight lines.
+/// The states of a piece at as many places as straight lines need to draw it.
 fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
     let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
     let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
     for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
         let (a, b) = (&pair[0], &pair[1]);
-        // A sagitta of length times turn over 8.
+        // The sagitta is the length times the turn over 8.
         let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
         let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
         let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
@@ -320,7 +323,8 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
         places.extend(peak(elastica, piece, [g[0], g[1]]).filter(clear));
         places.sort_by(f64::total_cmp);
         out.extend(places.into_iter().map(|x| elastica.state_in(piece, x)));
-        // A node just before the end tells the spread force from the point force at the end.
+        // A node just before the end separates the distributed force from the point force at the
+        // end.
         if piece.contact.is_some() && g[1] >= 1.0 {
             out.push(elastica.state_in(piece, 1.0 - END_NODE_OFFSET));
         }
@@ -329,8 +333,8 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
     out
 }
 
-/// The place of the greatest tension between two places of a piece, if it is at neither:
-/// between nodes it is read too small by the square of their distance.
+/// The place of the greatest tension between two places of a piece, if it is at neither. The nodes
+/// alone would miss part of it, which grows with the square of their distance.
 fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
         let u = elastica.state_in(piece, x);
@@ -347,7 +351,7 @@ fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Opt
     Some(from)
 }
 
-/// Force of a contact on a piece that lies on it, from place to place.
+/// Samples of the contact force along a piece that lies on its contact.
 fn along(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
     let of = |pair: &[[f64; STATES]]| {
         let (a, b) = (&pair[0], &pair[1]);

@@ -1,12 +1,12 @@
-//! Equilibria with lagged friction: the energy is minimised with frozen normal forces, which are
-//! then renewed, until nothing changes.
+//! This module finds equilibria with lagged friction: it minimises the energy with frozen normal
+//! forces, renews these, and repeats until nothing changes.
 
 use crate::math::{bounded, larger};
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
-/// A solution in which normal forces and stick-slip states were renewed.
+/// A solution whose normal forces and stick-slip states are up to date.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Lagged {
     pub(in crate::model::fem) done: Converged,
@@ -16,7 +16,7 @@ pub(in crate::model::fem) struct Lagged {
 }
 
 impl Lagged {
-    /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
+    /// True if friction lies within the friction cone, at sliding nodes and elsewhere.
     pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
         self.changes.are_lawful()
             && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.stopping.tolerance
@@ -35,7 +35,7 @@ impl SolverMemory {
         self.solve_rounds(cable, unknowns, rounds).map(|found| found.done)
     }
 
-    /// The same; returns the state of friction, too.
+    /// As [`Self::solve_with_lag`]; returns the state of friction, too.
     pub(in crate::model::fem) fn solve_rounds(
         &mut self,
         cable: &mut CableState,
@@ -53,7 +53,7 @@ impl SolverMemory {
             cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
                 let now = cable.contacts.blend_friction(&before, part);
-                // Forces that oscillate come no nearer to each other by steps as long as before.
+                // Forces that oscillate do not converge with whole steps.
                 if round >= tuning.whole_lag_rounds {
                     part = if now < (1.0 - 0.5 * part) * off {
                         bounded(tuning.lag_growth * part, 0.0, 1.0)
@@ -73,7 +73,7 @@ impl SolverMemory {
             } else {
                 spare = spare.saturating_sub(1);
             }
-            // A round that needed no iteration found the normal forces it had used.
+            // A round that needed no iteration confirms the normal forces that it used.
             let found = done.iterations == 0 && off <= cable.input.stopping.tolerance;
             if (found || cable.contacts.friction_contacts.is_empty()) && changes.wrong == 0 && changes.same {
                 return Ok(Lagged { done: total, changes, off: 0.0 });
@@ -82,7 +82,7 @@ impl SolverMemory {
         Ok(Lagged { done: total, changes, off })
     }
 
-    /// The same, until the law holds at every sliding node.
+    /// Solves in such rounds until the law of friction holds at every sliding node.
     pub(in crate::model::fem) fn solve_lawfully(
         &mut self,
         cable: &mut CableState,

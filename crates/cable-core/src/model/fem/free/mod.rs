@@ -1,5 +1,5 @@
-//! These modules find the equilibrium of a cable that touches nothing but its supports; `beam` that
-//! of a stiff one.
+//! These modules find the equilibrium of a cable that touches nothing but its supports; `beam`
+//! handles stiff ones.
 //!
 //! | room | content |
 //! |---|---|
@@ -15,7 +15,7 @@
 //! | `beam/` | equilibrium of a cable with bending stiffness, without contact |
 //! | `dual_weighted_residual.rs` | a posteriori error estimate of forces and shape |
 //! | `straight_route.rs` | straight nodes from support to support before the first answer |
-//! | `auxiliary_weight.rs` | the hint of weight that shapes a weightless slack cable, in the element material |
+//! | `auxiliary_weight.rs` | auxiliary weight that gives a weightless slack cable a shape |
 //! | `results.rs` | nodes and support reactions of a solved network of spans |
 //! | `failure_report.rs` | solver failures as scene errors: which pulley runs out, what does not balance |
 
