@@ -1,5 +1,5 @@
 //! These modules divide a cable into bars: nodes, masses, sliding nodes, and the paths of bars
-//! round what these slide over.
+//! round corners, posts and pulleys.
 //!
 //! | room | content |
 //! |---|---|
@@ -24,7 +24,7 @@ pub(in crate::model::fem) use sliding_node::{
 };
 pub(in crate::model::fem) use tangent_path::{BarEnd, TangentPath, angle_between, rotate};
 
-/// Gap to which a shape is pushed out of obstacles, in reaches of the barrier. Smaller: nodes begin
-/// with a larger barrier force; larger: at 1 they are out of contact and fall back into it. A
-/// choice, tuned on no campaign; the landing gap of predicted contacts is half of the reach.
+/// Gap to which a shape is pushed out of obstacles, as a fraction of the barrier's reach. Smaller:
+/// nodes begin with a larger barrier force; larger: at 1 they are out of contact and fall back into
+/// it. A choice, tuned on no campaign; the landing gap of predicted contacts is half of the reach.
 pub(in crate::model::fem) const PUSHED_OUT_REACHES: f64 = 0.9;
