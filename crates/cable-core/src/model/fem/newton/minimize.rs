@@ -1,13 +1,13 @@
-//! This solver minimises the energy of one implicit step by Newton's method with a banded factor
-//! and steps that cross nothing.
+//! This solver minimises the potential of one implicit step by Newton's method, with a banded
+//! factor and steps that cross no obstacle.
 //!
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
-//! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without
-//! inertia), and, where the cable can touch nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each
-//! bar (see `mass`). Damping of a bar with time constant τ is a second bar of stiffness EA τ a
-//! whose rest length is the one predicted.
+//! ``` with a = α₀/h of the integrator and x̃ predicted by its history
+//! (a = 0 for a step without inertia). If the cable can touch nothing,
+//! each bar adds −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² (see `mass`).
+//! Damping of a bar with time constant τ is a second bar of stiffness
+//! EA τ a whose rest length is the predicted length.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
@@ -23,26 +23,26 @@ use crate::model::fem::system::{
     WORK_MAGNITUDE_FRACTION, WorkBudget, add_barrier, add_floor, add_friction, bar_energy, node_scale,
 };
 
-/// Energies are trusted to this part of the sum of their magnitudes.
+/// Round-off of the energy, relative to the sum of the magnitudes of its terms.
 pub(in crate::model::fem) const ENERGY_NOISE: f64 = 1e-13;
 
-/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
-/// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
-/// be.
+/// Round-off of a gap, relative to the coordinates from which it is computed. Smaller: a cable
+/// squeezed to a gap of 1e-7 m fails for 0.01 N in 1e6; larger: the stated accuracy of contact
+/// forces is worse than the real one.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Rounding of a gap, part of the gap, above which its force is not known: the force of a barrier
-/// goes with 1/gap. Smaller: cables squeezed by 1e6 N fail; larger: steps are taken for balanced by
-/// a force that is rounding alone (1e13 N in one of 600 violent scenes).
+/// Relative round-off of a gap above which its force is unknown: the force of a barrier grows like
+/// 1/gap. Smaller: cables squeezed by 1e6 N fail; larger: steps count as balanced by a force that
+/// is round-off alone (1e13 N in one of 600 violent scenes).
 const MAX_GAP_ROUNDING_FRACTION: f64 = 1e-3;
 
 /// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
-/// cut short, and the next are cut shorter; larger: it outlives its need, and iterations creep.
-/// A choice, tuned on no campaign, as are the five below.
+/// cut, and the next steps are cut more; larger: it is kept too long, and iterations creep. A
+/// choice, tuned on no campaign, as are the five below.
 const LONG_STEP_FRACTION: f64 = 0.5;
 
-/// Fraction of a Newton step below which a shift that was asked for grows. Smaller: iterations are
-/// spent on short steps; larger: steps that would do are made slow.
+/// Fraction of a Newton step below which an existing shift grows. Smaller: iterations are spent on
+/// short steps; larger: good steps are made short.
 const SHORT_STEP_FRACTION: f64 = 0.1;
 
 /// Factor of the shift after a long step. Smaller: the shift is lost at once and has to be found
@@ -53,24 +53,24 @@ const SHIFT_DECREASE: f64 = 0.25;
 /// factorisations until it is; larger: steps shorter than they need to be.
 const SHIFT_INCREASE: f64 = 4.0;
 
-/// Part of the first shift below which it becomes 0. Smaller: a few more iterations with a shift
-/// that has no effect; larger: the last iterations lose the shift while they need it.
+/// Fraction of the first shift below which the shift becomes 0. Smaller: a few more iterations with
+/// a shift that has no effect; larger: the last iterations lose the shift while they need it.
 const MIN_SHIFT_FRACTION: f64 = 1e-3;
 
-/// Growth of the shift over the first one at which no direction is said to lead down. Smaller:
-/// cables fail that would have found one; larger: more assemblies before a failure.
+/// Growth of the shift over the first one at which the search for a descent direction is given up.
+/// Smaller: cables fail that would have found one; larger: more assemblies before a failure.
 const MAX_SHIFT_GROWTH: f64 = 1e12;
 
-/// First shift (N/m, by the scale of a node) from which that growth counts where none was asked
-/// for. Smaller and larger: as of the growth.
+/// Least first shift (N/m, times the scale of a node) from which that growth counts. Smaller and
+/// larger: as for the growth.
 const MIN_FIRST_SHIFT: f64 = 1e-6;
 
-/// Times the shift grows until the matrix is definite: 4^40 covers all of double precision.
-/// Smaller: folded cables fail; larger: nothing.
+/// Maximum number of times that the shift grows until the matrix is definite: 4^40 covers all of
+/// double precision. Smaller: folded cables fail; larger: nothing.
 const MAX_SHIFT_TRIES: usize = 40;
 
-/// Fraction of a step below which it counts as a failed push of a support. Smaller: a support that
-/// is stuck is pushed longer; larger: one is said to be stuck that comes on.
+/// Fraction of a step below which the push of a support counts as failed. Smaller: a stuck support
+/// is pushed longer; larger: a support that still advances counts as stuck.
 const SHORT_PUSH_FRACTION: f64 = 0.5;
 
 /// The unbalanced force at the worst node.
@@ -79,30 +79,29 @@ pub(in crate::model::fem) struct Residual {
     /// N.
     pub(in crate::model::fem) force: f64,
     pub(in crate::model::fem) node: usize,
-    /// In parts of what is accepted there.
+    /// Its magnitude relative to the accepted force there.
     pub(in crate::model::fem) excess: f64,
-    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one
-    /// force left at a node.
+    /// The greatest sum (N) of unbalanced forces along a stretch, relative to the accepted sum.
     drift: f64,
 }
 
-/// Rounding of contact forces: a gap is known to the rounding of coordinates only.
+/// Round-off of contact forces: a gap is known only to the round-off of coordinates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::fem) struct Rounding {
-    /// Rounding of the largest force by its stiffness, N.
+    /// Round-off of the largest force by its stiffness, N.
     pub(in crate::model::fem) noise: f64,
-    /// The force that opening the gap by its rounding relieves, N, where it is more than the
-    /// tolerance; nothing where a gap is lost in its rounding: a step in motion that had come to
-    /// such a gap was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    /// The force (N) that opening the gap by its round-off relieves, if that exceeds the tolerance.
+    /// It is zero if a gap is lost in round-off: a moving step with such a gap counted as balanced
+    /// with 2e11 N of contact and nothing to hold them.
     relief: f64,
-    /// True if a gap is lost in its rounding.
+    /// True if a gap is lost in round-off.
     gap_is_lost: bool,
-    /// Unbalanced force accepted in any case, N.
+    /// Unbalanced force that is always accepted, N.
     tolerance: f64,
 }
 
 impl Rounding {
-    /// Counts a contact with a gap (m), its stiffness (N/m), and the rounding of its gap (m).
+    /// Counts a contact with a gap (m), its stiffness (N/m), and the round-off of its gap (m).
     fn add(&mut self, barrier: &Barrier, gap: f64, stiffness: f64, rounding: f64) {
         let noise = stiffness * rounding;
         self.noise = larger(self.noise, noise);
@@ -110,7 +109,7 @@ impl Rounding {
         if self.gap_is_lost {
             self.relief = 0.0;
         } else if noise > self.tolerance {
-            // The barrier is convex: what is relieved is no more than that.
+            // The barrier is convex, so the relief is at most this.
             self.relief = larger(self.relief, barrier.relief(gap, rounding));
         }
     }
@@ -126,7 +125,7 @@ pub struct SelfContactWork {
     pub(in crate::model::fem) coupling: Coupling,
 }
 
-/// Memory of the minimisation.
+/// Working memory of the minimisation.
 #[derive(Debug)]
 pub struct Workspace {
     pub(in crate::model::fem) system: System,
@@ -136,33 +135,32 @@ pub struct Workspace {
     /// The contacts of the last assembly.
     pub(in crate::model::fem) touches: Vec<ContactPair>,
     pub(in crate::model::fem) magnitude: f64,
-    /// Rounding of contact forces in the last assembly.
+    /// Round-off of contact forces in the last assembly.
     pub(in crate::model::fem) rounding: Rounding,
-    /// Targets of held nodes, or the points where they had to stop, m.
+    /// Targets of held nodes, or the points where they were stopped, m.
     pub(in crate::model::fem) goal: Vec<Vec2>,
     pub(in crate::model::fem) self_contact: SelfContactWork,
     pub(in crate::model::fem) predicted_contacts: PredictedContacts,
     pub(in crate::model::fem) mixed: MixedIterate,
-    /// Iterations times nodes that may still be spent.
+    /// Work that may still be spent, in iterations times nodes.
     pub(in crate::model::fem) work_left: WorkBudget,
 }
 
 /// The start of a line search.
 #[derive(Clone, Copy, Debug)]
 struct Descent {
-    /// Φ, J.
+    /// Value of Φ, J.
     value: f64,
-    /// Slope of the energy along the direction, J.
+    /// Slope of Φ along the direction, J.
     slope: f64,
-    /// Held nodes are still on the way to their targets: that may cost energy.
+    /// True if held nodes are still moving to their targets, which may raise the energy.
     supports_move: bool,
 }
 
 impl Workspace {
-    /// Room for a mesh.
+    /// Allocates the memory for a mesh.
     ///
-    /// # Errors
-    /// `TooLarge` when there is no memory for it.
+    /// # Errors `TooLarge` if there is not enough memory.
     pub fn new(mesh: &Mesh) -> Result<Self, FactorError> {
         let system = System::new(mesh);
         let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
@@ -182,20 +180,20 @@ impl Workspace {
         })
     }
 
-    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds
-    /// it.
+    /// Gradient of the last assembly, N; at a held node it is minus the force of the cable on its
+    /// support.
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         self.system.gradient_at(node)
     }
 
-    /// Number of nodes it has room for.
+    /// Number of nodes for which it has memory.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.trial.positions.len()
     }
 
-    /// Φ with gradient and Hessian at unknowns.
+    /// Assembles Φ with its gradient and Hessian at `unknowns`; returns Φ, J.
     pub(in crate::model::fem) fn assemble(
         &mut self,
         step: &StepContext<'_>,
@@ -240,7 +238,7 @@ impl Workspace {
                 }
                 s.add_gradient(i, (away * k - input.loads.force[i]) * scale);
                 s.hessian.add_diagonal(2 * i, k * scale);
-                // Work is measured from the start of the step, so that its size is that of the
+                // Work is measured from the start of the step, so that round-off is relative to its
                 // change.
                 (0.5 * k * away.norm_squared(), input.loads.force[i].dot(&(x[i] - input.supports.start[i])))
             };
@@ -290,13 +288,13 @@ impl Workspace {
         value
     }
 
-    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many
-    /// times: the tolerance, or where contact forces are known no better their rounding. At rest
-    /// what is left at the nodes of a stretch adds up to a force of its own.
+    /// The unbalanced force (N) with the largest ratio to the accepted force, its node and that
+    /// ratio. Accepted is the tolerance, or the round-off of contact forces if that is larger. At
+    /// rest the unbalanced forces along a stretch are summed as well.
     pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, input: &StepInput) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
-        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
-        // where an outline squeezes the cable.
+        // During relaxation any force may be lost in round-off, because a cable laid in contact
+        // begins like that; so may the force of an outline that squeezes the cable.
         let hidden = if input.inertial.moves && !input.supports.has_moving_outline {
             self.rounding.relief
         } else {
@@ -380,10 +378,9 @@ impl Workspace {
         self.direction.iter().all(|d| d.is_finite())
     }
 
-    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it is where it got to.
+    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it holds the last iterate.
     ///
-    /// # Errors
-    /// With the worst node and its unbalanced force.
+    /// # Errors The worst node and its unbalanced force.
     pub(in crate::model::fem) fn minimise_by_line_search(
         &mut self,
         step: &StepContext<'_>,
@@ -402,8 +399,7 @@ impl Workspace {
                 return failed(FailureCause::EnergyNotFinite);
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
-            // A support that squeezes the cable harder than numbers can tell has come as far as it
-            // can.
+            // A support that squeezes the cable beyond round-off has come as far as it can.
             let squeezed = left && input.supports.may_lag && self.rounding.noise > input.stopping.tolerance;
             if squeezed {
                 self.goal.clone_from(&unknowns.positions);
@@ -426,7 +422,7 @@ impl Workspace {
             }
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
-            // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
+            // Fixing the held nodes overwrites the Hessian only, so the gradient stays valid.
             if !self.solve(mesh, input, &unknowns.positions, shift) {
                 let mut tries = 0;
                 loop {
@@ -469,7 +465,7 @@ impl Workspace {
                     }
                 }
                 None => {
-                    // At the noise of the energy there is nothing left to gain.
+                    // Below the round-off of the energy no step can be judged.
                     if enough {
                         return Ok(done);
                     }
@@ -488,7 +484,8 @@ impl Workspace {
         self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
     }
 
-    /// Finds the direction again if something is in its way; returns how much of it is free.
+    /// Computes the direction again with predicted contacts if obstacles are in its way; returns
+    /// the free fraction of it.
     pub(in crate::model::fem) fn predict_contacts(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
         let free = self.step_bound_from_assembly(step, unknowns, 1.0);
         if free >= step.mesh.tuning.newton.free_step_fraction {
@@ -510,8 +507,8 @@ impl Workspace {
         self.step_bound_from_assembly(step, unknowns, 1.0)
     }
 
-    /// Moves `unknowns` along the direction as far as is free and lowers Φ; None if nothing does.
-    /// Returns Φ and the part of the step taken; the system is assembled there.
+    /// Moves `unknowns` along the direction as far as it is free and lowers Φ. Returns Φ and the
+    /// fraction taken, where the system is assembled; None if no fraction lowers Φ.
     fn search(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns, descent: Descent) -> Option<(f64, f64)> {
         let StepContext { mesh, input, .. } = *step;
         let Descent { value, slope, supports_move } = descent;
@@ -548,8 +545,8 @@ impl Workspace {
     }
 }
 
-/// Adds gradient and Hessian of the inertia that nodes lose by being coupled over the bars (see
-/// `mass`); returns the energy, J.
+/// Adds gradient and Hessian of the inertia that couples nodes over the bars (see `mass`); returns
+/// its energy, J.
 #[inline(never)]
 fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
@@ -572,7 +569,7 @@ fn grow(shift: f64, input: &StepInput) -> f64 {
 mod tests {
     use super::*;
 
-    /// Steps were taken for balanced by 1e13 N of contact at gaps of 1e-16 m.
+    /// Steps counted as balanced by 1e13 N of contact at gaps of 1e-16 m.
     #[test]
     fn issue_016_a_gap_lost_in_its_rounding_hides_no_force() {
         let barrier = Barrier { reach: 1e-4, stiffness: 10.0 };
