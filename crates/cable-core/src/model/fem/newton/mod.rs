@@ -1,5 +1,5 @@
-//! These modules solve one step: the choice of the solver, three Newton iterations, the bounds of
-//! these, and their memory.
+//! These modules solve one step: the choice of the solver, three Newton methods, their step bounds,
+//! and their memory.
 //!
 //! | room | content |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | `active_set.rs` | contacts predicted ahead of a Newton step, as constraints of the step |
 //! | `gap_constraint.rs` | one such constraint: linearised gap, second-order correction, stiff spring |
 //! | `step_bound.rs` | longest collision-free part of a step (continuous collision detection) |
-//! | `solver_memory.rs` | workspaces kept from step to step, no state in them |
+//! | `solver_memory.rs` | workspaces kept from step to step, without any state |
 
 pub(in crate::model::fem) mod active_set;
 pub(in crate::model::fem) mod gap_constraint;
