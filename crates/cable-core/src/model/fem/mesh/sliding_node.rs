@@ -60,7 +60,7 @@ pub struct SlidingNode {
     pub slide_over: SlideOver,
     /// State of its friction.
     pub stick_slip: StickSlip,
-    /// γ.
+    /// The factor γ.
     pub factor: f64,
     /// μφ with the turn φ of the last assembly.
     pub exponent: f64,
