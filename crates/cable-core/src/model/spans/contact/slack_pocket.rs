@@ -79,6 +79,7 @@ pub(in crate::model::spans) struct BearingContact {
     pub tangent: Vec2,
     /// Force on the cable along the normal, N.
     pub press: f64,
+    /// Force on the cable along the tangent, N.
     pub friction: f64,
 }
 
