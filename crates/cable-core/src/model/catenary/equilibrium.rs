@@ -2,7 +2,7 @@
 //! tangent points on wheels.
 
 use super::layout::AnchorLayout;
-use super::slide::{Mode, SlidingProblem, SpanSolutions, WheelArc};
+use super::sliding_problem::{Mode, SlidingProblem, SpanSolutions, WheelArc};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::larger;
 use crate::model::Model;

@@ -2,7 +2,7 @@
 //! evenly along them.
 
 use super::layout::{Anchor, AnchorLayout, angle_of};
-use super::slide::WheelArc;
+use super::sliding_problem::WheelArc;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};

@@ -5,25 +5,25 @@
 //! |---|---|
 //! | `layout.rs` | supports, wheels and loads at an instant |
 //! | `first_guess.rs` | straight ways from wheel to wheel, material spread evenly along them |
-//! | `slide.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
+//! | `sliding_problem.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
 //! | `wheel.rs` | tension and material round a wheel, with weight and friction on the arc |
 //! | `equilibrium.rs` | Newton's method for σ: pulleys that hold or slip, stable balances only |
 //! | `multiple_equilibria.rs` | other equilibria of a slack cable over frictionless pulleys |
-//! | `report.rs` | the answer: nodes dense enough for straight lines, support reactions |
+//! | `results.rs` | the answer: nodes dense enough for straight lines, support reactions |
 //! | `settings.rs` | the tuned constants of the model |
 //!
-//! The only unknowns are the arc lengths of the material at the pulleys (`slide`); everything
-//! between is a convex problem of two forces ([`crate::catenary`]). With friction the equilibrium
-//! depends on how the cable was laid: [`Mechanics::settle`] starts with the material spread evenly
-//! along its way and lets it slip only where friction cannot hold it.
+//! The only unknowns are the arc lengths of the material at the pulleys (`sliding_problem`);
+//! everything between is a convex problem of two forces ([`crate::catenary`]). With friction the
+//! equilibrium depends on how the cable was laid: [`Mechanics::settle`] starts with the material
+//! spread evenly along its way and lets it slip only where friction cannot hold it.
 
 mod equilibrium;
 mod first_guess;
 mod layout;
 mod multiple_equilibria;
-pub(super) mod report;
+pub(super) mod results;
 mod settings;
-mod slide;
+mod sliding_problem;
 mod wheel;
 
 use crate::numerics::{HalvedSteps, MAX_HALVINGS};
@@ -33,9 +33,9 @@ use self::equilibrium::{Equilibrium, Start, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
 use self::layout::{AnchorLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
-use self::report::{report, straight};
+use self::results::{report, straight};
 pub use self::settings::CatenarySettings;
-use self::slide::Mode;
+use self::sliding_problem::Mode;
 use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};

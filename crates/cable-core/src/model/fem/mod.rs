@@ -16,7 +16,7 @@
 //! | `first_shape` | the first shape: along the route, clear of obstacles |
 //! | `transfer` | states and answers of other meshes and models |
 //! | `results`, `mesh_error` | the answer of a state, and its errors |
-//! | `settle`, `warm_start` | the search for an equilibrium: choice of solver and of start |
+//! | `equilibrium_search`, `easier_start` | the search for an equilibrium: choice of solver and of start |
 //! | `stiff_equilibrium` | the equilibrium of a stiff cable in contact, by `elastica` |
 //! | `settings` | the tuned constants |
 //!
@@ -24,8 +24,10 @@
 //! changes.
 
 mod contact_free;
+mod easier_start;
 mod elastica;
 mod equilibrium;
+mod equilibrium_search;
 mod first_shape;
 mod free;
 mod mesh;
@@ -35,7 +37,6 @@ mod obstacle;
 mod remesh;
 mod results;
 mod settings;
-mod settle;
 mod state;
 mod stepper;
 mod stiff_equilibrium;
@@ -44,7 +45,6 @@ pub(crate) mod system;
 mod tests;
 mod time;
 mod transfer;
-mod warm_start;
 
 use std::sync::Arc;
 

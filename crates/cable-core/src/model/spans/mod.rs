@@ -17,7 +17,7 @@
 //! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; other
 //! equilibria; the friction that a sliding cable lacks |
 //! | `continuation` | from one instant to the next, in steps that are halved |
-//! | `reversed` | the cable counted from its other end |
+//! | `reversal` | the cable counted from its other end |
 //! | `slack` | cable that lies without tension |
 //! | `acceptance` | checks of an equilibrium that do not use the solver |
 //! | `results` | the answer |
@@ -36,7 +36,7 @@ mod first_equilibrium;
 mod initial;
 mod newton;
 mod results;
-mod reversed;
+mod reversal;
 mod section;
 mod section_layout;
 mod settings;
@@ -51,7 +51,7 @@ use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
-use crate::model::spans::reversed::Reversal;
+use crate::model::spans::reversal::Reversal;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::tension_gauge::TensionGauge;
@@ -108,7 +108,7 @@ impl SpansModel {
         settings: Settings,
         tuned: Arc<SpansSettings>,
     ) -> Result<Self, SolveError> {
-        let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
+        let from = if reversal::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
         let layout = counted(&problem, from, tuned)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
@@ -271,7 +271,7 @@ impl SpansModel {
         let tensions = |cable_equilibrium: &CableEquilibrium| self.tensions(cable_equilibrium);
         let laid = tensions(cable_equilibrium);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
-            let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
+            let drawn = if turned { reversal::mobilised(drawn) } else { drawn };
             let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.way(), workspace);
             found.or_else(|| self.along_route_mobilised(drawn, start, workspace)).map(|n| tensions(&n))
         });
@@ -372,7 +372,7 @@ impl SpansModel {
 fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<SectionLayout, SolveError> {
     match from {
         CableEnd::Start => SectionLayout::new(problem, from, settings),
-        CableEnd::End => SectionLayout::new(&Arc::new(reversed::problem(problem)), from, settings),
+        CableEnd::End => SectionLayout::new(&Arc::new(reversal::problem(problem)), from, settings),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::auxiliary_weight::remove_auxiliary_weight;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, Point};
 use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode, SegmentCursor, TensionProfile};
 use crate::model::spans::contact::{load_balance, slack_pocket};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, Contact, EndCondition, SolveContext};

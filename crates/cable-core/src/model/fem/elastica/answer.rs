@@ -115,7 +115,7 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
                 ..Node::default()
             };
             match out.last_mut() {
-                // Where two pieces meet, the greater tension and the force of the second piece
+                // At the joint of two pieces, the greater tension and the force of the second piece
                 // count.
                 Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
                     if node.tension_n > l.tension_n {
@@ -194,79 +194,96 @@ fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<Suppo
 }
 
 fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport> {
-    let mut out: Vec<ContactReport> = report_of_whole(elastica, problem).into_iter().collect();
-    for (j, joint) in elastica.joints.iter().enumerate() {
-        let (k, stretch) = match *joint {
-            Joint::PointContact(k) => (k, None),
-            Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
-            // The cable begins with this stretch.
-            Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
-            _ => continue,
-        };
-        let Some(c) = elastica.contacts.get(k) else { continue };
-        let Owner::Obstacle(obstacle) = c.owner else { continue };
-        let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
-            continue;
-        };
-        let mut r = ContactReport {
-            obstacle: problem.world.obstacle_name(obstacle).to_owned(),
-            normal_n: elastica.push(j),
-            tension_before_n: tension(a),
-            tension_after_n: tension(b),
-            begins_m: a[ARC],
-            ends_m: b[ARC],
-            state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
-            ..ContactReport::default()
-        };
-        let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
-        if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
-            // The point force follows the stretch.
-            samples = along(elastica, problem, p);
-            samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
-        } else if let Some(p) = stretch {
-            samples.extend(along(elastica, problem, p));
-            if let (Some(last), Some(next)) = (p.nodes.last(), elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
-            {
-                samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
-            }
-        }
-        let tip = match (*joint, stretch) {
-            (Joint::ContactEnd(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
-            (Joint::ContactBegin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
-            _ => None,
-        };
-        if let Some((which, u)) = tip {
-            let push = elastica.tip_push(which, c, u);
-            let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
-            r.normal_n += push;
-            samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
-        }
-        r.set_samples(samples);
-        let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
-        if let Some(p) = stretch {
-            r.normal_n += pressed_along(elastica, c, p);
-            let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
-            if let (Joint::ContactBegin(_), Some(next)) =
-                (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
-            {
-                r.normal_n += elastica.push(j + 1);
-                r.tension_after_n = tension(next);
-            } else if *joint == Joint::ContactBegin(k) {
-                r.tension_after_n = tension(last);
-            } else {
-                r.tension_before_n = tension(first);
-            }
-            (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
-            r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
-            let u = elastica.state_in(p, 0.5);
-            (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
-        }
-        r.friction_n = c.mobilised * r.normal_n;
-        r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
-        (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
-        out.push(r);
+    let joints = elastica.joints.iter().enumerate();
+    let at_joints = joints.filter_map(|(j, joint)| contact_report(elastica, problem, j, *joint));
+    report_of_whole(elastica, problem).into_iter().chain(at_joints).collect()
+}
+
+/// The contact that begins at joint `j`, or with which the cable begins there; None if there is
+/// none.
+fn contact_report(elastica: &Elastica, problem: &Problem, j: usize, joint: Joint) -> Option<ContactReport> {
+    let (k, stretch) = match joint {
+        Joint::PointContact(k) => (k, None),
+        Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
+        // The cable begins with this stretch.
+        Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
+        _ => return None,
+    };
+    let c = elastica.contacts.get(k)?;
+    let Owner::Obstacle(obstacle) = c.owner else { return None };
+    let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
+        return None;
+    };
+    let mut r = ContactReport {
+        obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+        normal_n: elastica.push(j),
+        tension_before_n: tension(a),
+        tension_after_n: tension(b),
+        begins_m: a[ARC],
+        ends_m: b[ARC],
+        state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+        ..ContactReport::default()
+    };
+    let mut samples = joint_samples(elastica, problem, j, joint, stretch);
+    let tip = match (joint, stretch) {
+        (Joint::ContactEnd(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
+        (Joint::ContactBegin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
+        _ => None,
+    };
+    if let Some((which, u)) = tip {
+        let push = elastica.tip_push(which, c, u);
+        let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
+        r.normal_n += push;
+        samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
     }
-    out
+    r.set_samples(samples);
+    let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
+    if let Some(p) = stretch {
+        r.normal_n += pressed_along(elastica, c, p);
+        let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { return None };
+        if let (Joint::ContactBegin(_), Some(next)) = (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+        {
+            r.normal_n += elastica.push(j + 1);
+            r.tension_after_n = tension(next);
+        } else if joint == Joint::ContactBegin(k) {
+            r.tension_after_n = tension(last);
+        } else {
+            r.tension_before_n = tension(first);
+        }
+        (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
+        r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
+        let u = elastica.state_in(p, 0.5);
+        (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
+    }
+    r.friction_n = c.mobilised * r.normal_n;
+    r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
+    (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
+    Some(r)
+}
+
+/// Samples of the contact force at joint `j`, and along the stretch beside it with its other end.
+fn joint_samples(
+    elastica: &Elastica,
+    problem: &Problem,
+    j: usize,
+    joint: Joint,
+    stretch: Option<&Piece>,
+) -> Vec<ContactSample> {
+    let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
+        return Vec::new();
+    };
+    let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
+    if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
+        // The point force follows the stretch.
+        samples = along(elastica, problem, p);
+        samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
+    } else if let Some(p) = stretch {
+        samples.extend(along(elastica, problem, p));
+        if let (Some(last), Some(next)) = (p.nodes.last(), elastica.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
+            samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
+        }
+    }
+    samples
 }
 
 /// Force along the normal of a contact on the piece that lies on it, N.

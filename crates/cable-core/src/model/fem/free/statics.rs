@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::auxiliary_weight::material_at;
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
 use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
+use crate::model::fem::free::element_material::material_at;
 use crate::model::fem::free::failure_report::solve_error;
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::results;

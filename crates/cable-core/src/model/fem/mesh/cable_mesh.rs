@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
-use crate::model::fem::mesh::mass::Spread;
+use crate::model::fem::mesh::mass_matrix::Spread;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;

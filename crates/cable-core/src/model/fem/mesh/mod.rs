@@ -4,21 +4,21 @@
 //! | room | content |
 //! |---|---|
 //! | `cable_mesh.rs` | `Mesh`: nodes, bars, clamps, sliding nodes, masses and stiffnesses |
-//! | `mass.rs` | mean of lumped and consistent mass matrix, fourth order in the frequencies |
+//! | `mass_matrix.rs` | mean of lumped and consistent mass matrix, fourth order in the frequencies |
 //! | `bar_count.rs` | number of bars, given by the user or by length and surroundings |
 //! | `sliding_node.rs` | node on a corner, post or pulley, its arc length unknown; capstan stick-slip |
 //! | `tangent_path.rs` | path of a bar, straight or tangent to the rounds at its ends; derivatives |
 
 pub(in crate::model::fem) mod bar_count;
 pub(in crate::model::fem) mod cable_mesh;
-pub(in crate::model::fem) mod mass;
+pub(in crate::model::fem) mod mass_matrix;
 pub(in crate::model::fem) mod sliding_node;
 pub(in crate::model::fem) mod tangent_path;
 
 pub(in crate::model::fem) use bar_count::bar_count;
 pub(in crate::model::fem) use cable_mesh::{Clamp, Mesh, bars_between};
 #[cfg(test)]
-pub(in crate::model::fem) use mass::Spread;
+pub(in crate::model::fem) use mass_matrix::Spread;
 pub(in crate::model::fem) use sliding_node::{
     BalancedTensions, SlideOver, SlidingNode, SlidingNodeLoad, StickSlip, mean_factor, round_of,
 };

@@ -7,20 +7,17 @@
 //! step δ would carry past their landing gap g* become constraints, and the step is solved again:
 //! ```text
 //! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point
-//! ``` with the violated constraints as stiff springs, added until
-//! none is violated. r is the change of the gap beyond first order
-//! (`gap_constraint`), evaluated at the last step found: a bar that
-//! slides along a corner also turns, and to first order it would
-//! run into the corner however much its gap opens at first (a second-order
-//! correction: N. Maratos, "Exact penalty function algorithms for
-//! finite dimensional and control optimization problems", thesis,
-//! University of London, 1978; R. Fletcher, "Second order corrections
-//! for non-differentiable optimization", Lecture Notes in Mathematics
-//! 912, 1982). Without it a taut cable that is dragged round a corner
-//! moves a hundredth of its way in each iteration. With r = 0 the
-//! step δ = 0 satisfies every constraint, so the constrained step
-//! goes downhill. With r it may not, and then the step without constraints
-//! is taken as far as it is free.
+//! ```
+//! with the violated constraints as stiff springs, added until none is violated. r is the change of
+//! the gap beyond first order (`gap_constraint`), evaluated at the last step found: a bar that
+//! slides along a corner also turns, and to first order it would run into the corner however much
+//! its gap opens at first (a second-order correction: N. Maratos, "Exact penalty function
+//! algorithms for finite dimensional and control optimization problems", thesis, University of
+//! London, 1978; R. Fletcher, "Second order corrections for non-differentiable optimization",
+//! Lecture Notes in Mathematics 912, 1982). Without it a taut cable that is dragged round a corner
+//! moves a hundredth of its way in each iteration. With r = 0 the step δ = 0 satisfies every
+//! constraint, so the constrained step goes downhill. With r it may not, and then the step without
+//! constraints is taken as far as it is free.
 
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
@@ -185,7 +182,7 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use crate::math::Vec2;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::step_potential::Workspace;
     use crate::model::fem::settings::ContactTuning;
     use crate::model::fem::stepper::Stepper;
     use crate::model::{Inertia, Settings};

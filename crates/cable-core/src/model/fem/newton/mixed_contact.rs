@@ -9,15 +9,15 @@
 //! algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
 //! are limited, and none may become so small that its force is lost in round-off: nothing else
 //! keeps a node from approaching an obstacle by a fraction of its gap in every iteration. A step
-//! that has not converged after a few iterations is left to the minimiser, from the same start.
-//! Where the cable touches itself the minimiser goes first, and the undamped Newton method is tried
-//! if it fails.
+//! that has not converged after a few iterations is left to the minimiser, from the same start. If
+//! the cable touches itself, the minimiser is tried first, and the undamped Newton method if the
+//! minimiser fails.
 
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2, larger};
 use crate::model::fem::mesh::Mesh;
-use crate::model::fem::newton::minimize::{ENERGY_NOISE, Workspace};
+use crate::model::fem::newton::step_potential::{ENERGY_NOISE, Workspace};
 use crate::model::fem::system::{
     ContactSet, Converged, Failure, PlainBar, StepContext, StepInput, Unknowns, bar_energy,
 };

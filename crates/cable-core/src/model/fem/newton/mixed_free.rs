@@ -9,15 +9,14 @@
 //! mᵢ a² (x − x̃) − f + Σ ± Q t = 0,     Q = k (P − L) + c (P − P̂),     k = EA/L,  c = EA τ a/L or that of `loss`
 //! [A + Bᵀ(k + c)B] δx = −(residual with Q of the present lengths),     Q ← Q(P) + (k + c) t·δ(x₂ − x₁)
 //! A = m a² + Q/P (I − t tᵀ)
-//! ``` with the mass m spread over the bars (see `mass`). (Q < 0
-//! is replaced by 0 in the matrix if that is not positive definite
-//! otherwise.) The matrix is that of Newton's method in positions
-//! except for Q (the multiplier, as in augmented Lagrangian methods:
-//! R. Glowinski and P. Le Tallec, *Augmented Lagrangian and operator-splitting
-//! methods in nonlinear mechanics*, SIAM 1989). It is block tridiagonal
-//! and needs no general sparse factorisation. If this method fails
-//! (for a cable that is both slack and stiff, say), the minimiser
-//! of contact steps takes over from the same start.
+//! ```
+//! with the mass m spread over the bars (see `mass_matrix`). (Q < 0 is replaced by 0 in the matrix
+//! if that is not positive definite otherwise.) The matrix is that of Newton's method in positions
+//! except for Q (the multiplier, as in augmented Lagrangian methods: R. Glowinski and P. Le
+//! Tallec, *Augmented Lagrangian and operator-splitting methods in nonlinear mechanics*, SIAM
+//! 1989). It is block tridiagonal and needs no general sparse factorisation. If this method fails
+//! (for a cable that is both slack and stiff, say), the minimiser of contact steps takes over from
+//! the same start.
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
@@ -264,7 +263,7 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::step_potential::Workspace;
     use crate::model::fem::stepper::Stepper;
     use crate::model::fem::system::StepContext;
     use crate::model::{Inertia, Settings};

@@ -1,8 +1,8 @@
 //! The solver's working memory is kept from step to step and holds no state of the cable.
 
 use crate::math::Vec2;
-use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
+use crate::model::fem::newton::step_potential::Workspace;
 use crate::model::fem::system::{Unknowns, WorkBudget};
 
 /// The minimiser's working memory; a copy of the model allocates its own.

@@ -4,7 +4,7 @@
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
 use crate::model::fem::mesh::{BarEnd, TangentPath};
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_potential::Workspace;
 use crate::model::fem::system::{StepContext, StepInput, Unknowns, longest};
 
 impl Workspace {

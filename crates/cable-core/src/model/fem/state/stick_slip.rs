@@ -2,7 +2,7 @@
 //! the law of friction at its solution.
 
 use crate::math::larger;
-use crate::model::fem::mesh::SlidingNode;
+use crate::model::fem::mesh::{SlidingNode, SlidingNodeLoad, StickSlip};
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::Unknowns;
 use crate::model::fem::system::contact::floor_friction;
@@ -74,6 +74,36 @@ impl TriedExponents {
     }
 }
 
+/// The friction that the law requires of a sliding node.
+struct SlipLaw {
+    /// μφ with the turn at the solution.
+    exponent: f64,
+    stick_slip: StickSlip,
+    /// True if the friction of the solution is that of its turn, within the tolerance.
+    lawful: bool,
+}
+
+/// The law of friction at sliding node `k` under a load, after a slide (m) in this step.
+fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNodeLoad, slid: f64) -> SlipLaw {
+    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k]);
+    // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
+    // cable meets the round is a result of the step: when it was tested, friction jumped on and
+    // off, and no state was lawful.)
+    let turn = load.turn_with_inertia(inertia);
+    let momentum_flux = cable.input.inertial.momentum_flux[k];
+    let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
+    let exponent = if presses { node.friction * turn } else { 0.0 };
+    let pulls = load.pull[0].abs() + load.pull[1].abs();
+    let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
+    let stiffness = cable.mesh.axial_stiffness;
+    let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+    let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
+    // The sense of slip follows from the turn, not from a guess of it.
+    let by_turn = SlidingNode { exponent, ..*node };
+    let stick_slip = load.stick_slip(&by_turn, slid, [inertia, momentum_flux, slack], stiffness);
+    SlipLaw { exponent, stick_slip, lawful }
+}
+
 /// Sets the friction of every sliding node by the law of friction at `unknowns`, and returns the
 /// difference from the friction with which they were found. `tried` holds the exponents of earlier
 /// rounds of the step; without it, exponents change by half if one node changes at a time.
@@ -110,24 +140,8 @@ pub(in crate::model::fem) fn update_stick_slip(
             continue;
         }
         let mut next = node;
-        let inertia =
-            cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
-        // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
-        // cable meets the round is a result of the step: when it was tested, friction jumped on and
-        // off, and no state was lawful.)
-        let turn = load.turn_with_inertia(inertia);
-        let momentum_flux = cable.input.inertial.momentum_flux[k];
-        let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
-        let exponent = if presses { node.friction * turn } else { 0.0 };
-        let pulls = load.pull[0].abs() + load.pull[1].abs();
-        let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
-        let stiffness = cable.mesh.axial_stiffness;
-        let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
-        let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
+        let SlipLaw { exponent, stick_slip, lawful } = slip_law(cable, k, &node, &load, unknowns.slides[k]);
         changes.lawful &= lawful;
-        // The sense of slip follows from the turn, not from a guess of it.
-        let by_turn = SlidingNode { exponent, ..node };
-        let stick_slip = load.stick_slip(&by_turn, unknowns.slides[k], [inertia, momentum_flux, slack], stiffness);
         next.exponent = match &mut tried {
             Some(tried) if !lawful => tried.next(k, node.exponent, exponent),
             None if one => 0.5 * (node.exponent + exponent),
@@ -139,7 +153,7 @@ pub(in crate::model::fem) fn update_stick_slip(
                 next.stick_slip = stick_slip;
             }
         }
-        next.factor = load.factor(next.stick_slip, next.exponent, stiffness);
+        next.factor = load.factor(next.stick_slip, next.exponent, cable.mesh.axial_stiffness);
         let floor = floor_friction::reaches(&cable.mesh, k, &unknowns.positions, Some(&unknowns.slides));
         next.floor_factor = floor_friction::factor(floor, load.ratio(next.stick_slip, next.exponent));
         if next.sticks() && !node.sticks() {

@@ -32,7 +32,7 @@
 //! | `stretch_tensions.rs`, `support_span.rs` | spans over kinks, and to a support |
 //! | `longest_in_tension.rs` | the length from which a cable cannot rest in tension |
 //! | `pay_out.rs`, `heap.rs` | the material of each part, and the surplus |
-//! | `loose_forces.rs`, `report.rs` | forces on ends and obstacles; the answer |
+//! | `loose_forces.rs`, `results.rs` | forces on ends and obstacles; the answer |
 
 pub(in crate::model::spans) mod drained_route;
 mod heap;
@@ -40,7 +40,7 @@ mod longest_in_tension;
 mod loose_forces;
 mod over_crest;
 mod pay_out;
-mod report;
+mod results;
 mod slack_parts;
 mod stretch_tensions;
 mod support_span;

@@ -8,10 +8,10 @@
 //! parts in s and t the difference, for any tension and material law, becomes
 //! ```text
 //! h²/24 { ∫ ρ |ẋ'|² ds + [ρ (ẋ·ẋ' + g·x')] }
-//! ``` with the bracket taken over each stretch of even bars, because
-//! the cable may have an angle at its ends. The action is stationary
-//! at the motion, so correcting the action to this order corrects
-//! frequencies and support forces as well:
+//! ```
+//! with the bracket taken over each stretch of even bars, because the cable may have an angle at
+//! its ends. The action is stationary at the motion, so correcting the action to this order
+//! corrects frequencies and support forces as well:
 //! - the integral by the mean of the lumped and the consistent mass of every bar (a string's [1 10
 //!   1]/12: G. L. Goudreau, R. L. Taylor, "Evaluation of numerical integration methods in
 //!   elastodynamics", Computer Methods in Applied Mechanics and Engineering 2, 1973);

@@ -3,7 +3,7 @@
 
 use super::equilibrium::{Equilibrium, required_friction};
 use super::layout::AnchorLayout;
-use super::slide::SlidingProblem;
+use super::sliding_problem::SlidingProblem;
 use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
@@ -63,7 +63,8 @@ impl<'a> Nodes<'a> {
     pub fn push(&mut self, p: Point) {
         let tension = p.force.norm();
         let strain = tension / self.problem.axial_stiffness;
-        // Where a span meets a wheel each has its own rounding of the same point.
+        // At the point where a span meets a wheel, both have rounded the same arc length
+        // differently.
         let before = self.out.last().map_or(p.arc_length, |n| n.arc_length_m);
         let node = Node {
             arc_length_m: if p.arc_length < before { before } else { p.arc_length },

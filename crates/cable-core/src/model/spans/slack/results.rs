@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, Point};
 use crate::model::spans::boundary::{Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;

@@ -4,10 +4,10 @@
 use crate::error::SolveError;
 use crate::model::StepReport;
 use crate::model::fem::contact_free::touches_nothing;
+use crate::model::fem::easier_start::SpansStart;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::mesh_error::Refinement;
 use crate::model::fem::system::WorkBudget;
-use crate::model::fem::warm_start::SpansStart;
 use crate::model::fem::{FemModel, Part};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
 use crate::solution::{Cost, Warning, WarningCause};
