@@ -3,14 +3,13 @@
 //! A hand at h holds a support at x by a linear spring with a damper beside it,
 //! ```text
 //! F = k (h − x) + c (ḣ − ẋ)
-//! ``` so the support is where this force and the cable's pull balance:
-//! a hand beyond the cable's length pulls harder and harder but does
-//! not get the support there. The support is a node of the cable
-//! like any other. With both velocities those of the step, the changes
-//! over its time, F = κ (p − x) is a spring again, of stiffness κ
-//! = k + c/Δt to a place p, so it is one more term of the energy
-//! that a step minimises, convex, and needs no exchange of forces
-//! and no limit of the step (`Hand::pull`).
+//! ```
+//! so the support is where this force and the cable's pull balance: a hand beyond the cable's
+//! length pulls harder and harder but does not get the support there. The support is a node of the
+//! cable like any other. With both velocities those of the step, the changes over its time, F = κ
+//! (p − x) is a spring again, of stiffness κ = k + c/Δt to a place p, so it is one more term of the
+//! energy that a step minimises, convex, and needs no exchange of forces and no limit of the step
+//! (`Hand::pull`).
 
 use super::smoothed_target::SmoothedTarget;
 use crate::math::{Vec2, larger};

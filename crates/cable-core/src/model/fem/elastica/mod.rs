@@ -7,18 +7,18 @@
 //! piece obeys
 //! ```text
 //! x' = α(1 + ε) t,     θ' = αM/EI,     M' = −α(1 + ε) F·n,     F' = −b
-//! ``` A piece that lies on a round of radius ρ, passed in the sense
-//! σ (+1 anticlockwise, outward normal N = −σn), or on a line (1/ρ = 0), obeys
+//! ```
+//! A piece that lies on a round of radius ρ, passed in the sense σ (+1 anticlockwise, outward
+//! normal N = −σn), or on a line (1/ρ = 0), obeys
 //! ```text
 //! θ' = α(1 + ε)σ/ρ,    M = EI (1 + ε)σ/ρ,    F = T t,    p = σ(Tθ' + b·n) ≥ 0,    T' = −b·t − μp
-//! ``` with μ the mobilised friction, positive where it pulls the
-//! cable along growing s. Where a free piece meets a piece in contact,
-//! and at a point contact, a point force P(N + μt) acts; x, θ and
-//! M are continuous. A contact is a point while the cable there is
-//! less bent than its round, σM/EI ≤ 1/ρ, and a stretch where the
-//! cable would be bent more: an active set decides. Without weight
-//! and friction T + M²/2EI is constant along the cable, so T falls
-//! by EI/2ρ² where the cable lies on a round.
+//! ```
+//! with μ the mobilised friction, positive where it pulls the cable along growing s. Where a free
+//! piece meets a piece in contact, and at a point contact, a point force P(N + μt) acts; x, θ and M
+//! are continuous. A contact is a point while the cable there is less bent than its round, σM/EI ≤
+//! 1/ρ, and a stretch where the cable would be bent more: an active set decides. Without weight and
+//! friction T + M²/2EI is constant along the cable, so T falls by EI/2ρ² where the cable lies on a
+//! round.
 //!
 //! Each piece is solved by Lobatto collocation of fourth order (U. Ascher, R. Mattheij, R.
 //! Russell, *Numerical Solution of Boundary Value Problems for Ordinary Differential Equations*,

@@ -5,13 +5,12 @@
 //! their balance:
 //! ```text
 //! δF₀ = −C⁻¹ Σδ(F₀ + δF₀),     C = ∂reach/∂F₀
-//! ``` (R. Becker and R. Rannacher, *An optimal control approach
-//! to a posteriori error estimation in finite element methods*, Acta
-//! Numerica 2001: the residual weighted by the inverse Hessian, here
-//! 2×2.) δ is evaluated at the corrected force, in a few rounds.
-//! One round is enough for a taut span. In a slack one, whose horizontal
-//! force is a small fraction of its tension, the remainder after
-//! one round is not small compared with that force.
+//! ```
+//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in
+//! finite element methods*, Acta Numerica 2001: the residual weighted by the inverse Hessian, here
+//! 2×2.) δ is evaluated at the corrected force, in a few rounds. One round is enough for a taut
+//! span. In a slack one, whose horizontal force is a small fraction of its tension, the remainder
+//! after one round is not small compared with that force.
 //!
 //! The estimate covers the error of the whole force vector beside every station, relative to the
 //! greatest tension: a slack span may have its greatest tension right to many digits and its

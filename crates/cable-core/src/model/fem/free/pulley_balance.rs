@@ -6,12 +6,11 @@
 //! frictionless   ρ = 0
 //! stick          s = s_old,      −μφ ≤ ρ ≤ μφ
 //! slip           ρ = −μφ where s grew (the cable went to the side before), ρ = +μφ where it shrank
-//! ``` ρ is the slope of the energy in `s` up to a positive factor,
-//! so an equilibrium is stable where ∂ρ/∂s is positive: all pivots
-//! of the (tridiagonal) Newton matrix must be positive. If Newton's
-//! method stalls or ends at an unstable equilibrium, each pulley
-//! in turn is bisected for a change of ρ from − to +, which occurs
-//! only at stable ones. Wheels with a radius are in `wheel_arcs`.
+//! ```
+//! ρ is the slope of the energy in `s` up to a positive factor, so an equilibrium is stable where
+//! ∂ρ/∂s is positive: all pivots of the (tridiagonal) Newton matrix must be positive. If Newton's
+//! method stalls or ends at an unstable equilibrium, each pulley in turn is bisected for a change
+//! of ρ from − to +, which occurs only at stable ones. Wheels with a radius are in `wheel_arcs`.
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};

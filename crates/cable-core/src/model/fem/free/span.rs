@@ -5,9 +5,10 @@
 //! minimise a convex function (the dual of the potential energy):
 //! ```text
 //! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
-//! ``` Every minimum is an equilibrium in tension: compression and
-//! unstable states cannot occur. Newton's method with a line search
-//! finds it; where D itself has no digits left, a step is accepted by the gradient.
+//! ```
+//! Every minimum is an equilibrium in tension: compression and unstable states cannot occur.
+//! Newton's method with a line search finds it; where D itself has no digits left, a step is
+//! accepted by the gradient.
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;

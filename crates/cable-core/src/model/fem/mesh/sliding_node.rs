@@ -8,16 +8,14 @@
 //! is
 //! ```text
 //! stick   e^{−μφ} ≤ T₂/T₁ ≤ e^{μφ}            slide > 0 (s grows)   T₁ = T₂ e^{μφ}        slide < 0   T₂ = T₁ e^{μφ}
-//! ``` Slip is expressed through the energy: if the energy of everything
-//! after the node is multiplied by γ = e^{±μφ}, the slope of the
-//! sum by s is −T₁ + γT₂. The equations of the nodes beyond are only
-//! scaled by γ, and the matrix stays symmetric. A cable of ρ per
-//! metre that runs at the speed w turns by a momentum flux ρw², and
-//! its normal force is smaller by that: the law uses both tensions
-//! less ρw² (as for belts: J. E. Shigley, C. R. Mischke, "Mechanical
-//! Engineering Design", McGraw-Hill, 1989, chapter on flexible elements).
-//! The energy balances Θ = T + T²/2EA, the slope of a bar's energy
-//! by its own length, instead of T, so γ is corrected by Θ(γT)/Θ(T)/γ.
+//! ```
+//! Slip is expressed through the energy: if the energy of everything after the node is multiplied
+//! by γ = e^{±μφ}, the slope of the sum by s is −T₁ + γT₂. The equations of the nodes beyond are
+//! only scaled by γ, and the matrix stays symmetric. A cable of ρ per metre that runs at the speed
+//! w turns by a momentum flux ρw², and its normal force is smaller by that: the law uses both
+//! tensions less ρw² (as for belts: J. E. Shigley, C. R. Mischke, "Mechanical Engineering Design",
+//! McGraw-Hill, 1989, chapter on flexible elements). The energy balances Θ = T + T²/2EA, the slope
+//! of a bar's energy by its own length, instead of T, so γ is corrected by Θ(γT)/Θ(T)/γ.
 
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;

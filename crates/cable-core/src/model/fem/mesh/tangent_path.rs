@@ -7,9 +7,9 @@
 //! ```text
 //! D = l t + ρ perp(t),   l = √(D² − ρ²),   angle(t) = angle(D) − atan2(ρ, l)
 //! P = r₁β₁ + l + r₂β₂,   β₁ = σ₁(angle(n₁) − α₁),   β₂ = σ₂(α₂ − angle(n₂))
-//! ``` where α is the angle of a round's mark. For any rounds ∂P/∂(end
-//! point) = ∓t and ∂²P/∂(end point)² = (I − t tᵀ)/l: the arc pays
-//! out what the straight part takes up.
+//! ```
+//! where α is the angle of a round's mark. For any rounds ∂P/∂(end point) = ∓t and ∂²P/∂(end
+//! point)² = (I − t tᵀ)/l: the arc pays out what the straight part takes up.
 
 use crate::math::{Vec2, cross, perp};
 

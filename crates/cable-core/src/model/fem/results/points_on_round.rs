@@ -237,8 +237,8 @@ impl RoundTension {
         let first = round.normal(-before);
         let load =
             [perp(first) * sense, first].map(|v| cable.input.loads.body.dot(&v) * radius / cable.mesh.thermal_stretch);
-        // Where the weight of a bar hangs over the round, the cable meets or leaves it at an angle
-        // to its tangent and presses at that point.
+        // If the weight of a bar hangs over the round, the cable meets or leaves the round at an
+        // angle to its tangent and presses at that point.
         let tangents = [-before, after].map(|turned| perp(round.normal(turned)) * sense);
         let kinks = [angle_between(forces[0], tangents[0]), angle_between(tangents[1], forces[1])];
         let kinks = [0, 1].map(|j| if round.shared[j] { 0.0 } else { larger(sense * kinks[j], 0.0) });

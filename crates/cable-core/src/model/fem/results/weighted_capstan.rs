@@ -27,8 +27,8 @@ const HALVINGS: usize = 60;
 const PRESSED_PARTS: u32 = 8;
 /// Force away from the round that counts as round-off, as a fraction of the greater tension.
 const LIFT_ROUNDING: f64 = 1e-9;
-/// Greatest error of the tension at the end of the turn, as a fraction of the greater tension.
-/// Where weight alone would use up the tension, it depends so steeply on the coefficient that no
+/// Greatest error of the tension at the end of the turn, as a fraction of the greater tension. If
+/// weight alone would use up the tension, the tension depends so steeply on the coefficient that no
 /// f64 gives the end value.
 const END_TOLERANCE: f64 = 1e-6;
 

@@ -5,13 +5,12 @@
 //! ```text
 //! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
-//! ``` At a material node P depends on the position of the node;
-//! at a sliding node L depends on its slide. The weight of the bar
-//! acts at the centroid c of its path (`bar_weight.rs`), so a change
-//! δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node
-//! it came through. Viscous damping with time constant τ is a second
-//! bar of stiffness EA τ a whose strain is measured from the predicted
-//! one; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
+//! ```
+//! At a material node P depends on the position of the node; at a sliding node L depends on its
+//! slide. The weight of the bar acts at the centroid c of its path (`bar_weight.rs`), so a change
+//! δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through. Viscous
+//! damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from
+//! the predicted one; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};

@@ -7,11 +7,11 @@
 //! ```text
 //! dC = ½ l dx + (u·dx) m,   dP = u·dx,   c = C/P,
 //! ∂(b·c)/∂x = ½ (l/P) b + u b·(m − c)/P
-//! ``` So the end carries half the weight of the straight part, and
-//! the weight of the part on the round acts there. The tension in
-//! the middle of the straight part is T − L b·(m − c)/P, with T the
-//! tension of the bar as a whole. A bar without a round has c = m
-//! and l = P: half of its weight acts at each end.
+//! ```
+//! So the end carries half the weight of the straight part, and the weight of the part on the round
+//! acts there. The tension in the middle of the straight part is T − L b·(m − c)/P, with T the
+//! tension of the bar as a whole. A bar without a round has c = m and l = P: half of its weight
+//! acts at each end.
 //!
 //! If that tension would be negative, the bar is slack, and its material is not spread evenly: only
 //! so much of the weight on the round acts there that nothing is compressed, and half of the rest

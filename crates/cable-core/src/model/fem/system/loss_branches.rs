@@ -8,16 +8,18 @@
 //! efficient and optimally inexpensive viscoelastic technique", Geophysics 60(1), 1995):
 //! ```text
 //! T = EA ε + Σ q,   q̇ = −q/θ + EA y ε̇,   M(ω) = EA (1 + Σ y iωθ/(1 + iωθ)),   loss factor = Im M/Re M = 2ζ
-//! ``` EA is the relaxed stiffness, that of slow motion. By causality
-//! a material with constant loss factor stiffens with frequency,
-//! by (4ζ/π) ln(ω/ω₀) above the lowest frequency ω₀: at ζ = 0.02 by 6 % a decade.
+//! ```
+//! EA is the relaxed stiffness, that of slow motion. By causality a material with constant loss
+//! factor stiffens with frequency, by (4ζ/π) ln(ω/ω₀) above the lowest frequency ω₀: at ζ = 0.02 by
+//! 6 % a decade.
 //!
 //! If the strain is linear in time within a step, the branches have an exact solution, with d =
 //! e^{−h/θ} and g = (1 − d) θ/h:
 //! ```text
 //! q = d q₀ + EA y g (ε − ε₀),   T = EA ε + C (ε − ε₀) + Q,   C = EA Σ y g,   Q = Σ d q₀
-//! ``` This is a spring of stiffness C whose strain is measured from
-//! ε₀ − Q/C, the same form as the viscous damping of a step.
+//! ```
+//! This is a spring of stiffness C whose strain is measured from ε₀ − Q/C, the same form as the
+//! viscous damping of a step.
 //!
 //! A bar of a flexible cable that goes slack buckles between its nodes: its material keeps the
 //! strain 0, and its branches relax. A bar that was slack at the start of a step has the viscous

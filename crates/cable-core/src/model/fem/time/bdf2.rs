@@ -4,11 +4,11 @@
 //! 1996): with α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
 //! ```text
 //! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
-//! ``` If the cable can touch nothing, even and smooth steps contain
-//! a fraction β of the next order, BDF3: α₀ = (9 + 2β)/6 and x̂ =
-//! ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost. BDF2
-//! makes a vibration ω slower by a fraction (ωh)²/3, and it loses
-//! a fraction ω⁴h³/4 of its amplitude a second; the blend has 1 − β and 1 − 2β of these errors.
+//! ```
+//! If the cable can touch nothing, even and smooth steps contain a fraction β of the next order,
+//! BDF3: α₀ = (9 + 2β)/6 and x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost. BDF2
+//! makes a vibration ω slower by a fraction (ωh)²/3, and it loses a fraction ω⁴h³/4 of its
+//! amplitude a second; the blend has 1 − β and 1 − 2β of these errors.
 
 use crate::math::Vec2;
 use crate::model::fem::state::NodalMotion;

@@ -3,9 +3,9 @@
 //! With p the momentum and F a force at the end of a step, its history gives (see `bdf2`)
 //! ```text
 //! Δp = F/a + (past − older) Δp₋ − older Δp₌
-//! ``` so the impulse of each kind of force is filtered like their
-//! sum. The force of a round on the cable that runs over it turns
-//! the cable: it is the sum of the pulls of the bars beside it and
+//! ```
+//! so the impulse of each kind of force is filtered like their sum. The force of a round on the
+//! cable that runs over it turns the cable: it is the sum of the pulls of the bars beside it and
 //! the change of momentum of the material on it and moving over it.
 
 use crate::contact::friction;

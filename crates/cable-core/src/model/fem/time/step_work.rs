@@ -5,14 +5,15 @@
 //! displacements Δx of the nodes and the slides of sliding nodes, that is
 //! ```text
 //! I − C = Σ F₁·Δx,     I = M a (v₁ − v̂)·Δx,     C = −∂U/∂x(x₁)·Δx
-//! ``` with U the energy of height, stretch and bending, and the
-//! sum over all other forces. The work of a force that changes within
-//! the step is its mean force times the displacement. So with K the
+//! ```
+//! with U the energy of height, stretch and bending, and the sum over all other forces. The work of
+//! a force that changes within the step is its mean force times the displacement. So with K the
 //! kinetic energy the integrator gives the cable the energy
 //! ```text
 //! numerical = ΔK + ΔU − (I − C) + Σ (F₁·Δx − work)
-//! ``` which is computed without using the balance of energies: the
-//! account closes if gains and works agree.
+//! ```
+//! which is computed without using the balance of energies: the account closes if gains and works
+//! agree.
 
 use crate::contact::friction;
 use crate::math::Vec2;

@@ -7,7 +7,8 @@
 //! and the floor's friction on the round spread evenly over its turn φ. Then
 //! ```text
 //! T₁ = A + f₀,   T₂ = B − f₂,   −dT/dφ = mT + f/φ,   A = B e^{mφ} + f (e^{mφ} − 1)/mφ,   |m| ≤ μ
-//! ``` A slipping cable has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
+//! ```
+//! A slipping cable has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, mean_factor};
