@@ -1,14 +1,14 @@
-//! For every scene of the catalogue `fem`, `mass-spring` and `spans` are compared side by side:
-//! error against a reference, and cost.
+//! The models `fem`, `mass-spring` and `spans` are compared on every scene of the catalogue: their
+//! error against a reference, and their cost.
 //!
-//! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a
-//! support is drawn, which place of the many it comes to at the end of that motion, slowly: there
-//! everything slides, and one place is right.
+//! In a scene without friction or without motion, the models find the equilibrium. In a scene with
+//! friction and a moving support, many equilibria exist, so the models follow the motion slowly and
+//! are compared at its end: there the whole cable slides, and one equilibrium is right.
 //!
-//! The reference is the elastic catenary where it can answer, else `spans` (no discretisation error
-//! either), else the finest `fem`, uncertain by what half as many elements change. The error is the
-//! largest of a support's force and of the largest tension, over the largest tension. All models
-//! are laid the same at first.
+//! The reference is the elastic catenary where it has an answer, else `spans` (which has no
+//! discretisation error either), else the finest `fem`, whose uncertainty is the change on half as
+//! many elements. The error is the largest error of a support's force or of the largest tension,
+//! relative to the largest tension. All models start from the same route.
 
 use std::time::Instant;
 
@@ -18,26 +18,27 @@ use cable_core::{Model, Scene, Simulation, Solution, SolveError};
 use crate::fresh;
 use crate::machine::{Clock, Spent};
 
-/// A cost is the least of this many solves, or of as many as fit the time below, at least one.
+/// A cost is the least time of this many solves, or of as many as fit into the time below, at least
+/// one.
 const REPEATS: usize = 15;
 const LONGEST_S: f64 = 1.5;
 
 /// Steps of a slow motion.
 const STEPS: u32 = 60;
-/// A motion that lasts longer (s) is not followed: the question is then where it rests.
+/// A motion that lasts longer than this (s) is not followed: the equilibrium is compared instead.
 const LONGEST_MOTION_S: f64 = 10.0;
 
 /// The question about a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
-    /// Where it rests.
+    /// The equilibrium.
     Rest,
-    /// Where it is when its motion ends, after so many seconds.
+    /// The state at the end of the motion, after this time, s.
     EndOfMotion(f64),
 }
 
 impl Question {
-    /// The one that has one answer.
+    /// The question that has a unique answer in a scene.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let ends = scene.cables.iter().flat_map(|c| &c.supports).filter_map(|s| s.motion.as_ref()?.times_s.last());
@@ -46,7 +47,7 @@ impl Question {
         if rubs && last > 0.0 && last <= LONGEST_MOTION_S { Self::EndOfMotion(last) } else { Self::Rest }
     }
 
-    /// Returns how it reads beside the name of a scene.
+    /// Returns the words that are printed beside the name of a scene.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -64,7 +65,8 @@ impl Question {
         Ok(simulation.solution())
     }
 
-    /// The answer of a model with `segments` elements; None, with a note, where there is none.
+    /// The answer of a model with `segments` elements; `None`, with a printed note, if there is
+    /// none.
     fn ask(self, scene: &Scene, model: Model, segments: Option<usize>) -> Option<Solution> {
         let mut simulation = fresh(scene, model, segments)?;
         match self.answer(&mut simulation) {
@@ -92,29 +94,30 @@ pub struct Reference {
 pub struct Row {
     /// Id of the scene.
     pub scene: &'static str,
-    /// Who answered.
+    /// The model.
     pub model: Model,
-    /// With how many elements; None: it has none.
+    /// Number of elements; `None` if the model has none.
     pub segments: Option<usize>,
     /// Least time of several solves, s.
     pub cost_s: f64,
     /// Relative error.
     pub error: f64,
-    /// Greatest distance of a node from where its material point is, over the cable's length.
+    /// Greatest distance of a node from the reference position of its material point, over the
+    /// cable's length.
     pub shape_error: f64,
-    /// Relative error it states itself, if it does.
+    /// Relative error that the model itself estimates, if it does.
     pub said: Option<f64>,
 }
 
-/// Returns whether elements of so fine a mesh are shorter than a cable that lies in itself is
-/// thick: each then touches its neighbours' neighbours, and an answer takes minutes.
+/// Returns whether the elements of a mesh are shorter than the diameter of a cable that touches
+/// itself: then each element touches its neighbours' neighbours, and an answer takes minutes.
 #[must_use]
 pub fn lies_in_itself(scene: &Scene, segments: usize) -> bool {
     scene.cables.iter().any(|c| c.self_contact && c.length_m < c.diameter_m * segments as f64)
 }
 
 impl Reference {
-    /// The best answer of a scene there is, with `finest` elements where there is no closed form.
+    /// The best available answer of a scene, on `finest` elements if there is no closed form.
     #[must_use]
     pub fn of(scene: &Scene, finest: usize) -> Option<Self> {
         let flexible = scene.cables.iter().all(|c| c.bending_stiffness_n_m2 == 0.0);
@@ -135,8 +138,8 @@ impl Reference {
         Some(this)
     }
 
-    /// Greatest distance of a node of an answer from where the reference has that point of the
-    /// material, over the cable's length.
+    /// Greatest distance of a node of an answer from the position of its material point in the
+    /// reference, over the cable's length.
     #[must_use]
     pub fn shape_error(&self, answer: &Solution) -> f64 {
         let mut worst = 0.0;
@@ -166,8 +169,8 @@ impl Reference {
     }
 }
 
-/// Returns where nodes have a point of the material, m: on the cubic with the direction of the
-/// tension at both nodes, or on a straight line where there is none.
+/// Returns the position of a material point between nodes, m: on the cubic that has the direction
+/// of the tension at both nodes, or on a straight line if there is no tension.
 fn position(nodes: &[Node], arc_length_m: f64) -> Option<[f64; 2]> {
     let next = nodes.partition_point(|n| n.arc_length_m < arc_length_m).clamp(1, nodes.len().checked_sub(1)?);
     let [a, b] = [nodes.get(next - 1)?, nodes.get(next)?];
@@ -185,7 +188,7 @@ fn position(nodes: &[Node], arc_length_m: f64) -> Option<[f64; 2]> {
     Some([along(0), along(1)])
 }
 
-/// Error and cost of a model; None, with a note, where it does not answer.
+/// Error and cost of a model; `None`, with a printed note, if it has no answer.
 #[must_use]
 pub fn measure(
     id: &'static str,
@@ -196,7 +199,7 @@ pub fn measure(
     repeated((id, scene), reference, (model, segments), REPEATS)
 }
 
-/// As [`measure`], of one solve.
+/// Does the same as [`measure`] with a single solve.
 #[must_use]
 pub fn once(
     id: &'static str,

@@ -1,5 +1,5 @@
-//! Convergence is measured on these motions; each has one figure to be read off, and its exact
-//! value.
+//! Convergence is measured on these motions. Each has one figure that is measured, and most have
+//! its exact value.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
 
 use crate::machine::{Clock, Spent};
 
-/// A motion, and what is read off it.
+/// A motion and the figure that is measured in it.
 #[derive(Clone, Copy)]
 pub struct Motion {
     /// Short name, as in files.
     pub id: &'static str,
-    /// The event, and the figure that is read.
+    /// The event, and the figure that is measured.
     pub about: &'static str,
-    /// Elements of the ladder, coarse to fine.
+    /// Numbers of elements of the series of meshes, from coarse to fine.
     pub meshes: &'static [usize],
-    /// Follows it by a model with so many elements and steps of so many seconds.
+    /// Runs the motion and returns the figure.
     run: fn(&mut Run) -> Result<Vec2, SolveError>,
     scene: fn(usize) -> Scene,
-    /// The figure as it should be; None: that of the finest run of `fem`.
+    /// The exact figure; `None` if that of the finest run of `fem` takes its place.
     pub exact: Option<fn() -> Vec2>,
 }
 
@@ -32,21 +32,21 @@ pub struct Motion {
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
-    /// Time of the motion alone.
+    /// The computing time of the motion alone.
     pub spent: Spent,
 }
 
-/// A simulation about to begin, and its step.
+/// A simulation at its start, and its time step.
 struct Run {
     sim: Simulation,
     step_s: f64,
 }
 
-/// Lets no vibration be so fast that a model would take shorter steps than it is told.
+/// A tolerance so large that no model takes shorter steps than it is told.
 const ANY_TOLERANCE: f64 = 1e9;
 
 impl Motion {
-    /// Follows it by a model.
+    /// Runs the motion by a model with this number of elements and this time step, s.
     ///
     /// # Errors
     /// The model cannot follow it.
@@ -55,7 +55,7 @@ impl Motion {
         self.follow(sim, step_s)
     }
 
-    /// Follows it by `mass-spring` in sub-steps of a part of the longest that is stable.
+    /// Runs the motion by `mass-spring` in sub-steps that are a fraction of the longest stable one.
     ///
     /// # Errors
     /// The model cannot follow it.
@@ -97,7 +97,7 @@ fn settings(step_s: f64) -> Settings {
 }
 
 impl Run {
-    /// Begins from another shape, at rest.
+    /// Starts the motion from another shape, at rest.
     fn begin(&mut self, shape: impl FnOnce(&mut State)) -> Result<(), SolveError> {
         let mut states = self.sim.states();
         if let Some(state) = states.first_mut() {
@@ -108,7 +108,7 @@ impl Run {
         self.sim.set_states(&states)
     }
 
-    /// Follows it to `end_s` (s), and looks at it after each step.
+    /// Runs the motion until `end_s` (s) and calls `look` after each step.
     fn follow(&mut self, end_s: f64, mut look: impl FnMut(&Simulation, f64)) -> Result<(), SolveError> {
         for _ in 0..(end_s / self.step_s).round() as usize {
             self.sim.step(self.step_s)?;
@@ -125,7 +125,7 @@ fn force_on(sim: &Simulation, support: usize) -> Vec2 {
     found.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
 }
 
-/// The last node of the only cable, m.
+/// The position of the last node of the only cable, m.
 fn tip(sim: &Simulation) -> Vec2 {
     sim.states().first().and_then(|s| s.position_m.last().copied()).unwrap_or_default()
 }
@@ -134,7 +134,7 @@ fn floor(points_m: Vec<[f64; 2]>) -> Obstacle {
     Obstacle { name: "floor".to_owned(), shape: Shape::Terrain { points_m }, friction: Some(0.5) }
 }
 
-/// All of them.
+/// All motions.
 #[must_use]
 pub fn motions() -> [Motion; 10] {
     [
@@ -287,7 +287,8 @@ pub fn motions() -> [Motion; 10] {
                 run.sim.set_states(&states)?;
                 let (mut last, mut greatest) = ([0.0; 3], 0.0f64);
                 run.follow(1.0, |sim, _| {
-                    // A parabola through three pulls: the greatest lies between two steps.
+                    // The greatest force lies between two steps: it is the maximum of a parabola
+                    // through three of them.
                     last = [last[1], last[2], SNAP_EA_N * (-tip(sim).y / 10.0 - 1.0)];
                     let [a, b, c] = last;
                     if b > a && b > c {
@@ -335,10 +336,10 @@ fn hung_by_one_end(ea: f64) -> Scene {
     catalog::cable_alone([10.0, 1.0, ea], supports)
 }
 
-/// How far a folded chain falls, m.
+/// Height by which a folded chain falls, m.
 const FALLEN_M: f64 = 6.0;
 
-/// Half of the chain down, a link across, half of it up.
+/// Folds the chain: half of it downwards, one link across, half of it upwards.
 fn fold(state: &mut State) {
     let n = state.position_m.len().saturating_sub(1);
     let (down, mut at) = (n.saturating_sub(1) / 2, Vec2::zeros());
@@ -361,10 +362,10 @@ fn calkin_march_s(length: f64, x: f64) -> f64 {
     (0..n).map(|k| h * slope((f64::from(k) + 0.5) * h)).sum()
 }
 
-/// The time when what is let go is let go, s.
+/// The time at which an end is released, s.
 const LET_GO_S: f64 = 0.01;
 
-/// A cable of 10 m that lets go at both ends, 1 m above what may be there.
+/// A cable of 10 m that is released at both ends, 1 m above the obstacle, if there is one.
 fn let_go(below: Option<Obstacle>) -> Scene {
     let hook = |name: &str, x: f64| Support { release_s: Some(LET_GO_S), ..Support::fixed(name, [x, 1.0]) };
     let mut scene = catalog::cable_alone([10.0, 1.246, 2e6], vec![hook("A", 0.0), hook("B", 9.95)]);
@@ -383,16 +384,17 @@ fn middle_of_mass(sim: &Simulation) -> Vec2 {
     moments / state.arc_length_m.last().copied().unwrap_or(1.0)
 }
 
-/// What hangs on a cord, N, and its friction.
+/// Weight on the end of a cord, N.
 const HUNG_N: f64 = 5.4;
+/// Friction coefficient between the cord and the rod.
 const RUBS: f64 = 0.2;
 
 fn euler(angle: f64) -> Vec2 {
     Vec2::new((RUBS * angle).exp(), 0.0)
 }
 
-/// A cord of no weight wound by an angle (rad) round a rod, a weight on one end, a hand on the
-/// other that draws it on.
+/// A cord without weight that is wound by an angle (rad) round a rod, with a weight on one end and
+/// a hand that draws the other end.
 fn wound(angle: f64, elements: usize) -> Scene {
     use std::f64::consts::PI;
     let (radius, free, cord) = (0.1, 0.3, 0.001);
@@ -416,11 +418,12 @@ fn wound(angle: f64, elements: usize) -> Scene {
     scene
 }
 
-/// Stiffness of a bar of 1 kg/m, N, and how far its end is moved, m.
+/// Axial stiffness EA of a bar of 1 kg/m, N.
 const BAR_EA_N: f64 = 1e4;
+/// Displacement of the end of the bar, m.
 const MOVED_M: f64 = 0.05;
 
-/// A bar of 20 m under 200 N, its end moved on.
+/// A bar of 20 m under a tension of 200 N whose end is moved.
 fn pulled_bar() -> Scene {
     let at = [20.4, 0.0];
     let motion = Path { times_s: vec![0.0, 0.2], points_m: vec![at, [at[0] + MOVED_M, 0.0]] };
@@ -430,20 +433,21 @@ fn pulled_bar() -> Scene {
     scene
 }
 
-/// Speed at which a bar runs against a wall, m/s.
+/// Speed at which a bar hits a wall, m/s.
 const RUN_M_PER_S: f64 = 1.0;
 
-/// A bar of 20 m that hangs, so that it stays taut as it runs.
+/// A bar of 20 m that hangs, so that it stays taut while it moves.
 fn running_bar() -> Scene {
     let supports = vec![Support::fixed("wall", [0.0, 0.0]), Support::new("end", SupportKind::Free)];
     catalog::cable_alone([20.0, 1.0, BAR_EA_N], supports)
 }
 
-/// How far a mass has fallen before its rope is taut, m, and the rope's stiffness, N.
+/// Height by which a mass falls before its rope is taut, m.
 const FALL_M: f64 = 2.0;
+/// Axial stiffness EA of the rope, N.
 const SNAP_EA_N: f64 = 2e4;
 
-/// A mass of 100 kg on a rope of no weight.
+/// A mass of 100 kg on a rope without weight.
 fn snapped() -> Scene {
     let mass = Support { mass_kg: Some(100.0), force_n: Some([0.0, 0.0]), ..Support::new("mass", SupportKind::Load) };
     catalog::cable_alone([10.0, 1e-6, SNAP_EA_N], vec![Support::fixed("top", [0.0, 0.0]), mass])

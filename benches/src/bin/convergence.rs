@@ -1,6 +1,6 @@
-//! This program shows how errors of motions fall with elements and steps. It runs each motion of
-//! [`cable_benches::motion`] on a ladder of meshes at the finest step, and of steps on the finest
-//! mesh, into `docs/convergence.md`.
+//! This program measures how the errors of motions decrease with finer meshes and shorter steps. It
+//! runs each motion of [`cable_benches::motion`] on a series of meshes with the shortest step, and
+//! with a series of steps on the finest mesh, and writes `docs/convergence.md`.
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin convergence`;
 //! `-- swing fold` takes some motions and prints their tables without writing them.
@@ -14,24 +14,24 @@ use cable_core::{Model, Vec2};
 
 const FILE: &str = "docs/convergence.md";
 
-/// Steps of the ladder, s. `mass-spring` takes its own steps within them, see [`STABLE_FRACTIONS`].
+/// The series of steps, s. `mass-spring` takes its own steps within them, see [`STABLE_FRACTIONS`].
 const STEPS: [f64; 5] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0, 1.0 / 1920.0];
 
-/// Sub-steps of the ladder of `mass-spring`, in parts of the longest that its mesh is stable with;
-/// the first is that of the program.
+/// The series of sub-steps of `mass-spring`, as fractions of the longest stable sub-step of its
+/// mesh; the first is the one that the simulator uses.
 const STABLE_FRACTIONS: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
 
-/// The finest mesh is taken for that ladder on which a run took at most so long, s: the shortest
-/// sub-steps take 16 times as long.
+/// The series of sub-steps uses the finest mesh on which a run took at most this long, s: the
+/// shortest sub-steps take 16 times as long.
 const LONGEST_OF_LADDER_S: f64 = 2.0;
 
-/// A mesh is not tried where the one before took longer than this, s.
+/// A mesh is not tried if the one before took longer than this, s.
 const LONGEST_S: f64 = 20.0;
 
 /// A line of a table: its name, the error and what it cost.
 struct Line {
     name: String,
-    /// How much finer than the line before.
+    /// Ratio of the mesh or step of the line before to that of this line.
     finer: f64,
     run: Result<Measured, String>,
 }
@@ -90,7 +90,8 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
                 run: by(finest, h),
             };
             let lines: Vec<Line> = STEPS.iter().enumerate().map(line).collect();
-            // The error of the step alone: against half the shortest on the same mesh.
+            // The error of the step alone is the difference from half the shortest step on the same
+            // mesh.
             if let Ok(limit) = by(finest, 0.5 * step) {
                 table(&mut text, &format!("`{model}`, steps"), &lines, (limit.figure, scale));
             }
@@ -101,8 +102,8 @@ fn measured(motion: &Motion) -> Result<String, Box<dyn Error>> {
     Ok(text)
 }
 
-/// The ladder of sub-steps of `mass-spring`, where its runs on the meshes of the motion, which are
-/// given, leave the time for it.
+/// Appends the series of sub-steps of `mass-spring`, if its runs on the given meshes of the motion
+/// were quick enough.
 fn sub_steps(text: &mut String, motion: &Motion, meshes: &[Line], scale: f64) {
     let quick = |line: &Line| line.run.as_ref().is_ok_and(|run| run.spent.seconds() <= LONGEST_OF_LADDER_S);
     let Some(&mesh) = meshes.iter().rposition(quick).and_then(|k| motion.meshes.get(k)) else { return };
@@ -119,7 +120,8 @@ fn sub_steps(text: &mut String, motion: &Motion, meshes: &[Line], scale: f64) {
     }
 }
 
-/// The figure without the errors of mesh and step, both taken to be of the second order.
+/// The figure extrapolated to zero mesh size and step, with both errors taken to be of the second
+/// order.
 fn extrapolated(motion: &Motion, finest: usize, step: f64) -> Result<Vec2, Box<dyn Error>> {
     let at = |elements: usize, step_s: f64| motion.measure(Model::Fem, elements, step_s).map(|m| m.figure);
     let fine = at(finest, step)?;

@@ -1,6 +1,6 @@
-//! This program draws work–precision charts: the error of every model over what it costs, on its
+//! This program draws work–precision charts: the error of every model against its cost, on several
 //! meshes and steps, for every scene of the catalogue and every motion of
-//! [`cable_benches::motion`], with other programs beside them.
+//! [`cable_benches::motion`], and for comparison those of other programs.
 //!
 //! Run from the root of the repository:
 //! `cargo run --release -p cable-benches --bin work-precision`. It measures, and writes
@@ -38,26 +38,27 @@ const PAGE: &str = "docs/charts/work_precision.md";
 /// Meshes of scenes at rest, and of slow motion, in elements.
 const REST_MESHES: [usize; 7] = [10, 20, 40, 80, 160, 320, 640];
 const SLOW_MESHES: [usize; 4] = [20, 40, 80, 160];
-/// Elements of the reference where there is none without a mesh: the first that answers.
+/// Elements of the reference if no model without a mesh answers; the first mesh with an answer
+/// counts.
 const FINEST_AT_REST: [usize; 3] = [2560, 640, 160];
 const FINEST_SLOW: [usize; 3] = [640, 320, 160];
-/// Steps of motions, s; `mass-spring` takes within [`MASS_SPRING_STEP_S`] the longest inner steps
-/// that its mesh is stable with.
+/// Steps of motions, s. Within [`MASS_SPRING_STEP_S`], `mass-spring` takes the longest stable inner
+/// steps of its mesh.
 const STEPS: [f64; 6] = [1.0 / 30.0, 1.0 / 60.0, 1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0];
 const MASS_SPRING_STEP_S: f64 = 1.0 / 240.0;
-/// A finer mesh is not tried where this one took longer, s.
+/// A finer mesh is not tried if the present one took longer than this, s.
 const LONGEST_S: f64 = 6.0;
-/// A motion is followed so often at least.
+/// Least number of runs of a motion.
 const MOTION_REPEATS: usize = 3;
-/// The catenary as a function is asked so often, and the least time counts.
+/// Number of calls of the catenary as a function; the least time counts.
 const FUNCTION_REPEATS: usize = 2000;
-/// Errors below this are drawn at it, as a logarithm must be of something.
+/// Errors below this are drawn as this value, as the axis is logarithmic.
 const LEAST_ERROR: f64 = 1e-13;
-/// Errors for which the cheapest way is told.
+/// Errors for which the page names the cheapest program and setting.
 const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
-/// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color
-/// universal design" (2008), and grey tones for peers beyond eight.
+/// Colour and mark of every model and program. The colours are those of M. Okabe and K. Ito, "Color
+/// universal design" (2008), and grey tones beyond eight.
 const MARKS: [(&str, &str, u32); 14] = [
     ("catenary", "#000000", 4),
     ("spans", "#009E73", 3),
@@ -88,7 +89,7 @@ struct Point {
 }
 
 impl Point {
-    /// Cost (s) and error, where it has both.
+    /// Cost (s) and error, if the point has both.
     fn measured(&self) -> Option<(f64, f64)> {
         let (cost, error) = (self.cost_s?, self.error?);
         (cost > 0.0 && error.is_finite()).then_some((cost, if error > LEAST_ERROR { error } else { LEAST_ERROR }))
@@ -130,11 +131,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     draw(&points, &measured_now())
 }
 
-/// The drive in the tank, out: on its way back the cable folds, and `spans` cannot follow.
+/// The outward drive in the tank: on the way back the cable folds, and `spans` has no answer.
 const TANK_DRIVE: &str = "tank-drive";
 /// Knots of the drive on its way out.
 const OUT_KNOTS: usize = 3;
-/// The drive takes this part of its time: without inertia its speed is no matter.
+/// The drive is shortened to this fraction of its time: without inertia its speed does not matter.
 const HURRY: f64 = 0.4;
 
 /// The catalogue, and the drive in the tank.
@@ -157,7 +158,7 @@ fn tell(point: &Point) {
     println!("{} {} {}: {cost} s, error {error}, shape {shape} {}", point.scene, point.who, point.setting, point.note);
 }
 
-/// Every model on a scene at rest, or at the end of its slow motion.
+/// Measures every model on a scene at rest, or at the end of its slow motion.
 fn at_rest(id: &'static str, scene: &Scene) -> Vec<Point> {
     let rests = Question::of(scene) == Question::Rest;
     let (meshes, finest) = if rests { (&REST_MESHES[..], FINEST_AT_REST) } else { (&SLOW_MESHES[..], FINEST_SLOW) };
@@ -184,7 +185,7 @@ fn at_rest(id: &'static str, scene: &Scene) -> Vec<Point> {
     out
 }
 
-/// A model on a scene; None, with a line on stderr, where it has no answer.
+/// Measures a model on a scene; `None`, with a line on standard error, if it has no answer.
 fn measured(
     id: &'static str,
     scene: &Scene,
@@ -203,7 +204,7 @@ fn measured(
         who: model.name().to_owned(),
         setting: segments.map_or_else(|| "no mesh".to_owned(), |n| format!("N={n}")),
         cost_s: Some(row.cost_s),
-        // The reference itself is known to rounding, which it states.
+        // The error of the reference itself is its rounding, which it estimates.
         error: Some(if own { row.said.unwrap_or(0.0) } else { row.error }),
         shape_error: (!own).then_some(row.shape_error),
         note,
@@ -212,8 +213,8 @@ fn measured(
     Some(point)
 }
 
-/// The catenary as a function, without a simulation, of a scene of one span; its closure is its
-/// error.
+/// Measures the catenary as a function, without a simulation, for a scene of one span; its error is
+/// the closure error.
 fn catenary_alone(id: &str, scene: &Scene) -> Option<Point> {
     let flexible = scene.cables.iter().all(|c| c.bending_stiffness_n_m2 == 0.0);
     let span = span_of(scene).filter(|_| scene.obstacles.is_empty() && scene.loads.is_empty() && flexible)?;
@@ -238,7 +239,7 @@ fn catenary_alone(id: &str, scene: &Scene) -> Option<Point> {
     Some(point)
 }
 
-/// `fem` and `mass-spring` through a motion.
+/// Measures `fem` and `mass-spring` on a motion.
 fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
     let exact = match motion.exact {
         Some(exact) => exact(),
@@ -273,7 +274,7 @@ fn in_motion(motion: &Motion) -> Result<Vec<Point>, Box<dyn Error>> {
     Ok(out)
 }
 
-/// A motion, followed as often as its time is to be known.
+/// The results of repeated runs of a motion.
 fn followed(motion: &Motion, model: Model, elements: usize, step_s: f64) -> Result<Vec<Measured>, cable_core::Error> {
     let (mut runs, mut spent) = (Vec::new(), Vec::new());
     while Spent::wants_more(&spent, MOTION_REPEATS) {
@@ -284,7 +285,7 @@ fn followed(motion: &Motion, model: Model, elements: usize, step_s: f64) -> Resu
     Ok(runs)
 }
 
-/// The figure of a motion without the errors of mesh and step, both of the second order.
+/// The figure of a motion, extrapolated to zero mesh size and step with errors of the second order.
 fn extrapolated(motion: &Motion) -> Result<Vec2, Box<dyn Error>> {
     let finest = motion.meshes.last().copied().ok_or("a motion without meshes")?;
     let step = 0.5 * STEPS[STEPS.len() - 1];
@@ -389,7 +390,7 @@ fn panels(id: &str, points: &[&Point]) -> Vec<Panel> {
         .collect()
 }
 
-/// The cheapest of some points that keeps an error.
+/// The cheapest of some points whose error is at most `goal`.
 fn cheapest<'a>(points: &[&'a Point], goal: f64) -> Option<(&'a Point, f64)> {
     let within = points.iter().filter_map(|p| p.measured().filter(|m| m.1 <= goal).map(|m| (*p, m.0)));
     within.min_by(|a, b| a.1.total_cmp(&b.1))
@@ -399,7 +400,7 @@ fn is_ours(p: &Point) -> bool {
     Model::from_name(&p.who).is_some()
 }
 
-/// A cost for people.
+/// A cost as text.
 fn cost(seconds: f64) -> String {
     match seconds {
         s if s < 1e-3 => format!("{:.3} µs", 1e6 * s),
@@ -408,7 +409,7 @@ fn cost(seconds: f64) -> String {
     }
 }
 
-/// By how many times the best other program should cost more at an equal error: with obstacles or
+/// The factor by which the best other program should cost more at an equal error: with obstacles or
 /// wheels, and in the air or in motion.
 const ASKED_TIMES: [f64; 2] = [100.0, 5.0];
 
@@ -428,17 +429,17 @@ const REMARKS: [(&str, &str); 1] = [(
      differences of mesh and step, so that there is nothing to compare with.",
 )];
 
-/// Times of a goal that were missed.
+/// A missed goal.
 struct Missed {
     id: String,
     error: f64,
     times: f64,
     asked: f64,
-    /// The winner and its caveats.
+    /// The cheapest program and its caveats.
     by: String,
 }
 
-/// The program, its setting, and what is to be known about its answer.
+/// The program, its setting, and the reservations about its answer.
 fn with_caveat(p: &Point) -> String {
     let caveat = if p.note.is_empty() || is_ours(p) { String::new() } else { format!(" ({})", p.note) };
     format!("{}, {}{caveat}", p.who, p.setting)
@@ -465,7 +466,7 @@ fn section(page: &mut String, id: &str, points: &[&Point]) -> Vec<Missed> {
         let ([a, b], [c, d]) = (way(&ours), way(&others));
         let (times, met) = match (cheapest(&ours, goal), cheapest(&others, goal)) {
             (own, Some((p, other))) => {
-                // Where ours has no answer at all, the goal is missed without a figure.
+                // If no model of this simulator has an answer, the goal is missed without a figure.
                 let times = own.map_or(0.0, |(_, own)| other / own);
                 if times < asked {
                     missed.push(Missed { id: id.to_owned(), error: goal, times, asked, by: with_caveat(p) });
@@ -491,7 +492,7 @@ fn section(page: &mut String, id: &str, points: &[&Point]) -> Vec<Missed> {
     missed
 }
 
-/// Times of a cost; 0 stands for none.
+/// The ratio of two costs as text; 0 stands for none.
 fn show_times(times: f64) -> String {
     match times {
         0.0 => "–".to_owned(),

@@ -1,5 +1,5 @@
-//! This file makes the JSON object of an answer: SI units in the key names, never a number that is
-//! not finite.
+//! This file makes the JSON object of an answer, with SI units in the key names and finite numbers
+//! only.
 
 use cable_core::analysis::{Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::answer_verifier::Verification;
@@ -21,24 +21,24 @@ pub struct Answer<'a> {
     pub time_s: Option<f64>,
     pub model: &'static str,
     pub reason: &'a ModelReason,
-    /// The error of the next cheaper choice, of a choice by `auto` at rest; in motion with errors,
-    /// that of a run without inertia so far.
+    /// At rest, the error that the next cheaper choice of `auto` would have; in motion with errors,
+    /// the error of a run without inertia so far.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_cheaper: Option<NextCheaper>,
     pub converged: bool,
     pub residual_n: f64,
     pub iterations: usize,
     pub wall_time_s: f64,
-    /// Estimated relative error of the greatest tension; null where the model gives none.
+    /// Estimated relative error of the greatest tension; null if the model gives none.
     pub error_estimate: Option<f64>,
-    /// Estimated error of each figure, one a cable; null where it is not known.
+    /// Estimated errors of the figures of each cable; null if they are not known.
     pub errors: Vec<OfCable<'a, ErrorEstimates>>,
     pub max_tension_n: f64,
     pub max_tension_arc_length_m: f64,
-    /// The greatest tensions of all inner steps since the line before, one a cable in motion.
+    /// The greatest tensions of each moving cable in all inner steps since the previous line.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub peaks: Vec<OfCable<'a, TensionPeaks>>,
-    /// The greatest tensions of the run so far and their errors, one a cable in motion.
+    /// The greatest tensions of each moving cable in the run so far, and their errors.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
     /// Mach and Froude numbers of the run so far, and whether masses matter in it; only with
@@ -48,12 +48,12 @@ pub struct Answer<'a> {
     /// The energy of each cable since it began to move, and the work of each kind of force.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub energy_account: Vec<OfCable<'a, EnergyAccount>>,
-    /// The sharpest bend of all cables; null where all are nearly straight.
+    /// The sharpest bend of all cables; null if all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
-    /// The place at which a cable is pressed hardest against what leads it; null where nothing
-    /// leads one round.
+    /// The place of the greatest sidewall pressure of all cables; null if no cable is guided round
+    /// anything.
     pub sidewall_pressure: Option<OfCable<'a, Pressure>>,
-    /// The figures that are read first, one a cable.
+    /// The summary of each cable.
     pub summary: Vec<Summary<'a>>,
     pub supports: Vec<Support<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
@@ -75,7 +75,7 @@ pub struct ComparedEntry {
     #[serde(flatten)]
     pub setting: Setting,
     pub wall_time_s: f64,
-    /// None where it has no answer.
+    /// `None` if it has no answer.
     #[serde(flatten)]
     pub answer: Option<Compared>,
     /// The reason why it has none.
@@ -83,19 +83,19 @@ pub struct ComparedEntry {
     pub error: Option<String>,
 }
 
-/// The greatest tensions of a run so far, and from what to what they may be.
+/// The greatest tensions of a run so far, with the range in which the exact value lies.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct RunPeaksEntry {
     pub greatest_tension_n: f64,
     /// The greatest mean over `breaking_time_s`.
     pub held_tension_n: f64,
-    /// From, to; null where nothing is known of them.
+    /// Lower and upper end of the range, N; null if it is not known.
     pub greatest_tension_range_n: Option<[f64; 2]>,
     pub held_tension_range_n: Option<[f64; 2]>,
-    /// True if coarser runs part from this one so far that another mesh, step or start has another
-    /// greatest tension; null where that is not known.
+    /// True if coarser runs differ from this one so much that another mesh, step or start has
+    /// another greatest tension; null if that is not known.
     pub depends_on_small_differences: Option<bool>,
-    /// True if the ranges are no wider than the tolerance; null where they are not known.
+    /// True if the ranges are no wider than the tolerance; null if they are not known.
     pub resolved: Option<bool>,
 }
 
@@ -112,16 +112,16 @@ impl RunPeaksEntry {
     }
 }
 
-/// Speeds of a run so far beside those at which inertia shows.
+/// Speeds of a run so far, relative to those at which inertia matters.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct InertiaEntry {
     pub greatest_speed_m_per_s: f64,
-    /// Over the speed of waves of stretch.
+    /// Greatest speed over the speed of longitudinal waves.
     pub mach_number: f64,
-    /// Over the square root of gravity times length; null without gravity.
+    /// Greatest speed over the square root of gravity times length; null without gravity.
     pub froude_number: Option<f64>,
-    /// True if a run without inertia differs by more than the tolerance or has no answer; null
-    /// where none goes beside this one, or where it is not clear.
+    /// True if a run without inertia differs by more than the tolerance or has no answer; null if
+    /// none accompanies this run, or if the difference is not clear.
     pub matters: Option<bool>,
 }
 
@@ -153,7 +153,7 @@ impl<'a> WarningEntry<'a> {
     }
 }
 
-/// The figures of a cable, and the stiffness of its ends where that was asked for.
+/// The figures of a cable, and the stiffness of its ends if it was requested.
 #[derive(Debug, Serialize)]
 pub struct Summary<'a> {
     #[serde(flatten)]
@@ -165,25 +165,25 @@ pub struct Summary<'a> {
     pub neglected_bending: Option<&'a NeglectedBending>,
 }
 
-/// The figures of a solution that are read first.
+/// The summary figures of a solution.
 #[derive(Debug, Default)]
 pub struct Figures {
-    /// One a cable.
+    /// One summary for each cable.
     pub cables: Vec<CableSummary>,
-    /// Of all held ends, where it was asked for.
+    /// The stiffness of all held ends, if it was requested.
     pub stiffness: Option<Vec<EndStiffness>>,
-    /// The changes that neglected bending stiffness would make, of the cables of which they are
+    /// The changes that neglected bending stiffness would make, for the cables for which they are
     /// known.
     pub bending: Vec<NeglectedBending>,
-    /// The greatest tensions of a run so far, one a cable.
+    /// The greatest tensions of each cable in a run so far.
     pub run_peaks: Vec<RunPeaksEntry>,
     /// Mach and Froude numbers of the motion, and its difference from one without inertia.
     pub inertia: Option<InertiaEffect>,
-    /// The answers of other models and meshes, where they were asked for.
+    /// The answers of other models and meshes, if they were requested.
     pub compared: Vec<ComparedEntry>,
 }
 
-/// Something of one cable, which is named also where it is the only one.
+/// A value of one cable with the name of the cable, even if it is the only one.
 #[derive(Debug, Serialize)]
 pub struct OfCable<'a, T> {
     pub cable: &'a str,
@@ -230,7 +230,7 @@ pub struct Contact<'a> {
     samples: &'a [ContactSample],
 }
 
-/// The output of `--json` where there is no answer.
+/// The output of `--json` if there is no answer.
 #[derive(Debug, Serialize)]
 pub struct NoAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -242,7 +242,7 @@ pub struct NoAnswer {
 }
 
 impl NoAnswer {
-    /// Says why a model has no answer, and at which time (s).
+    /// Reports why a model has no answer, and at which time (s).
     pub fn new(model: Model, reason: Option<&ModelReason>, time_s: Option<f64>, error: &SolveError) -> Self {
         let reason = reason.map_or_else(|| "no answer".to_owned(), ToString::to_string);
         Self { time_s, model: model.name(), reason, converged: false, error: error.to_string() }

@@ -10,10 +10,11 @@ use cable_core::wording::Sentence;
 use crate::answer_json::{ComparedEntry, Figures};
 use crate::summary;
 
-/// Greatest length of a reason why a setting has no answer.
+/// Greatest length of the reason why a model has no answer, characters.
 const MAX_REASON_CHARS: usize = 90;
 
-/// Other models and meshes, the quickest first; those without an answer last.
+/// Appends the answers of other models and meshes, the quickest first and those without an answer
+/// last.
 fn compared(t: &mut String, entries: &[ComparedEntry]) {
     if entries.is_empty() {
         return;
@@ -44,8 +45,7 @@ fn compared(t: &mut String, entries: &[ComparedEntry]) {
     }
 }
 
-/// An answer as tables with units. Writing to a `String` cannot fail, so its results are not looked
-/// at.
+/// An answer as tables with units. Writing to a `String` cannot fail, so its results are ignored.
 pub fn answer_text(s: &Solution, figures: &Figures) -> String {
     let mut t = String::new();
     let top = s.max_tension();
@@ -53,7 +53,7 @@ pub fn answer_text(s: &Solution, figures: &Figures) -> String {
     if let Some(next) = &s.next_cheaper {
         let _ = writeln!(t, "Next cheaper      {next}");
     }
-    // Of the scene, not of the computation.
+    // This is the time in the scene, not the computing time.
     let _ = writeln!(t, "Scene time        {} s", s.time_s);
     let name = s.cables.get(top.cable).map_or("", |c| &c.name);
     let _ = writeln!(t, "Greatest tension  {:.6} N, at {:.4} m of `{name}`", top.tension_n, top.arc_length_m);

@@ -133,11 +133,12 @@ fn model(text: &str) -> Result<Model, String> {
     Model::from_name(text).ok_or_else(|| "the models are auto, catenary, spans, fem and mass-spring".to_owned())
 }
 
-/// Refinements of a run for which an accuracy was asked: the third takes 64 times as long.
+/// Refinements of a run for which an accuracy was requested: a third one would take 64 times as
+/// long.
 const REFINEMENTS_TO_A_TOLERANCE: u32 = 2;
 
 impl Common {
-    /// The accuracy that is asked for, given or not.
+    /// The requested accuracy, or the default.
     pub fn tolerance(&self) -> f64 {
         self.tolerance.unwrap_or(Settings::default().tolerance)
     }
@@ -150,8 +151,8 @@ impl RunArguments {
         self.refine.or(for_tolerance).unwrap_or(0)
     }
 
-    /// Time between outputs, s. Who follows a cable for half a second wants to see what happens in
-    /// it.
+    /// Time between outputs, s. It is shorter in a short run, so that a motion of half a second is
+    /// resolved.
     pub fn every_s(&self) -> f64 {
         let part = if self.quasi_static { f64::INFINITY } else { self.duration_s / 500.0 };
         self.every.unwrap_or((1.0_f64 / 60.0).min(part))

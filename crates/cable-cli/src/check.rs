@@ -14,7 +14,7 @@ use crate::output::Printer;
 /// machine.
 const MAX_TABLE_BYTES: u64 = 2 << 30;
 
-/// Says whether a scene can be solved, or how far a run came.
+/// Reports whether a scene can be solved, or how far a run came.
 pub fn check(path: &Path) -> CommandResult {
     if files::is_run(path) {
         return check_run(path);
@@ -36,7 +36,7 @@ pub fn check(path: &Path) -> CommandResult {
     out.flush()
 }
 
-/// Says how far the run in a folder came, and what of its tables was left out.
+/// Reports how far the run in a folder came, and which part of its tables was ignored.
 fn check_run(path: &Path) -> CommandResult {
     let run = files::load_run(path, MAX_TABLE_BYTES).map_err(Failure::File)?;
     let kind = match run.is_complete() {

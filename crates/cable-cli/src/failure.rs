@@ -1,4 +1,4 @@
-//! Failures of the program, in words and as the code with which it exits.
+//! A failure of the program has a sentence and an exit code.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -30,13 +30,13 @@ pub enum Failure {
     Argument(String),
     /// Standard output could not be written.
     Stdout(io::Error),
-    /// A signal ended a run; where what was reached lies, if it was still written.
+    /// A signal ended a run; the folder holds the part that was written, if any.
     Interrupted(Signal, Option<PathBuf>),
-    /// The run has ended already, and who ended it says why.
+    /// The run has ended already, and another thread reports why.
     AlreadyEnded,
-    /// Signals cannot be waited for.
+    /// The handlers of signals could not be installed.
     Signals(io::Error),
-    /// No thread can be begun.
+    /// A thread could not be started.
     Thread(io::Error),
 }
 
@@ -54,7 +54,7 @@ impl Failure {
         }
     }
 
-    /// From an error of the library about a scene file.
+    /// Converts an error of the library about a scene file.
     pub fn from_core(scene: &std::path::Path, e: Error) -> Self {
         match e {
             Error::Scene(e) => Self::Scene(scene.to_owned(), Box::new(e)),
@@ -90,8 +90,8 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// Says on standard error what went wrong. A closed pipe is nobody's fault.
+/// Writes a failure to standard error. A closed pipe is no failure.
 pub fn report(failure: &Failure) {
-    // Nothing is left to tell if standard error is closed too.
+    // If standard error is closed too, nothing can be reported.
     let _ = writeln!(io::stderr(), "cable: {failure}");
 }

@@ -2,7 +2,8 @@
 
 use cable_core::solution::Solution;
 
-/// `serde_json` would write such a number as null, which nobody could read back.
+/// Refuses an answer with such a number: `serde_json` would write it as null, which could not be
+/// read back.
 pub(super) fn check_finite(s: &Solution) -> Result<(), String> {
     let all = |values: &[f64]| values.iter().all(|v| v.is_finite());
     for c in &s.cables {

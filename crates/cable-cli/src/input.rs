@@ -1,4 +1,4 @@
-//! The input of a command is a scene file, and what the arguments say of it.
+//! The input of a command is a scene file, altered by the arguments.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     files::load_scene(path).map_err(Failure::File)
 }
 
-/// The scene, with what arguments say of it.
+/// The scene, altered by the arguments.
 pub fn scene_with_arguments(a: &Common) -> Result<Scene, Failure> {
     let mut scene = read_scene(&a.scene)?;
     if let Some(mobilised) = a.mobilised {

@@ -11,12 +11,12 @@ mod failure;
 mod finite_check;
 mod input;
 mod output;
+mod progress_line;
 mod run;
 mod schema;
 mod signals;
 mod solve;
 mod summary;
-mod waiting;
 
 use std::process::ExitCode;
 

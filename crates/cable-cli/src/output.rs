@@ -1,17 +1,17 @@
-//! Standard output, and progress on standard error.
+//! Answers go to standard output, and progress to standard error.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 
 use crate::failure::Failure;
 
-/// Standard output that takes a reader's leaving (`cable … | head`) as a wish to hear no more.
+/// Standard output that ends quietly when its reader has gone (`cable … | head`).
 pub struct Printer {
     out: io::BufWriter<io::Stdout>,
     closed: bool,
 }
 
 impl Printer {
-    /// Over standard output.
+    /// Makes a printer to standard output.
     pub fn new() -> Self {
         Self { out: io::BufWriter::new(io::stdout()), closed: false }
     }
@@ -29,7 +29,7 @@ impl Printer {
         })
     }
 
-    /// Hands everything over.
+    /// Flushes the buffer.
     pub fn flush(&mut self) -> Result<(), Failure> {
         self.with(Write::flush)
     }
@@ -55,16 +55,17 @@ pub struct Progress {
     last: Option<std::time::Instant>,
 }
 
-/// Time between two progress lines, s: shorter floods a slow terminal, longer looks stuck.
+/// Time between two progress lines, s. A shorter time floods a slow terminal, a longer one looks
+/// stuck.
 const PROGRESS_INTERVAL_S: f64 = 0.1;
 
 impl Progress {
-    /// Shown where standard error is a terminal.
+    /// Makes the progress, which is shown if standard error is a terminal.
     pub fn new() -> Self {
         Self { shown: io::stderr().is_terminal(), last: None }
     }
 
-    /// Says how far a run is.
+    /// Shows how far a run is.
     pub fn at(&mut self, time_s: f64, duration_s: f64, tension_n: f64) {
         if !self.shown || self.last.is_some_and(|t| t.elapsed().as_secs_f64() < PROGRESS_INTERVAL_S) {
             return;

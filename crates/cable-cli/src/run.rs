@@ -1,12 +1,13 @@
 //! `cable run` settles a scene, then steps it, and writes an answer at every output time.
 //!
-//! A thread of its own solves and writes; the first thread waits for it and for signals, so that
-//! one which arrives in the midst of a long step, or while a reader of standard output is slow,
-//! ends the run at once with what was written.
+//! A second thread solves and writes. The main thread waits for it and for signals. So a signal
+//! that arrives during a long step, or while a reader of standard output is slow, ends the run at
+//! once, and the part that was written remains.
 
 use std::path::PathBuf;
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use cable_core::analysis::{neglected_bending, scene_with_bending};
@@ -30,10 +31,11 @@ use crate::output::{Printer, Progress};
 use crate::signals::Signals;
 use crate::summary::neglected_at_first_rest;
 
-/// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
+/// Largest number of output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which
+/// no user intends.
 const MAX_OUTPUTS: f64 = 1e7;
 
-/// A run folder until the run has ended, by itself or by a signal.
+/// The run folder, until the run has ended or a signal has ended it.
 #[derive(Clone)]
 struct SharedRunFolder(Arc<Mutex<Option<RunFolder>>>);
 
@@ -42,7 +44,7 @@ impl SharedRunFolder {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes something, unless the run has ended.
+    /// Writes to the folder, unless the run has ended.
     fn write(
         &self,
         out: &std::path::Path,
@@ -54,13 +56,13 @@ impl SharedRunFolder {
         }
     }
 
-    /// Ends the run, unless it has ended. Where it lies then.
+    /// Ends the run, unless it has ended, and returns the path of its folder.
     fn finish(&self, end: RunEnd) -> Option<Result<PathBuf, Failure>> {
         let mut guard = self.lock();
         Some(guard.take()?.finish(end).map_err(Failure::File))
     }
 
-    /// Its place for now.
+    /// The present path of the folder.
     fn place(&self) -> Option<PathBuf> {
         self.lock().as_ref().map(|folder| folder.place().to_owned())
     }
@@ -90,12 +92,12 @@ struct Outputs {
 
 /// Totals of a whole run.
 struct RunTotals {
-    /// Of the cable that is pulled hardest.
+    /// The peaks of the cable with the greatest tension.
     peaks: RunPeaks,
     relative_error: Option<f64>,
     /// Mach and Froude numbers of the motion, and its difference from one without inertia.
     inertia: Option<InertiaEffect>,
-    /// True if errors were asked for.
+    /// True if errors were requested.
     errors_asked: bool,
 }
 
@@ -143,7 +145,7 @@ impl RunTotals {
     }
 }
 
-/// Part of the energy exchanged below which a work is left out.
+/// Fraction of the exchanged energy below which a work is not listed.
 const LEAST_WORK_FRACTION: f64 = 1e-6;
 
 /// The energy account of a run.
@@ -212,7 +214,7 @@ impl Outputs {
         self.run_peaks = timeline.monitor().peaks().iter().map(|run| RunPeaksEntry::of(run, tolerance)).collect();
     }
 
-    /// Looks at a step, whether it is written or not.
+    /// Records the peaks and warnings of a step, whether it is written or not.
     fn observe_step(&mut self, simulation: &Simulation) {
         let time_s = simulation.time_s();
         self.warning_log.update(simulation.warnings(), time_s);
@@ -223,7 +225,7 @@ impl Outputs {
     }
 }
 
-/// Most warnings of a run that are printed: all of them are in its `events.csv`.
+/// Largest number of warnings that are printed. All of them are in `events.csv`.
 const MAX_PRINTED_WARNINGS: usize = 20;
 
 /// The warnings that began in a run.
@@ -251,7 +253,7 @@ impl WarningLog {
         self.active = active;
     }
 
-    /// A title and a line a warning.
+    /// A title, and a line for each warning.
     fn lines(&self) -> Vec<String> {
         let mut out = self.lines.clone();
         if !out.is_empty() {
@@ -264,28 +266,17 @@ impl WarningLog {
     }
 }
 
-/// Time between two looks for a signal, s. Longer is felt by who waits for the end; shorter wakes
-/// the processor for nothing.
+/// Time between two checks for a signal, s. A user would notice a longer time at the end; a shorter
+/// one wakes the processor in vain.
 const SIGNAL_POLL_INTERVAL_S: f64 = 0.02;
 
-/// Stack of the thread that solves, bytes: that of a first thread, 2 MiB is what others get.
+/// Stack of the thread that solves, bytes: that of a main thread, as other threads get only 2 MiB.
 const STACK_BYTES: usize = 8 << 20;
 
-/// Follows a scene over time.
+/// Runs a scene over time.
 pub fn run(a: RunArguments) -> CommandResult {
     let every = a.every_s();
-    if a.duration_s / every > MAX_OUTPUTS {
-        return Err(Failure::Argument(format!(
-            "--for {} s with --every {every} s makes more than {MAX_OUTPUTS:.0e} output times: make --every longer",
-            a.duration_s
-        )));
-    }
-    if let Some(step) = a.step.filter(|step| *step > a.duration_s && a.duration_s > 0.0) {
-        return Err(Failure::Argument(format!(
-            "--step {step} s is longer than the run (--for {} s): peaks and errors are looked for at steps",
-            a.duration_s
-        )));
-    }
+    check_durations(&a, every)?;
     let choice = a.node_choice().map_err(Failure::Argument)?;
     let written = scene_with_arguments(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
@@ -296,7 +287,7 @@ pub fn run(a: RunArguments) -> CommandResult {
         .map_err(|e| Failure::from_core(&a.common.scene, e))?;
     let simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
         .map_err(|e| Failure::from_core(&a.common.scene, e))?;
-    // From here on a signal ends the run in order.
+    // From here on a signal ends the run properly.
     let signals = Signals::new().map_err(Failure::Signals)?;
     let request = RunRequest {
         program: format!("cable {}", env!("CARGO_PKG_VERSION")),
@@ -307,7 +298,7 @@ pub fn run(a: RunArguments) -> CommandResult {
         step_s: a.step,
     };
     let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
-    // So that a run which is ended before its first instant has tables.
+    // Even a run that is ended before its first instant has tables then.
     let robot = RobotColumns::of(&simulation.solution());
     folder.begin(&scene, robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
     let shared = SharedRunFolder(Arc::new(Mutex::new(Some(folder))));
@@ -331,10 +322,38 @@ pub fn run(a: RunArguments) -> CommandResult {
     let (done, ended) = sync_channel(1);
     let solver = std::thread::Builder::new().name("solver".to_owned()).stack_size(STACK_BYTES);
     let solver = solver.spawn(move || {
-        // Nobody listens where a signal has ended the run.
+        // The receiver is gone if a signal has ended the run.
         let _ = done.send(run_to_end(simulation, inertia, outputs, began));
     });
     let solver = solver.map_err(Failure::Thread)?;
+    await_end(&ended, solver, &signals, &shared, &print_lock)
+}
+
+/// Refuses durations that make too many outputs, or no step.
+fn check_durations(a: &RunArguments, every: f64) -> Result<(), Failure> {
+    if a.duration_s / every > MAX_OUTPUTS {
+        return Err(Failure::Argument(format!(
+            "--for {} s with --every {every} s makes more than {MAX_OUTPUTS:.0e} output times: make --every longer",
+            a.duration_s
+        )));
+    }
+    if let Some(step) = a.step.filter(|step| *step > a.duration_s && a.duration_s > 0.0) {
+        return Err(Failure::Argument(format!(
+            "--step {step} s is longer than the run (--for {} s): peaks and errors are looked for at steps",
+            a.duration_s
+        )));
+    }
+    Ok(())
+}
+
+/// Waits for the thread that solves, and for signals, which end the run in order.
+fn await_end(
+    ended: &Receiver<CommandResult>,
+    solver: JoinHandle<()>,
+    signals: &Signals,
+    shared: &SharedRunFolder,
+    print_lock: &Mutex<()>,
+) -> CommandResult {
     loop {
         match ended.recv_timeout(Duration::from_secs_f64(SIGNAL_POLL_INTERVAL_S)) {
             Ok(done) => return done,
@@ -344,7 +363,7 @@ pub fn run(a: RunArguments) -> CommandResult {
                     // The tables are readable and marked as partial already, whether this can be
                     // noted or not.
                     let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
-                    wait_for_line(&print_lock);
+                    wait_for_line(print_lock);
                     return Err(Failure::Interrupted(signal, place));
                 }
             }
@@ -359,7 +378,7 @@ pub fn run(a: RunArguments) -> CommandResult {
     }
 }
 
-/// Lets a line that is being printed end, unless its reader has stopped reading.
+/// Waits until a line that is being printed is complete, unless its reader has stopped reading.
 fn wait_for_line(print_lock: &Mutex<()>) {
     let began = Instant::now();
     while let Err(TryLockError::WouldBlock) = print_lock.try_lock() {

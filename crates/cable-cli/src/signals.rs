@@ -1,4 +1,4 @@
-//! Signals that ask a run to end are noted and not obeyed at once, so that it ends in order.
+//! A signal that asks a run to end only sets a flag, so that the run ends properly.
 
 use std::io;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 
-/// One of them.
+/// A signal that ends a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
     /// Ctrl-C.
@@ -26,7 +26,7 @@ impl Signal {
         }
     }
 
-    /// As systems call it.
+    /// The name of the signal in POSIX.
     pub fn name(self) -> &'static str {
         match self {
             Self::Interrupt => "SIGINT",
@@ -34,7 +34,7 @@ impl Signal {
         }
     }
 
-    /// As shells say that a program ended by it.
+    /// The exit code that shells use for a program that this signal ended.
     pub fn exit_code(self) -> u8 {
         match self {
             Self::Interrupt => 130,
@@ -48,11 +48,11 @@ impl Signal {
 pub struct Signals(Arc<AtomicUsize>);
 
 impl Signals {
-    /// From now on signals are noted.
+    /// Installs the handlers.
     pub fn new() -> io::Result<Self> {
         let (arrived, any) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
         for (k, signal) in Signal::ALL.into_iter().enumerate() {
-            // In this order: what is noted by the first signal is read by the second.
+            // The order matters: the second signal reads the flag that the first one set.
             flag::register_conditional_shutdown(signal.number(), i32::from(signal.exit_code()), any.clone())?;
             flag::register_usize(signal.number(), arrived.clone(), k + 1)?;
             flag::register(signal.number(), any.clone())?;
@@ -60,7 +60,7 @@ impl Signals {
         Ok(Self(arrived))
     }
 
-    /// The one that arrived last.
+    /// The signal that arrived last.
     pub fn arrived(&self) -> Option<Signal> {
         let k = self.0.load(Ordering::SeqCst).checked_sub(1)?;
         Signal::ALL.get(k).copied()

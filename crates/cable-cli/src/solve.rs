@@ -1,4 +1,4 @@
-//! The command `cable solve` finds where everything rests.
+//! The command `cable solve` finds the equilibrium of a scene.
 
 use std::time::Instant;
 
@@ -13,9 +13,9 @@ use crate::args::{Common, SolveArguments};
 use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::Printer;
-use crate::waiting::WaitingNotice;
+use crate::progress_line::WaitingNotice;
 
-/// Finds where everything rests.
+/// Finds the equilibrium of a scene.
 pub fn solve(arguments: &SolveArguments) -> CommandResult {
     let a = &arguments.common;
     let scene = scene_with_arguments(a)?;

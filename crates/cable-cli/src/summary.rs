@@ -1,4 +1,4 @@
-//! This file writes as text the figures of an answer that are read first.
+//! This file writes the summary of an answer as text.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use cable_core::summary::{CablePlace, CableSummary, EndForce, TouchKind};
 
 use crate::answer_json::Figures;
 
-/// Appends a block a cable. Writing to a `String` cannot fail, so its results are not looked at.
+/// Appends a block for each cable. Writing to a `String` cannot fail, so its results are ignored.
 pub fn write(t: &mut String, figures: &Figures) {
     for s in &figures.cables {
         let _ = writeln!(t, "\nCable `{}`, what is read first", s.cable);
@@ -118,7 +118,7 @@ fn percent(ratio: f64) -> String {
 }
 
 /// A line for each cable on the changes that the neglected bending stiffness would make to the
-/// first rest of a run, whose figures are given.
+/// first equilibrium of a run, whose figures are given.
 pub fn neglected_at_first_rest(figures: &Figures) -> Vec<String> {
     let of = |b: &NeglectedBending| {
         let rest = figures.cables.iter().find(|s| s.cable == b.cable)?;

@@ -8,7 +8,7 @@ use crate::files::FileError;
 use crate::units::UnitSystem;
 use crate::wording::{Sentence, serialize_in_si};
 
-/// Anything the three-line user can meet.
+/// Any error that a user of a simple program can get.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -7,12 +7,12 @@
 //! | `simulation/coupling.rs` | robot and cables in one step; `simulation/speed_search.rs`: the speed at which both agree |
 //! | `simulation/non_unique_equilibrium.rs` | warnings of equilibria that are one of many |
 //! | `simulation/loading_histories.rs` | tensions that other loading histories would have left |
-//! | `simulation/next_cheaper.rs` | error of the next cheaper model |
+//! | `simulation/cheaper_model_error.rs` | error of the next cheaper model |
 
+mod cheaper_model_error;
 mod coupling;
 mod loading_histories;
 mod model_fallback;
-mod next_cheaper;
 mod non_unique_equilibrium;
 mod speed_search;
 
@@ -43,11 +43,11 @@ pub(crate) const STEP_S: f64 = 1.0 / 240.0;
 /// time at 10 Hz.
 const MAX_FRAME_S: f64 = 0.1;
 
-/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen
-/// computes for hours without a word.
+/// Longest step with inertia, s: a quarter of a million inner steps. With a longer step a typing
+/// error would compute for hours without a message.
 const MAX_STEP_S: f64 = 1e3;
 
-/// The same without inertia, s.
+/// Longest step without inertia, s.
 const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
 
 /// A scene being solved.
@@ -83,7 +83,7 @@ pub struct Simulation {
 struct Choice {
     /// The model that answers report.
     model: Model,
-    /// What builds it.
+    /// The constructor of the model.
     source: ModelSource,
     /// The reason that answers report.
     reason: ModelReason,
@@ -141,8 +141,7 @@ impl StepSum {
 impl Simulation {
     /// Validates the scene and builds the model of each of its cables, at their routes, at rest.
     ///
-    /// # Errors
-    /// What is wrong with the scene, or what the model cannot do.
+    /// # Errors An error names the fault of the scene, or the missing feature of the model.
     pub fn new(scene: Scene, model: Model) -> Result<Self, Error> {
         Self::with_settings(scene, model, Settings::default())
     }
@@ -291,7 +290,7 @@ impl Simulation {
         self.next_cheaper = None;
     }
 
-    /// Verifies answers for the cables, with the robot as it is.
+    /// Verifies answers for the cables, with the robot in its present pose.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
         self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
@@ -355,7 +354,7 @@ impl Simulation {
     /// The reason for that model.
     #[must_use]
     pub fn reason(&self) -> &ModelReason {
-        // What was asked for has no other reason, whatever it meets.
+        // A requested model keeps this reason, whatever happens in the run.
         if self.reason == ModelReason::Requested {
             return &self.reason;
         }
@@ -386,7 +385,7 @@ impl Simulation {
         if self.requested.is_automatic() && self.settings.histories {
             let problems = self.cables.iter().map(SimulatedCable::problem);
             let cables = problems.zip(&self.answers).filter(|_| self.time_s() == 0.0);
-            self.next_cheaper = next_cheaper::next_cheaper(cables, self.reason(), self.settings);
+            self.next_cheaper = cheaper_model_error::next_cheaper(cables, self.reason(), self.settings);
         }
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
@@ -550,8 +549,7 @@ impl Simulation {
     /// The same run with an edited scene: cables keep their shape, speed and time; the start of
     /// [`Self::reset`] is that of the new scene once it is settled.
     ///
-    /// # Errors
-    /// What is wrong with the new scene; the old simulation is untouched.
+    /// # Errors An error names the fault of the new scene; the old simulation is unchanged.
     pub fn with_scene(&self, scene: Scene, settings: Settings) -> Result<Self, Error> {
         settings.validate()?;
         let mut next = Self::by_source(scene, settings, self.source.clone())?;
@@ -675,17 +673,16 @@ impl Simulation {
         }
     }
 
-    /// Returns where each cable is. Where one broke, its state has two nodes of the same arc
-    /// length.
+    /// Returns the state of each cable. Where a cable broke, its state has two nodes of the same
+    /// arc length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
         self.cables.iter().map(SimulatedCable::state).collect()
     }
 
-    /// Goes on where `old`, a simulation of the same cables, is: broken where that one broke.
+    /// Continues from the state of `old`, a simulation of the same cables, with the same breaks.
     ///
-    /// # Errors
-    /// When a state does not fit its cable.
+    /// # Errors An error is returned if a state does not fit its cable.
     pub fn carry(&mut self, old: &Self) -> Result<(), SolveError> {
         if let (Some(new), Some(old), true) = (&mut self.vehicle, &old.vehicle, old.time_s() > 0.0) {
             new.carry(old);
@@ -700,8 +697,7 @@ impl Simulation {
 
     /// Takes over states of the same cables, all whole.
     ///
-    /// # Errors
-    /// When a state does not fit its cable, or the cable broke.
+    /// # Errors An error is returned if a state does not fit its cable, or the cable broke.
     pub fn set_states(&mut self, states: &[State]) -> Result<(), SolveError> {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.set_state(s)?;

@@ -18,8 +18,8 @@ pub struct State {
     pub position_m: Vec<Vec2>,
     /// Velocity of each node, m/s.
     pub velocity_m_per_s: Vec<Vec2>,
-    /// True if it is a state of motion even where every velocity is zero: a model goes on from it
-    /// without bringing it to rest first.
+    /// True if the state is one of motion even if every velocity is zero: a model continues from it
+    /// without finding an equilibrium first.
     pub in_motion: bool,
 }
 

@@ -192,7 +192,7 @@ impl TensionRanges {
 pub struct RunPeaks {
     /// The peaks, with place and time.
     pub peaks: TensionPeaks,
-    /// Their ranges; None where nothing is known.
+    /// The ranges; `None` if they are not known.
     pub ranges: Option<TensionRanges>,
 }
 

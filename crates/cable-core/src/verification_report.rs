@@ -27,9 +27,10 @@ pub enum Law {
     Compression,
     /// A stiff cable pushes with no more than what would bend it aside.
     Stability,
-    /// Tension is strain times axial stiffness, and the nodes' way is the stretched material.
+    /// Tension is strain times axial stiffness, and the line through the nodes has the length of
+    /// the stretched material.
     Length,
-    /// Slack that hangs in the air pulls with its bow.
+    /// Slack in the air has the tension that belongs to its shape.
     Slack,
     /// Nothing is inside an obstacle.
     Penetration,
@@ -119,7 +120,7 @@ pub struct Finding {
     pub arc_length_m: f64,
     /// Place, m.
     pub at_m: [f64; 2],
-    /// The obstacle or support there; empty where nothing touches or holds.
+    /// The obstacle or support there; empty if there is none.
     pub with: String,
     /// By how much, in the SI unit of [`Law::quantity`].
     pub value: f64,
@@ -175,8 +176,8 @@ pub struct Verification {
     pub not_checked: Vec<NotChecked>,
     /// Forces on all cables.
     pub balance: Balance,
-    /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane
-    /// cannot show.
+    /// Length of material beyond the line through the nodes, m: cable in folds or layers, which the
+    /// plane cannot show.
     pub folded_m: f64,
 }
 

@@ -1,11 +1,11 @@
-//! This analysis answers one question with less and with more friction, since nobody knows a
-//! friction coefficient well.
+//! This analysis answers a scene with less and with more friction, because friction coefficients
+//! are known poorly.
 //!
 //! Coulomb's coefficient of a cable on rubble is known to a third at best, and enters tensions as
-//! e^{μφ}. So the scene is answered as it stands and with all its coefficients scaled down and up;
-//! between the least and the greatest of the three tensions at each place lies the ribbon. Tension
-//! does not always grow with friction (what a floor holds, a hitch need not pull), so the ribbon is
-//! least to greatest, not low to high.
+//! e^{μφ}. So the scene is answered as it is and with all its coefficients scaled down and up; the
+//! ribbon at each place is between the least and the greatest of the three tensions. Tension does
+//! not always grow with friction (a floor may hold what a hitch need not pull), so the ribbon is
+//! from least to greatest, not from low to high friction.
 
 use std::ops::ControlFlow;
 
@@ -18,11 +18,11 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::solution::{CableSolution, Solution};
 
-/// Places along a cable at which answers are compared. Fewer: the jump at a corner is drawn as a
-/// slope that can be seen.
+/// Number of places along a cable at which answers are compared. Smaller: the jump at a corner is
+/// drawn as a visible slope.
 const SAMPLES_ALONG: usize = 401;
 
-/// Longest step, s: that of a frame, so that the ribbon is of the run on screen.
+/// Longest step, s: that of a frame, so that the ribbon belongs to the run on screen.
 const STEP_S: f64 = 1.0 / 60.0;
 
 /// Least and greatest of the tensions at a place or an instant.
@@ -39,13 +39,13 @@ pub struct TensionRange {
 /// The effect of less and of more friction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionRange {
-    /// Of each cable: along it, at the end of the time asked for.
+    /// The range along each cable at the end of the time span.
     pub along: Vec<Vec<TensionRange>>,
-    /// The largest tension over time; one instant for a resting place.
+    /// The largest tension over time; one instant for an equilibrium.
     pub over_time: Vec<TensionRange>,
     /// Largest tension at the end with the least, the likely and the most friction, N.
     pub most_n: [f64; 3],
-    /// The failure before whose time all three could be followed.
+    /// The failure that ended one of the three runs, if any; the ranges end before it.
     pub failure: Option<FrictionFailure>,
 }
 
@@ -58,7 +58,7 @@ pub struct FrictionFailure {
     pub error: SolveError,
 }
 
-/// The question: which scene, by what, and for how long.
+/// The query: scene, model, settings and duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionQuery {
     /// The scene.
@@ -69,25 +69,25 @@ pub struct FrictionQuery {
     pub settings: Settings,
     /// Least and greatest friction over that of the scene.
     pub factors: [f64; 2],
-    /// Duration of the motion, s; 0 asks for the resting place.
+    /// Duration of the motion, s; 0 for the equilibrium alone.
     pub span_s: f64,
-    /// Actions of a hand meanwhile, in order of time; those at 0 s are how the scene begins.
+    /// Actions of a hand meanwhile, in order of time; those at 0 s apply to the start of the scene.
     pub hands: Vec<Action>,
 }
 
 /// An action of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Action {
-    /// When, s.
+    /// Its time, s.
     pub time_s: f64,
     /// Its kind.
     pub what: ActionKind,
 }
 
-/// A thing that a hand moves.
+/// A support or robot that a hand moves, with its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActionKind {
-    /// A support is then at a place.
+    /// A support is moved to a place.
     Support {
         /// Index of the cable.
         cable: usize,
@@ -96,7 +96,7 @@ pub enum ActionKind {
         /// Place, m.
         to_m: Point,
     },
-    /// The robot is told a speed, m/s; None: its path.
+    /// The robot gets a target speed, m/s; None: that of its path.
     Robot(Option<f64>),
 }
 
@@ -133,17 +133,17 @@ pub fn with_scaled_friction(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-/// Answers three times; `progress` hears the share done (0 to 1) and can end it.
+/// Answers the scene three times; `progress` receives the completed fraction (0 to 1) and can end
+/// the analysis.
 ///
-/// # Errors
-/// The scene is wrong, or one of its resting places was not found.
+/// # Errors An error if the scene is invalid, or an equilibrium was not found.
 pub fn friction_range(
     query: &FrictionQuery,
     mut progress: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<FrictionRange, Error> {
     let [low, high] = query.factors;
     let motion = query.span_s > 0.0;
-    // Models without inertia let time run without it, as the window does.
+    // Models without inertia advance time quasi-statically, as the window does.
     let slow = !query.model.capabilities().inertia;
     let inertia = if slow { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let question = if motion { Question::History(inertia) } else { Question::Rest };
@@ -194,7 +194,7 @@ pub fn friction_range(
     Ok(out)
 }
 
-/// Least and greatest; NaN where one is.
+/// Least and greatest value; NaN if any value is NaN.
 fn band(at: f64, values: impl Iterator<Item = f64>) -> TensionRange {
     let start = TensionRange { at, low_n: f64::INFINITY, high_n: f64::NEG_INFINITY };
     values.fold(start, |b, v| TensionRange {

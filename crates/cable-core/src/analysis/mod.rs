@@ -1,4 +1,4 @@
-//! Analyses ask a scene more than one question and compare the answers; all of them run through
+//! Analyses compare several answers of one scene; all of them run through
 //! [`Simulation`](crate::Simulation).
 //!
 //! | room | question |
@@ -7,16 +7,16 @@
 //! | `friction_range.rs` | how far do the tensions move when every friction coefficient is scaled down and up? |
 //! | `stiffness.rs` | by how much does the force change per metre that an end is moved? |
 //! | `neglected_bending.rs` | what would the neglected bending stiffness change? |
-//! | `settings_compared.rs` | what would other models and meshes answer? |
+//! | `settings_comparison.rs` | what would other models and meshes answer? |
 //! | `safe_reach/` | where can an end, or a robot, be taken before the tension exceeds a limit? |
 
 pub mod friction_range;
 mod neglected_bending;
 pub mod safe_reach;
-mod settings_compared;
+mod settings_comparison;
 mod stiffness;
 pub mod tension_budget;
 
 pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, scene_with_bending, settle_with_bending};
-pub use settings_compared::{Compared, Setting, answer_with};
+pub use settings_comparison::{Compared, Setting, answer_with};
 pub use stiffness::{EndStiffness, end_stiffness};

@@ -1,14 +1,15 @@
-//! This file estimates how neglected bending stiffness would change an answer of a flexible cable.
+//! This analysis estimates how neglected bending stiffness would change an answer of a flexible
+//! cable.
 //!
-//! A scene that says nothing of bending stiffness is answered without it: at rest that is exact to
-//! √(EI/T) beside spans and radii, and much cheaper. Where the preset of the cable says which
-//! stiffness is likely, the same scene is answered with it, and what the figures differ by is the
-//! error of having left it out.
+//! A scene without a bending stiffness is answered as flexible: at rest the relative error is of
+//! the order of √(EI/T) over spans and radii, and the answer is much cheaper. If the preset of the
+//! cable has a likely stiffness, the same scene is answered with it, and the difference of the
+//! figures is the error of neglecting it.
 //!
-//! Who asks for it gets the answer with the likely stiffness instead ([`settle_with_bending`]), or
-//! the scene to run ([`scene_with_bending`]), for all such cables or for those of which the answer
-//! without it is not one of a cable: bent tighter than it stands, curled up, in folds, or across
-//! itself. It is not the rule: of 34 scenes (the catalogue and `repro`) whose cable has such a
+//! On request the answer with the likely stiffness is given instead ([`settle_with_bending`]), or
+//! the scene to run ([`scene_with_bending`]): for all such cables, or for those whose flexible
+//! answer is no possible shape of a cable: bent too tightly, curled up, in folds, or crossing
+//! itself. This is not the default: of 34 scenes (the catalogue and `repro`) whose cable has such a
 //! preset, four have no sound answer with it, and heaps take seconds.
 
 use serde::Serialize;
@@ -22,14 +23,14 @@ use crate::simulation::Simulation;
 use crate::solution::error_estimates::greatest_tension;
 use crate::solution::{ErrorEstimates, LikelyBending, Solution, TakenStiffness, Warning, WarningCause, WarningKind};
 
-/// Effects that an answer at rest without bending stiffness left out, for one cable.
+/// Effects that an answer at rest without bending stiffness neglects, for one cable.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct NeglectedBending {
     /// Name of the cable.
     pub cable: String,
     /// The bending stiffness that its preset is likely to have, N·m².
     pub bending_stiffness_n_m2: f64,
-    /// The least and the most it may have, N·m², as far as that is known.
+    /// The least and the greatest stiffness that it may have, N·m², if known.
     pub range_n_m2: [Option<f64>; 2],
     /// The greatest tension with the likely stiffness, N; None where no answer was found.
     pub greatest_tension_n: Option<f64>,
@@ -39,8 +40,8 @@ pub struct NeglectedBending {
     pub unknown: Option<Error>,
 }
 
-/// Returns what it changes that cables were taken as perfectly flexible, of those whose preset says
-/// which stiffness is likely: the scene is laid and answered once more with that.
+/// Returns the effect of neglected bending for each perfectly flexible cable whose preset has a
+/// likely stiffness: the scene is laid and answered once more with that.
 #[must_use]
 pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -> Vec<NeglectedBending> {
     let mut stiff = scene.clone();
@@ -83,18 +84,18 @@ pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -
 /// Bending stiffness of the cables that are perfectly flexible in the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bending {
-    /// None, as the scene says.
+    /// No bending stiffness, as in the scene.
     #[default]
     AsWritten,
     /// The bending stiffness that their presets are likely to have.
     Likely,
-    /// That, of cables which without it are bent tighter than they stand, curl up, lie in folds, or
-    /// cross themselves.
+    /// The likely stiffness for cables that without it are bent too tightly, curl up, lie in folds,
+    /// or cross themselves.
     WhereItMatters,
 }
 
-/// The scene with the likely bending stiffness of some cables that are flexible in it, and that
-/// stiffness; None where nothing is known of any of them.
+/// The scene with the likely bending stiffness for some of its flexible cables, and that stiffness;
+/// None if it is known for none of them.
 fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, Vec<TakenStiffness>)> {
     let mut stiff = scene.clone();
     let mut taken = Vec::new();
@@ -108,18 +109,19 @@ fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, V
     (!taken.is_empty()).then_some((stiff, taken))
 }
 
-/// Returns whether a flexible line is not where a cable could be: folds have no width.
+/// Returns whether a warning shows a shape that no real cable could have: folds of a flexible line
+/// have no width.
 fn matters(warning: &Warning) -> bool {
     let kinds = [WarningKind::BendRadius, WarningKind::Kink, WarningKind::Curl, WarningKind::Loop];
     kinds.contains(&warning.kind) || matches!(warning.cause, WarningCause::Folds { .. })
 }
 
-/// A scene whose cables have the bending stiffness that was asked for.
+/// A scene whose cables have the requested bending stiffness.
 struct Chosen {
     scene: Scene,
-    /// The use that was made of likely stiffness, where there is any.
+    /// The likely stiffness that was used, if any.
     bending: Option<LikelyBending>,
-    /// The answer of the scene at rest, where that was needed to choose it.
+    /// The answer of the scene at rest, if it was needed for the choice.
     answer: Option<Solution>,
 }
 
@@ -154,8 +156,8 @@ fn choose(scene: &Scene, model: Model, settings: Settings, bending: Bending) -> 
     }
 }
 
-/// Returns the scene with the bending stiffness that is asked for, and the use that was made of
-/// likely stiffness. Where it matters is seen from where everything rests, without and with it.
+/// Returns the scene with the requested bending stiffness, and the likely stiffness that was used.
+/// The equilibria without and with it show where it matters.
 ///
 /// # Errors
 /// As [`Simulation::with_settings`] and [`Simulation::settle`], where it is settled.
@@ -169,9 +171,9 @@ pub fn scene_with_bending(
     Ok((scene, bending))
 }
 
-/// Returns where everything rests, with the bending stiffness that is asked for: the scene that was
-/// answered, and its answer, whose reason says what was taken. Where it matters and there is no
-/// answer with it, the answer is that without it, and says so.
+/// Returns the equilibrium with the requested bending stiffness: the scene that was answered, and
+/// its answer, whose reason names the stiffness. If it matters and there is no answer with it, the
+/// answer without it is returned, with a note.
 ///
 /// # Errors
 /// As [`Simulation::with_settings`] and [`Simulation::settle`].

@@ -1,10 +1,10 @@
 //! The end stiffness of a cable is the change of force per metre that an end is moved.
 //!
-//! Each end is moved a little right and left, up and down, without inertia and from the place of
-//! rest that was found, so that friction remembers: contacts that hold go on holding, and what
-//! slides on one of the ways there makes the figure the mean of two. The derivative is the central
-//! difference of the forces, K = −ΔR/2h with R the force of the cable on the support. All else
-//! stands still: motions, robots and loads are taken as they are at time 0.
+//! Each end is moved a little right and left, up and down, quasi-statically from the equilibrium,
+//! with friction memory: sticking contacts stay so, and if a contact slides in one of the
+//! directions, the figure is the mean of two. The derivative is the central difference of the
+//! forces, K = −ΔR/2h with R the force of the cable on the support. Everything else is fixed:
+//! motions, robots and loads have their values at time 0.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,16 +16,17 @@ use crate::problem::Series;
 use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 
-/// The force changes by this part of the greatest tension on the way. Larger: the difference is no
-/// longer the derivative (its error is the square of this); smaller: what the solver leaves
-/// unbalanced, 1e-8 of the tension, is seen.
+/// Change of the force by a move, as a fraction of the greatest tension. Larger: the difference is
+/// no longer the derivative (its error is the square of this); smaller: the solver's unbalanced
+/// force, 1e-8 of the tension, shows.
 const FORCE_CHANGE_FRACTION: f64 = 1e-3;
-/// The first move, which tells how far the others go, in lengths of the cable. Larger: taut ropes
-/// of steel are overloaded; smaller: the answers of the mesh do not change.
+/// First move, from which the others are scaled, in lengths of the cable. Larger: taut steel ropes
+/// are overloaded; smaller: the answers of the mesh do not change.
 const FIRST_MOVE_FRACTION: f64 = 1e-7;
-/// Longest move, in lengths of the cable: what gives way so easily is not stiff.
+/// Longest move, in lengths of the cable: a cable that yields so easily has no stiffness to speak
+/// of.
 const MAX_MOVE_FRACTION: f64 = 1e-3;
-/// Time for a move, s: without inertia any will do.
+/// Time for a move, s; without inertia any value will do.
 const MOVE_TIME_S: f64 = 0.01;
 
 /// The stiffness of one end.
@@ -39,11 +40,11 @@ pub struct EndStiffness {
     /// moved: the first row is of the force to the right by moves to the right and up, the second
     /// that of the force upwards.
     pub stiffness_n_per_m: [[f64; 2]; 2],
-    /// Distance by which it was moved for it, m.
+    /// Distance of the move, m.
     pub moved_m: f64,
 }
 
-/// The stiffness of every held end of every cable, by the model that answers for rest.
+/// The stiffness of every held end of every cable, by the model for equilibrium.
 ///
 /// # Errors
 /// As [`Simulation::settle`] and [`Simulation::step_quasi_static`].

@@ -1,25 +1,25 @@
-//! A tension budget tells where a tension comes from: it sums what adds tension between an end of
-//! the cable and a place on it.
+//! A tension budget divides a tension into its causes: it sums the changes of tension between an
+//! end of the cable and a place on it.
 //!
 //! Along a cable at rest dT/ds = −q·t − r, with the weight and wind q per metre of arc length, the
-//! tangent t and what friction takes, r. With dx = (1 + ε) θ t ds, θ = 1 + αΔT, the weight on a
-//! piece Δx adds −q·Δx / ((1 + ε) θ): for an inextensible cable the well-known w Δy. So
+//! tangent t and friction r. With dx = (1 + ε) θ t ds, θ = 1 + αΔT, the weight on a piece Δx adds
+//! −q·Δx / ((1 + ε) θ): for an inextensible cable the well-known w Δy. So
 //!
 //! ```text
 //! T(place) = T(end) + Σ −q·Δx / ((1 + ε) θ) + what is left of each piece
 //! ```
 //!
-//! and what is left belongs to the contact, pulley, grip or load the piece lies on. A piece on
-//! none of them is said as rest: inertia, shear of a stiff cable, the floor of a plan view, the
-//! mesh. The terms add up to the tension by construction; that each is what it is called is tested
-//! against the contacts of an answer.
+//! and the remainder belongs to the contact, pulley, grip or load on which the piece lies. If it
+//! lies on none of them, the remainder is the rest: inertia, shear of a stiff cable, the floor of a
+//! plan view, the mesh. The terms add up to the tension by construction; a test compares each with
+//! the contacts of an answer.
 
 use crate::math::Vec2;
 use crate::problem::Series;
 use crate::scene::{Scene, SupportKind, View};
 use crate::solution::{CableSolution, Node, Solution};
 
-/// Places nearer than this share of the cable's length are the same.
+/// Distance below which two places are the same, as a fraction of the cable's length.
 const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// The end of the cable (of the piece of it that holds the place) at which the sum begins.
@@ -45,7 +45,7 @@ pub enum Cause {
     Wind,
     /// Friction of a contact: index in the answer's contacts.
     Contact(usize),
-    /// A pulley's friction, or what a grip holds: index of the support.
+    /// A pulley's friction, or the force of a grip: index of the support.
     Support(usize),
     /// A point load: index in the scene's loads.
     Load(usize),
@@ -60,8 +60,8 @@ pub struct Contribution {
     pub cause: Cause,
     /// The tension it adds, N; below 0 it takes away.
     pub tension_n: f64,
-    /// Tension beyond over tension before, on the way from the end: the wrap's factor e^{±μφ} for a
-    /// contact. None where there is no such place, or no tension before it.
+    /// Ratio of the tension after the cause to that before it, on the way from the end: for a
+    /// contact the factor e^{±μφ}. None if the cause has no place, or no tension before it.
     pub factor: Option<f64>,
 }
 
@@ -100,7 +100,7 @@ struct DistributedLoad {
     thermal_stretch: f64,
 }
 
-/// Returns where the tension of a cable (by index) at an arc length (m) comes from. None without an
+/// Returns the budget of the tension of a cable (by index) at an arc length (m). None without an
 /// answer there.
 #[must_use]
 pub fn tension_budget(
@@ -143,7 +143,8 @@ pub fn tension_budget(
     }
     for source in sources {
         let Some([before, after]) = source.passed else { continue };
-        // Of one that is passed whole the answer knows better than the nodes nearest to its ends.
+        // If a source is passed completely, the values of the answer are more accurate than the
+        // nodes nearest to its ends.
         let whole = source.extent.iter().all(|s| (low..=high).contains(s));
         let [before, after] = match source.sides.filter(|_| whole) {
             Some([a, b]) if forward => [a, b],
@@ -207,8 +208,8 @@ fn sources(scene: &Scene, cable: usize, solved: &CableSolution) -> Vec<LocalSour
     out
 }
 
-/// The source that a piece between two arc lengths lies on: the one it shares most of its length
-/// with, of several it only touches the one that changes the tension most.
+/// The source on which a piece between two arc lengths lies: the one with the longest common
+/// length; of several that it only touches the one that changes the tension most.
 fn source_under(sources: &mut [LocalSource], piece: [f64; 2], near: f64) -> Option<&mut LocalSource> {
     let [low, high] = if piece[0] <= piece[1] { piece } else { [piece[1], piece[0]] };
     let shared = |s: &LocalSource| high.min(s.extent[1]) - low.max(s.extent[0]);
@@ -219,7 +220,7 @@ fn source_under(sources: &mut [LocalSource], piece: [f64; 2], near: f64) -> Opti
     })
 }
 
-/// The nodes from the end the sum begins at to the place, which is the last of them.
+/// The nodes from the end at which the sum begins to the place, which is the last of them.
 fn path(solved: &CableSolution, arc_length_m: f64, from: StartEnd) -> Option<Vec<Node>> {
     let piece = solved.pieces().filter(|p| p.len() >= 2).min_by(|a, b| {
         let off = |p: &[Node]| {
@@ -251,7 +252,7 @@ fn path(solved: &CableSolution, arc_length_m: f64, from: StartEnd) -> Option<Vec
     nodes.iter().all(|n| n.tension_n.is_finite()).then_some(nodes)
 }
 
-/// Linear between two nodes.
+/// A node interpolated linearly between two nodes.
 fn between(a: &Node, b: &Node, f: f64) -> Node {
     let mix = |x: f64, y: f64| x + (y - x) * f;
     Node {

@@ -1,4 +1,5 @@
-//! An answer that holds numbers, along the material, can be asked the other laws.
+//! This check finds whether an answer has finite numbers and nodes in order along the material;
+//! without that the other laws cannot be checked.
 
 use super::checked_cable::CheckedCable;
 use super::tolerance::MATERIAL_TOLERANCE;
@@ -6,7 +7,7 @@ use crate::solution::{ContactReport, Node, SupportReaction};
 use crate::verification_report::{Finding, Law, Verification};
 
 pub(super) fn not_finite(checked: &CheckedCable<'_>) -> Option<Finding> {
-    // Without a branch for each number.
+    // This form has no branch for each number.
     let all = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());
     let node = |n: &Node| {
         all(&[n.arc_length_m, n.x_m, n.y_m, n.vx_m_per_s, n.vy_m_per_s, n.tension_n])
@@ -38,7 +39,8 @@ pub(super) fn not_finite(checked: &CheckedCable<'_>) -> Option<Finding> {
     a.contacts.iter().find(|c| !contact(c)).map(|c| bad(0, &c.obstacle))
 }
 
-/// Returns whether the nodes run along the material: without that nothing else can be asked.
+/// Returns whether the nodes are in order along the material; without that no other law can be
+/// checked.
 pub(super) fn check_material(checked: &CheckedCable<'_>, found: &mut Verification) -> bool {
     found.ask(Law::Material);
     let before = found.findings.len();

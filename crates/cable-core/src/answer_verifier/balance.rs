@@ -1,11 +1,11 @@
-//! Forces on each piece of a cable at rest add up to nothing; in motion its momentum changes by
-//! them.
+//! This check finds whether the forces on each piece of a cable at rest add up to zero; in motion
+//! they must change its momentum.
 //!
 //! With F(s) the internal force, b the load per metre and d the force of obstacles on a piece of
 //! cable from s₁ to s₂, F(s₂) − F(s₁) + b (s₂ − s₁) + Σ P + d = 0, with P the point forces on it.
-//! So d follows from what the answer says of the cable alone, and must be nothing in the air, and
-//! within the cone about the normals of what touches the piece elsewhere. Beyond its ends the cable
-//! has no internal force.
+//! So d follows from the cable's values in the answer alone. It must be zero in the air, and
+//! elsewhere within the friction cone about the normals of the obstacles that touch the piece.
+//! Beyond its ends the cable has no internal force.
 
 use super::checked_cable::{AppliedForce, CheckedCable};
 use super::support_hold::{Role, SupportHold};
@@ -18,7 +18,7 @@ use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::solution::ContactReport;
 use crate::verification_report::{Balance, Law, Verification};
 
-/// A piece of the cable between nodes, its ends counted in.
+/// A piece of the cable between two nodes, including both.
 #[derive(Clone, Debug, Default)]
 struct CheckedPiece {
     /// First and last node.
@@ -27,7 +27,7 @@ struct CheckedPiece {
     contact: Vec2,
 }
 
-/// Contacts as they are reported: they push, within their cone.
+/// Checks that reported contacts push, within their friction cone.
 pub(super) fn check_contacts(checked: &CheckedCable<'_>, found: &mut Verification) {
     found.ask(Law::Push);
     found.ask(Law::Friction);
@@ -50,8 +50,8 @@ pub(super) fn check_contacts(checked: &CheckedCable<'_>, found: &mut Verificatio
     }
 }
 
-/// The pieces from node to node. What acts at a node belongs to the piece that ends there, as
-/// internal forces are those just beyond nodes.
+/// The pieces from node to node. A force at a node belongs to the piece that ends there, because
+/// internal forces are those just after nodes.
 fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
     let nodes = &checked.answer.nodes;
     let last = nodes.len() - 1;
@@ -63,12 +63,11 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
         checked.points.iter().chain(&self_contact_forces).map(|p| (node(p.arc_length), p.force)).collect();
     known.sort_by_key(|p| p.0);
     let mut known = known.into_iter().peekable();
-    // Forces of bodies that the scene does not hold still are known to a node's neighbourhood
-    // only.
+    // Forces of moving bodies are known only to a node's neighbourhood.
     let cut = move |k: usize| {
         let [before, after] = [k - 1, (k + 1).min(last)].map(|k| nodes[k].arc_length_m);
-        // Nodes of one material point are one: where the cable turns round a point, it is not
-        // said what it does there.
+        // Nodes of one material point are merged: if the cable turns round a point, the answer does
+        // not describe its path there.
         nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
             && self_contact_forces.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
     };
@@ -79,7 +78,7 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
         }
         let to = (from + 1..last).find(|&k| cut(k)).unwrap_or(last);
         let [a, b] = [from, to].map(|k| &nodes[k]);
-        // Beyond the ends of the cable there is nothing.
+        // There is no cable beyond its ends.
         let before = if from == 0 { Vec2::zeros() } else { a.force() };
         let after = if to == last { Vec2::zeros() } else { b.force() };
         let mut contact = before - after - checked.body * (b.arc_length_m - a.arc_length_m);
@@ -99,11 +98,11 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
     let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
     let mut rays = Vec::new();
-    // The piece that is furthest beyond its own cone, what it is beyond and what is allowed, N.
+    // The piece with the largest excess over its own cone, that excess and the allowed one, N.
     let mut gross: Option<(f64, f64, usize)> = None;
     for piece in pieces(checked) {
         let Some(excess) = excess(checked, near, &piece, &mut rays) else {
-            // In the air residuals add up: each may be small and the sum not.
+            // In the air residuals add up: each may be small and their sum large.
             adrift += piece.contact;
             for square in [adrift.norm_squared(), piece.contact.norm_squared()] {
                 in_air = f64::max(in_air, square);
@@ -133,7 +132,8 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     }
     sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
     let allowed = limit + CONE_EXCESS * pressed;
-    // Small sums may be hidden by all bends together, larger ones by the bend where they are.
+    // All bends together may account for a small sum, and a single bend for a larger one at its
+    // place.
     let [at_bends, apart] = if beyond <= allowed { [0.0; 2] } else { lumped_friction(checked, near) };
     let hidden = smaller(at_bends, REPORTED_BALANCE * checked.scale);
     let all = (!(beyond <= allowed + hidden) && !(apart <= allowed)).then_some((beyond, allowed, worst.1));
@@ -146,8 +146,8 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     check_sums(checked, found, sums, [contacts, wheels]);
 }
 
-/// Returns what obstacles and the floor would do to a piece beyond what their friction allows,
-/// N; None where nothing touches it.
+/// Returns the force on a piece beyond the friction cones of obstacles and floor, N; None if
+/// nothing touches it.
 fn excess(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPiece, rays: &mut Vec<Vec2>) -> Option<f64> {
     let within = |n: &NearestFeature| {
         let pushes = piece.contact.dot(&n.normal);
@@ -194,7 +194,7 @@ fn support_forces(checked: &CheckedCable<'_>) -> Vec2 {
     checked.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(SupportHold::force).sum()
 }
 
-/// Returns what is beyond the floor's friction, too, N.
+/// Returns the part of an excess that exceeds the floor's friction, too, N.
 fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -> f64 {
     if !checked.floor_rubs() {
         return excess;
@@ -202,8 +202,8 @@ fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -
     let weight = checked.cable.linear_density_kg_per_m * checked.scene.environment.gravity_m_per_s2;
     let nodes = &checked.answer.nodes;
     let last = nodes.len() - 1;
-    // Friction at a node is of half of both pieces beside it, and at an end of the cable of the
-    // half there too.
+    // Friction at a node is that of half of both pieces beside it, and at an end of the cable also
+    // that of the half there.
     let [a, b] = piece.nodes.map(|k| nodes[k].arc_length_m);
     let next = nodes[(piece.nodes[1] + 1).min(last)].arc_length_m;
     let half = if piece.nodes[0] == 0 { 0.5 * (b - a) } else { 0.0 };
@@ -218,10 +218,10 @@ fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {
         .any(|&(center, radius, _)| piece.nodes.iter().any(|&k| checked.is_on_wheel(k, center, radius)))
 }
 
-/// Friction (N) that the bars' own weight may add or hide where the ground turns, all of it,
-/// and what pieces ask of obstacles beyond their cones when each is let off with its own: a bar
-/// carries its weight to its ends, where it turns the cable by weight over tension, and so
-/// presses as no edge does.
+/// Returns two sums, N: the friction that the bars' own weight may add or hide where the ground
+/// turns, and the excess of pieces over their cones after each is reduced by its own share of that.
+/// A bar carries its weight to its ends, where it turns the cable by weight over tension, and so
+/// presses like no edge.
 fn lumped_friction(checked: &CheckedCable<'_>, near: &Neighbours) -> [f64; 2] {
     let nodes = &checked.answer.nodes;
     let last = nodes.len() - 1;
@@ -229,13 +229,13 @@ fn lumped_friction(checked: &CheckedCable<'_>, near: &Neighbours) -> [f64; 2] {
     for piece in pieces(checked) {
         let excess = excess(checked, near, &piece, &mut rays).unwrap_or(0.0);
         let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
-        // Material that lies in folds is beside the way, and turns nothing.
+        // Material in folds lies beside the path, and turns nothing.
         let way: f64 = nodes[from..=to].windows(2).map(|pair| (pair[1].at() - pair[0].at()).norm()).sum();
         let weight = checked.body.norm() * smaller(nodes[to].arc_length_m - nodes[from].arc_length_m, way);
         let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
         let turn = if weight < force { weight / force } else { 1.0 };
         let lumped = if gather_rays(checked, near, &piece, &mut rays) { weight * turn } else { 0.0 };
-        // No more than a part of the force that is there: what is slack hides nothing.
+        // At most a fraction of the force there: slack cable hides nothing.
         let hidden = smaller(LUMPED_WEIGHT_TURN * greatest_friction(checked) * lumped, REPORTED_BALANCE * force);
         sums = [sums[0] + hidden, sums[1] + larger(excess - hidden, 0.0)];
     }
@@ -247,9 +247,9 @@ fn greatest_friction(checked: &CheckedCable<'_>) -> f64 {
     checked.scene.obstacles.iter().map(|o| o.friction.unwrap_or(checked.cable.friction)).fold(0.0, larger)
 }
 
-/// Gathers unit vectors that bound the friction cones of all that touches a piece, its
-/// neighbours counted in: a force that is known at nodes only is known to a node's
-/// neighbourhood. Returns whether their normals differ, as at a corner.
+/// Gathers unit vectors that bound the friction cones of all obstacles that touch a piece or its
+/// neighbours, because a force that is known only at nodes is known to a node's neighbourhood.
+/// Returns whether their normals differ, as at a corner.
 fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPiece, out: &mut Vec<Vec2>) -> bool {
     out.clear();
     let (mut first, mut turns, mut before) = (None, false, (Vec2::zeros(), 0.0));
@@ -279,7 +279,8 @@ fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPie
     turns
 }
 
-/// Momentum changes by the impulses of what acts, and weight gives what its mass does.
+/// Checks that momentum changes by the impulses of the account, and that the impulse of the weight
+/// is that of the mass.
 pub(super) fn check_momentum(checked: &CheckedCable<'_>, found: &mut Verification) {
     let Some(account) = &checked.answer.momentum else { return };
     found.ask(Law::Momentum);
@@ -294,7 +295,7 @@ pub(super) fn check_momentum(checked: &CheckedCable<'_>, found: &mut Verificatio
     }
 }
 
-/// Returns how far a force is outside the convex cone of some rays (unit vectors), N.
+/// Returns the distance of a force from the convex cone of some rays (unit vectors), N.
 fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
     let size = force.norm();
     if size == 0.0 {

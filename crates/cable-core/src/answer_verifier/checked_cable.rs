@@ -1,4 +1,5 @@
-//! What the laws ask about a cable is worked out from its scene and its answer alone.
+//! This module derives the quantities that the laws need of a cable from its scene and its answer
+//! alone.
 
 use super::support_hold::{Role, SupportHold, series, support_holds};
 use super::surroundings::{Neighbours, Surroundings};
@@ -8,7 +9,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, Node};
 use crate::verification_report::{Finding, Law};
 
-/// One cable with what there is to know of it.
+/// One cable with these quantities.
 pub(super) struct CheckedCable<'a> {
     pub surroundings: &'a Surroundings<'a>,
     pub scene: &'a Scene,
@@ -24,7 +25,7 @@ pub(super) struct CheckedCable<'a> {
     pub body: Vec2,
     /// 1 + αΔT.
     pub thermal: f64,
-    /// Greatest of the forces, N: what a residual is compared with.
+    /// Greatest of the forces, N, with which residuals are compared.
     pub scale: f64,
 }
 
@@ -98,8 +99,7 @@ impl CheckedCable<'_> {
         }
     }
 
-    /// The greatest force on or in the cable, N; of one without any the least that anybody would
-    /// read.
+    /// The greatest force on or in the cable, N; for a cable without forces a least readable one.
     fn forces_scale(&self) -> f64 {
         let square = self.answer.nodes.iter().map(|n| n.force().norm_squared()).fold(0.0, f64::max);
         let loads = self.points.iter().map(|p| p.force.norm()).fold(0.0, larger);
@@ -107,7 +107,7 @@ impl CheckedCable<'_> {
         larger(larger(square.sqrt(), loads), larger(load, MIN_STRAIN * self.cable.axial_stiffness_n))
     }
 
-    /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
+    /// Reported forces of contacts with the cable itself, which is no obstacle of the scene.
     pub fn self_contact_forces(&self) -> impl Iterator<Item = AppliedForce> {
         let self_contact_forces = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
         self_contact_forces
@@ -115,29 +115,29 @@ impl CheckedCable<'_> {
             .map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
-    /// Distance of the centre line from a surface at which they may push, m.
+    /// Distance of the centre line from a surface within which contacts may push, m.
     pub fn reach(&self) -> f64 {
         0.5 * self.cable.diameter_m + larger(REACH_M, REACH_DIAMETERS * self.cable.diameter_m)
     }
 
-    /// Returns what is near the line from each node to the next.
+    /// Returns the obstacles near the line from each node to the next.
     pub fn near(&self) -> Neighbours {
         let reach = self.reach();
         Neighbours::new(self.surroundings, self.answer.nodes.iter().map(Node::at), reach)
     }
 
-    /// Returns where supports hold the cable by its axis, m.
+    /// Returns the points at which supports hold the cable by its axis, m.
     pub fn held_at(&self) -> Vec<Vec2> {
         self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
     }
 
-    /// Returns whether a floor rubs on the whole cable.
+    /// Returns whether a floor has friction with the whole cable.
     pub fn floor_rubs(&self) -> bool {
         self.scene.view == View::Plan && self.cable.friction > 0.0
     }
 
-    /// Returns what may act on each metre of the cable without touching it at a place, N/m: weight
-    /// and wind, and in plan view the floor's friction.
+    /// Returns the greatest distributed load on the cable, N/m: weight and wind, and in plan view
+    /// the floor's friction.
     pub fn spread_load(&self) -> f64 {
         if !self.floor_rubs() {
             return self.body.norm();
@@ -146,8 +146,8 @@ impl CheckedCable<'_> {
         self.body.norm() + self.cable.friction * weight
     }
 
-    /// Internal force just before a node that is not the first, as what touches the bar before it
-    /// is all at its end, N.
+    /// Internal force just before a node that is not the first, N, with all contact forces of the
+    /// bar before it at its end.
     pub fn force_before(&self, node: usize) -> Vec2 {
         let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
         a.force() - self.body * (b.arc_length_m - a.arc_length_m)
@@ -171,8 +171,8 @@ impl CheckedCable<'_> {
         })
     }
 
-    /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is
-    /// all at the end.
+    /// Internal force at the end of a bar, N: with its contact forces spread along it, and with all
+    /// of them at the end.
     pub fn forces_at_end(&self, bar: &CheckedBar<'_>) -> [Vec2; 2] {
         [bar.to.force(), bar.from.force() - self.body * bar.length]
     }
@@ -200,7 +200,7 @@ impl CheckedCable<'_> {
         self.body.norm() * (to - from)
     }
 
-    /// Rounding (m) of the way of so much material, m.
+    /// Round-off (m) of the path of so much material, m.
     pub fn length_rounding(&self, material: f64) -> f64 {
         LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m
     }

@@ -1,5 +1,5 @@
-//! A flexible cable pulls along its way, with the force in it as its tension, its way is its
-//! material, and what is slack in the air pulls, too.
+//! These checks hold for a flexible cable: its force is tangential and is its tension, the length
+//! of its path is that of its strained material, and slack cable in the air has tension, too.
 
 use super::checked_cable::{CheckedBar, CheckedCable};
 use super::surroundings::{Neighbours, distance};
@@ -10,8 +10,8 @@ use super::tolerance::{
 use crate::math::{Vec2, cross, larger, smaller};
 use crate::verification_report::{Law, Verification};
 
-/// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
-/// way, m.
+/// Deviation of a piece's path from the right one, its tolerance, and the material in excess of its
+/// path, m.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LengthDeviation {
     pub value: f64,
@@ -19,8 +19,8 @@ pub(super) struct LengthDeviation {
     pub folded: f64,
 }
 
-/// The laws of a flexible cable from node to node: its tension is the force in it, it pulls
-/// along its way, and its way is its material.
+/// Checks a flexible cable from node to node: its tension is the size of its force, it has no
+/// compression, and its path fits its material.
 pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
     [Law::Length, Law::Slack, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
     let mut before = None;
@@ -41,8 +41,8 @@ pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verificatio
     }
 }
 
-/// The tension of a flexible cable is the size of the force in it: at the node between two bars
-/// one of those between just before and just beyond it.
+/// Checks that the tension of a flexible cable is the size of its force: at a node between two bars
+/// a value between those just before and just after it.
 fn check_tension(
     checked: &CheckedCable<'_>,
     found: &mut Verification,
@@ -55,8 +55,8 @@ fn check_tension(
     if (tension - bar.forces[0]).abs() <= limit {
         return;
     }
-    // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the
-    // floor's friction on them, is in between.
+    // `fem` takes it from the middles of the bars beside a node, so half of their weight, or of the
+    // floor's friction on them, is between.
     let beside = bar.length + before.map_or(0.0, |b| b.length);
     let limit = limit + LUMPED_WEIGHT_TURN * checked.spread_load() * beside;
     let after = bar.from.force();
@@ -69,12 +69,12 @@ fn check_tension(
     }
 }
 
-/// A flexible cable pulls along its way.
+/// Checks that a flexible cable is not compressed.
 ///
-/// A bar that lies loose carries its weight anywhere along it: there it pushes if it does at both
-/// its ends.
+/// A loose bar may carry its weight anywhere along it, so it counts as compressed only if it is at
+/// both its ends.
 fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
-    // Nodes of one material point have no way between them.
+    // Nodes of one material point have no path between them.
     if bar.length <= MATERIAL_TOLERANCE * checked.cable.length_m {
         return;
     }
@@ -94,7 +94,7 @@ fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, near:
     }
 }
 
-/// The way of a bar is what its material and force make of it.
+/// Checks that the path of a bar is that of its material under its force.
 fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
     let touches = checked.touches(near, bar.index);
     let [spread, at_end] = checked.forces_at_end(bar);
@@ -129,22 +129,21 @@ pub(super) fn report_length(
     }
 }
 
-/// The most (m) by which a way may be from what it should be by rounding, and beside what
-/// touches.
+/// Allowed error of a path (m) by round-off, and beside contacts.
 fn length_slack(checked: &CheckedCable<'_>, material: f64, touches: bool) -> f64 {
     let aside = if touches { CONTACT_SHIFT_DIAMETERS * checked.cable.diameter_m } else { 0.0 };
     checked.length_rounding(material) + aside
 }
 
-/// Returns how far the way of a bar of a flexible cable, whose internal force is `end` (N) of
-/// size `q` (N) at its end, is from what it should be, and how far it may, m; None where the
-/// force has no direction, or the bar's own weight turns it that far.
+/// Returns the deviation of the path of a flexible bar, whose internal force at its end is `end`
+/// (N) of size `q` (N), and the allowed one, m; None if the force has no direction, or the bar's
+/// own weight turns it too far.
 #[inline]
 fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
     let (compliance, start, p) = (1.0 / checked.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
     let (least, most) = if p < q { (p, q) } else { (q, p) };
     let turn = (end - start).norm_squared() / (least * least);
-    // A force no greater than what is let pass unbalanced has no direction, and may be none.
+    // A force within the allowed unbalanced one has no reliable direction, and may be zero.
     if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * checked.scale) {
         return None;
     }
@@ -154,7 +153,7 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
         + middle * (4.0 * (1.0 / middle.norm() + compliance))
         + end * (1.0 / q + compliance);
     let material = checked.thermal * bar.length;
-    // Weight that a bar carries beyond its straight part turns it by as much.
+    // Weight that a bar carries beyond its straight part turns it by that much.
     let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.index) / most } else { 0.0 };
     if lumped > FOLD_TURN {
         return None;
@@ -163,8 +162,8 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
     Some((bar.way - rates * (material / 6.0), limit))
 }
 
-/// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its
-/// material.
+/// Handles a bar whose force, of size `q` (N) at its end, has no direction: it must not be longer
+/// than its material.
 fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: bool) -> LengthDeviation {
     let material = checked.thermal * bar.length;
     let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
@@ -200,7 +199,7 @@ fn check_slack(
     }
 }
 
-/// Straight parts in which the bow of a loose bar is looked at.
+/// Number of straight parts in which the bow of a loose bar is checked.
 const BOW_PARTS: usize = 8;
 
 /// Returns whether a bar, with so much of its material (m) beside its chord, hangs between two

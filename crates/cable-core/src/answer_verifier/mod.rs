@@ -2,25 +2,27 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | `mod.rs` | [`Verifier`]: asks the laws of an answer; which and what was found is a [`Verification`] |
-//! | `checked_cable.rs` | one cable as the laws see it: its forces, bars, and what touches them |
-//! | `answer.rs` | every number is one, and nodes run along the material |
-//! | `penetration.rs` | nothing lies inside anything |
+//! | `mod.rs` | [`Verifier`]: checks the laws of an answer; the result is a [`Verification`] |
+//! | `checked_cable.rs` | one cable with the quantities that the laws need: forces, bars,
+//! neighbouring obstacles |
+//! | `answer.rs` | finite numbers, and nodes in order along the material |
+//! | `penetration.rs` | no cable lies inside an obstacle or itself |
 //! | `balance.rs` | forces on each piece, contacts and their friction, momentum |
 //! | `flexible_cable.rs`, `stiff_cable.rs` | tension, length and bending moment from node to node |
-//! | `surroundings.rs` | obstacles and the robot as the checker sees them: distances by brute force, normals, friction |
-//! | `stability.rs` | whether a stiff cable holds what it pushes with |
-//! | `supports.rs`, `support_hold.rs` | whether the cable is where its supports hold it; what each does to it |
-//! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
+//! | `surroundings.rs` | obstacles and the robot: distances by brute force, normals, friction |
+//! | `stability.rs` | whether a stiff cable bears its compression |
+//! | `supports.rs`, `support_hold.rs` | whether the cable is at its supports; the action of each
+//! support |
+//! | `pulleys.rs` | the capstan law between the tensions beside eyes and wheels |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
-//! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide
-//! itself here. What is asked: each piece of cable is balanced, whatever acts on it that is neither
-//! a support nor a load nor weight comes from an obstacle that touches it there, pushes, and lies
-//! within the friction cone that was given; the way drawn through the nodes is the material with
-//! its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a
-//! piece do not add up to nothing: there the momentum of each cable must change by the impulses
-//! that its account of the step names.
+//! No code is shared with the models or with their contact geometry, so a fault there cannot hide
+//! itself here. The laws are: each piece of cable is balanced; every force on it other than
+//! supports, loads and weight comes from an obstacle that touches it there, pushes, and lies within
+//! the given friction cone; the path through the nodes fits the strained material; a flexible cable
+//! has no compression; no cable lies inside an obstacle. In motion the forces on a piece do not
+//! balance; there the momentum of each cable must change by the impulses of its account of the
+//! step.
 
 mod answer;
 mod balance;
@@ -50,10 +52,10 @@ pub use crate::verification_report::{Balance, Finding, Law, NotChecked, Verifica
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Depth {
-    /// The check of every answer: obstacles that are within the box of a bar.
+    /// The check of every answer: obstacles within the bounding box of a bar.
     #[default]
     Always,
-    /// On request: the cable against itself as well. Time grows with the square of the number of
+    /// Also the cable against itself, on request. The time grows with the square of the number of
     /// nodes.
     Full,
 }
@@ -65,19 +67,19 @@ pub struct Verifier {
 }
 
 impl Verifier {
-    /// For a scene that was validated.
+    /// A verifier for a validated scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         Self { obstacles: Obstacles::new(scene) }
     }
 
-    /// Asks every law of an answer of `scene`, the one it was made for.
+    /// Checks every law for an answer of `scene`, for which the verifier was made.
     #[must_use]
     pub fn check(&self, scene: &Scene, solution: &Solution, depth: Depth) -> Verification {
         self.check_cables(scene, &solution.cables, solution.robot.as_ref(), solution.time_s, depth)
     }
 
-    /// The same of the answers for its cables and of its robot at a time, s.
+    /// Checks the answers of cables and robot at a time, s.
     pub(crate) fn check_cables(
         &self,
         scene: &Scene,
@@ -95,7 +97,7 @@ impl Verifier {
     }
 }
 
-/// Asks the laws of one cable.
+/// Checks the laws for one cable.
 fn check(found: &mut Verification, checked: &CheckedCable<'_>, depth: Depth) {
     let (cable, answer) = (checked.cable, checked.answer);
     found.ask(Law::Finite);

@@ -1,4 +1,4 @@
-//! Nothing of a cable lies inside an obstacle or inside the cable itself.
+//! This check finds parts of a cable inside an obstacle or inside the cable itself.
 
 use super::checked_cable::CheckedCable;
 use super::surroundings::{Neighbours, distance};
@@ -12,12 +12,11 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
     let to_scale = larger(DEPTH_M, DEPTH_LENGTHS * checked.cable.length_m);
     let allowed = (DEPTH_DIAMETERS * checked.cable.diameter_m).min(to_scale);
     let nodes = &checked.answer.nodes;
-    // Where the scene itself holds the axis on a surface, the cable is as deep there as it is
-    // thick.
+    // If the scene itself holds the axis on a surface, the cable is as deep there as its radius.
     let held = checked.held_at();
     let on_surface = MATERIAL_TOLERANCE * checked.cable.length_m;
     for (k, n) in nodes.iter().enumerate() {
-        // From a bar that nothing is near it is as far inside as the node before.
+        // After a bar without near obstacles the depth is that of the node before.
         if k > 0 && near.of(k - 1).is_empty() {
             continue;
         }
@@ -30,10 +29,10 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
             found.report(finding);
         }
     }
-    // Between the pieces of a broken cable there is none.
+    // There is no cable between the pieces of a broken one.
     let is_cable = |k: usize| !near.of(k).is_empty() && !checked.answer.breaks.contains(&(k + 1));
     for k in (0..nodes.len() - 1).filter(|k| is_cable(*k)) {
-        // Between two nodes the cable is drawn straight where it is round.
+        // Between two nodes a round cable is drawn straight.
         let pair = &nodes[k..=k + 1];
         let way = (pair[1].at() - pair[0].at()).norm();
         let bend = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger);
@@ -53,7 +52,7 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
     }
 }
 
-/// Every bar against every other that is further along the cable than it is thick.
+/// Checks every bar against every other that is farther along the cable than its thickness.
 pub(super) fn check_self_contact(checked: &CheckedCable<'_>, found: &mut Verification) {
     found.ask(Law::SelfContact);
     let nodes = &checked.answer.nodes;

@@ -1,9 +1,9 @@
 //! The friction of eyes and wheels limits the change of tension beside them: the capstan law.
 //!
-//! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ −
-//! (b·t + m b·n) ds: from the tension before a pulley the greatest that friction can make of it
-//! follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur l'effet du frottement dans
-//! l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
+//! With m from −μ to μ, t the direction, n the outward normal and b the load per metre, dT = m T dθ
+//! − (b·t + m b·n) ds: the greatest tension after a pulley follows from that before it with m = μ,
+//! the least with m = −μ (L. Euler, "Remarques sur l'effet du frottement dans l'équilibre", Mém.
+//! Acad. Berlin 1762, with the weight on the wheel).
 
 use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
@@ -12,7 +12,7 @@ use crate::math::{Vec2, cross, larger};
 use crate::solution::SupportReaction;
 use crate::verification_report::{Law, Verification};
 
-/// Part of its radius by which a node may be off a wheel and lie on it: rounding.
+/// Distance from a wheel within which a node lies on it (round-off), as a fraction of its radius.
 const WHEEL_TOLERANCE: f64 = 1e-9;
 
 /// A pulley that leads the cable, with what it does.
@@ -25,14 +25,14 @@ struct PulleyContact<'a> {
     nodes: [usize; 2],
 }
 
-/// Friction of pulleys, and the tensions reported beside them.
+/// Checks the friction of pulleys, and the tensions reported beside them.
 pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification) {
     let nodes = &checked.answer.nodes;
     for led in pulley_contacts(checked) {
         found.ask(Law::Friction);
         let [first, last] = led.nodes;
-        // A node with no material before it, or none beyond it, is an end of the cable: nothing
-        // leads to the pulley.
+        // A node without material before or after it is an end of the cable, so no cable leads to
+        // the pulley.
         if first == 0 || last + 1 >= nodes.len() {
             continue;
         }
@@ -64,7 +64,7 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
     }
 }
 
-/// The tension that friction with m makes of the force before a pulley, N.
+/// The tension after a pulley that follows from the force before it with friction m, N.
 fn tension_after_pulley(checked: &CheckedCable<'_>, led: &PulleyContact<'_>, before: Vec2, m: f64) -> f64 {
     let nodes = &checked.answer.nodes;
     let turn = |a: Vec2, b: Vec2| cross(a, b).atan2(a.dot(&b)).abs();

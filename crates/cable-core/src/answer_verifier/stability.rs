@@ -1,11 +1,11 @@
-//! The stability law asks whether a stiff cable bears its compression or buckles.
+//! This check finds whether a stiff cable bears its compression or buckles.
 //!
-//! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the
-//! force along it, as long as every part between two places that are held keeps its chord: two
-//! conditions each (R. Levien, "The elastica: a mathematical history", 2008; J. H. Maddocks,
-//! "Stability of nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). As many
-//! directions as there are conditions may lower the energy without being open to the cable; one
-//! more, and it leaves.
+//! If an inextensible cable is turned by η(s), its energy changes by ½ ∫ (EI η'² + T η²) ds, T the
+//! force along it, provided that every part between two held places keeps its chord: two conditions
+//! each (R. Levien, "The elastica: a mathematical history", 2008; J. H. Maddocks, "Stability of
+//! nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). The energy may fall in as many
+//! directions as there are conditions, because these can forbid them; with one more direction the
+//! cable buckles.
 
 use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
@@ -32,7 +32,7 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     for (k, pair) in nodes.windows(2).enumerate() {
         let length = checked.thermal * (pair[1].arc_length_m - pair[0].arc_length_m);
         let Some(way) = (pair[1].at() - pair[0].at()).try_normalize(0.0).filter(|_| length > same) else {
-            // Two nodes of one material point: what holds either holds both.
+            // If two nodes are one material point, a support that holds either holds both.
             holds[k + 1] = holds[k + 1].or(holds[k]);
             continue;
         };
@@ -58,9 +58,9 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
 pub(super) struct CompressedBar {
     /// Material, m.
     pub length: f64,
-    /// Force along it, N; negative: it pushes.
+    /// Force along it, N; negative in compression.
     pub pull: f64,
-    /// True if something touches it: it does not turn then.
+    /// True if an obstacle touches it, so that it does not turn.
     pub held: bool,
     /// True if the node before it is a support that lets it turn.
     pub pinned: bool,
@@ -68,8 +68,9 @@ pub(super) struct CompressedBar {
     pub clamped: [bool; 2],
 }
 
-/// The push of the bar that pushes most, N, and how much of that the cable can hold at most; None
-/// where it holds all. `ends`: whether the cable's ends are held in their places.
+/// Index of the bar with the greatest compression, that compression (N), and the greatest fraction
+/// of it that the cable bears; None if it bears all. `ends` are true for ends of the cable that are
+/// held in place.
 pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
     let (worst, most) = bars.iter().enumerate().min_by(|a, b| a.1.pull.total_cmp(&b.1.pull))?;
     if !(most.pull < 0.0) || bars.iter().any(|b| !(b.length > 0.0)) {
@@ -81,7 +82,7 @@ pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) ->
         return None;
     }
     let (mut low, mut high) = (0.0, 1.0);
-    // A kilonewton for what holds a millinewton, to three digits.
+    // The bisection covers a kilonewton on a bar that holds a millinewton, to three digits.
     for _ in 0..32 {
         let middle = 0.5 * (low + high);
         if holds(middle) { low = middle } else { high = middle }
@@ -108,8 +109,8 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
     count + if begun && free && ends[1] { 2 } else { 0 }
 }
 
-/// Directions in which the energy falls, with that part of each push: negative pivots of the
-/// tridiagonal second variation (Sylvester).
+/// Number of directions in which the energy falls with the fraction `part` of each compression:
+/// negative pivots of the tridiagonal second variation (Sylvester).
 fn negative_pivots(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
     let (mut count, mut before) = (0, None);
     for (k, bar) in bars.iter().enumerate() {

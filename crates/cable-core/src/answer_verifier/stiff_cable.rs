@@ -1,5 +1,5 @@
-//! The way of a stiff cable is an arc of its material, on which its bending moment balances its
-//! force.
+//! These checks hold for a stiff cable: between two nodes its path is an arc of its material, on
+//! which its bending moment balances its force.
 
 use super::checked_cable::{CheckedBar, CheckedCable};
 use super::flexible_cable::{LengthDeviation, report_length};
@@ -7,8 +7,8 @@ use super::tolerance::{BALANCE_FRACTION, MOMENT, TURN};
 use crate::math::{cross, larger, smaller};
 use crate::verification_report::{Law, Verification};
 
-/// The laws of a stiff cable from node to node: its way is an arc of its material, and with M
-/// the bending moment, M' + t × F = 0.
+/// Checks a stiff cable from node to node: its path is an arc of its material, and with M the
+/// bending moment, M' + t × F = 0.
 pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) {
     [Law::Length, Law::Moment].into_iter().for_each(|law| found.ask(law));
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;

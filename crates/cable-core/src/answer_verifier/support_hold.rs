@@ -1,4 +1,4 @@
-//! A support holds the cable, leads it, pulls at it or has let go, as scene and answer say.
+//! This module derives the action of each support on the cable from scene and answer.
 
 use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Scene, Support, SupportKind, View};
@@ -23,7 +23,7 @@ pub(super) enum Role {
     },
     /// A given force, or nothing.
     Load,
-    /// It has let go.
+    /// It has released the cable.
     Released,
 }
 
@@ -71,7 +71,7 @@ impl SupportHold<'_> {
         -Vec2::new(self.reaction.reaction_x_n, self.reaction.reaction_y_n)
     }
 
-    /// Returns what a dead load pulls with, N.
+    /// Returns the force of a dead load, N.
     pub fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
         let gravity = match scene.view {
             View::Elevation => Vec2::new(0.0, -scene.environment.gravity_m_per_s2),

@@ -1,5 +1,5 @@
-//! The law of supports asks whether the cable is where its supports hold it, and runs past its
-//! pulleys.
+//! This check finds whether the cable is at the places of its supports, and passes its pulleys on
+//! the right side.
 
 use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
@@ -10,14 +10,15 @@ use crate::scene::PulleySide;
 use crate::solution::Node;
 use crate::verification_report::{Law, Verification};
 
-/// The cable is where its supports hold it, and runs past its pulleys.
+/// Checks that the cable is at the places of its supports, and passes its pulleys on the right
+/// side.
 pub(super) fn check_supports(checked: &CheckedCable<'_>, found: &mut Verification) {
     found.ask(Law::Support);
     let nodes = &checked.answer.nodes;
     let limit = SUPPORT_TOLERANCE * checked.cable.length_m;
     for (k, hold) in checked.holds.iter().enumerate() {
         let to_bar = |p: &[Node]| distance(hold.at, hold.at, p[0].at(), p[1].at());
-        // Most are there where the cable says that it runs past them.
+        // Most pulleys are at the place of their reported arc length.
         let to_cable = |enough: f64| {
             let here = nodes.partition_point(|n| n.arc_length_m < hold.arc_length).clamp(1, nodes.len() - 1);
             let off = to_bar(&nodes[here - 1..=here]);

@@ -1,8 +1,8 @@
-//! The surroundings are obstacles and robot as the checker sees them: edges and rounds, distances
-//! by brute force.
+//! The surroundings are obstacles and robot of the verifier: edges and rounds, with distances by
+//! brute force.
 //!
-//! Edges are sorted by their left end, so that those in a box are found without looking at all;
-//! nothing else is clever.
+//! The only optimisation is that edges are sorted by their left end, so that those in a box are
+//! found without testing all.
 
 use crate::contact::moving_outline::Outline;
 use crate::math::{RigidPose, Vec2, cross, vec2};
@@ -51,7 +51,7 @@ impl Edges {
         Self { sorted, widest, low, high }
     }
 
-    /// Returns whether none is in a box from `low` to `high`, m, as all lie beside it.
+    /// Returns whether all edges lie beside a box from `low` to `high`, m.
     fn apart(&self, low: Vec2, high: Vec2) -> bool {
         low.x > self.high.x || high.x < self.low.x || low.y > self.high.y || high.y < self.low.y
     }
@@ -94,13 +94,13 @@ impl Neighbours {
         Self { begins, all }
     }
 
-    /// Returns what is near a bar.
+    /// Returns the obstacles near a bar.
     pub fn of(&self, bar: usize) -> &[NearestFeature] {
         self.between(bar, bar + 1)
     }
 
-    /// Returns what is near the bars between two nodes, and near the bar before and the bar after
-    /// them.
+    /// Returns the obstacles near the bars between two nodes, and near the bar before and the bar
+    /// after them.
     pub fn around(&self, from_node: usize, to_node: usize) -> &[NearestFeature] {
         self.between(from_node.saturating_sub(1), to_node + 1)
     }
@@ -127,7 +127,7 @@ enum Kind {
     Below,
     /// Inside a closed line.
     Inside,
-    /// The line itself, or what is round about it.
+    /// The line itself, with its thickness.
     Line,
 }
 
@@ -158,13 +158,13 @@ impl Obstacles {
         let mut edges = Vec::new();
         let mut bodies: Vec<SolidBody> =
             scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
-        // A cable rubs on it by its own coefficient.
+        // A cable's own friction coefficient holds on the outline.
         let outline = robot_outline(scene, 0.0);
         bodies.extend(outline.as_ref().map(|o| SolidBody { name: o.name.clone(), friction: None, kind: Kind::Inside }));
         Self { bodies, edges: Edges::new(edges), outline }
     }
 
-    /// With the robot as it is reported; where it is not, as the scene puts it.
+    /// The surroundings with the robot at its reported pose, or else at that of the scene.
     pub fn at(&self, robot: Option<&RobotReport>) -> Surroundings<'_> {
         let reported = robot.map(|r| RigidPose { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() });
         let edges = self.outline.iter().flat_map(|outline| {
@@ -209,8 +209,8 @@ impl Surroundings<'_> {
         self.bodies.get(body).and_then(|b| b.friction).unwrap_or(cable)
     }
 
-    /// Appends what is within `reach` (m) of the straight line between two points, nearest point by
-    /// nearest point: for each edge the nearest points of both, and those seen from the two ends.
+    /// Appends the features within `reach` (m) of the straight line between two points: for each
+    /// edge the nearest points of both lines, and the points nearest to the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
         for e in self.edges_in_box(low, high) {

@@ -1,4 +1,4 @@
-//! Sound answers pass; each kind of fault, put into a sound answer by hand, is seen and named.
+//! Sound answers pass; each kind of fault, put into a sound answer by hand, is found and named.
 
 use super::{Depth, Law, Verification, Verifier};
 use crate::scene::{Scene, Shape};
@@ -47,7 +47,7 @@ fn check(scene: &Scene, solution: &Solution) -> Verification {
     Verifier::new(scene).check(scene, solution, Depth::Full)
 }
 
-/// The laws that are broken once the answer is changed.
+/// The laws that a changed answer violates.
 fn broken(text: &str, change: impl Fn(&mut CableSolution)) -> Vec<Law> {
     let (scene, mut solution) = solved(text, Model::Auto);
     assert_eq!(check(&scene, &solution).findings, [], "sound before");

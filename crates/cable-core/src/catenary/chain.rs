@@ -1,5 +1,5 @@
-//! A chain is a cable between two points with dead loads on it: its catenaries in a row are still
-//! one convex problem.
+//! A chain is a cable between two points with dead loads: a row of catenaries that is still one
+//! convex problem.
 //!
 //! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ
 //! P_k [s > s_k]. The complementary energy of the whole is a function of F_a alone, two unknowns
@@ -43,7 +43,7 @@ pub struct ChainForce {
     pub start: Vec2,
     /// Force at its end, N.
     pub end: Vec2,
-    /// d(displacement)/d(force), m/N: its inverse is the chain's stiffness.
+    /// d(displacement)/d(force), m/N; its inverse is the chain's stiffness.
     pub compliance: Mat2,
     /// ∫ T + T²/2EA ds, N·m.
     pub complementary: f64,
@@ -52,8 +52,8 @@ pub struct ChainForce {
 }
 
 impl<'a> Chain<'a> {
-    /// Catenaries between the loads, each with the load that follows it; none has length zero but
-    /// by a load that sits on another.
+    /// Catenaries between the loads, each with the load that follows it; a length is zero only
+    /// between two loads at one point.
     fn pieces(&self) -> impl Iterator<Item = (f64, f64, Vec2)> + 'a {
         let (from, to) = (self.from, self.to);
         let inside = self.loads.iter().copied().filter(move |l| l.arc_length > from && l.arc_length < to);
@@ -106,8 +106,8 @@ impl<'a> Chain<'a> {
         self.energy(frame, h, v).phi
     }
 
-    /// From its start to its end for a start force (N): the way, m, and its derivative by the
-    /// force, m/N.
+    /// The displacement from its start to its end for a start force (N), m, and its derivative by
+    /// the force, m/N.
     #[must_use]
     pub fn reach(&self, start_force: Vec2) -> (Vec2, Mat2) {
         let frame = Frame::new(self.weight, start_force);

@@ -1,4 +1,4 @@
-//! The kernel computes one piece of cable under a uniform load as a function of the force at its
+//! This module computes one piece of cable under a uniform load as a function of the force at its
 //! start.
 //!
 //! In the frame whose second axis points against the load (load per length w ≥ 0) the force along
@@ -12,8 +12,8 @@
 //!         c  = (v_b/T_b − v_a/T_a)/w,  k = −h l σ/(T_a T_b)
 //! ```
 //!
-//! Each is written in the form that keeps its digits, from T_b − T_a = w l σ. With r = w l/(T_a +
-//! T_b), which says how far the piece is from taut (r → 0) or folded (r → 1),
+//! Each is written in a form without cancellation, from T_b − T_a = w l σ. With r = w l/(T_a +
+//! T_b), which goes from taut (r → 0) to folded (r → 1),
 //!
 //! ```text
 //! asinh(v_b/h) − asinh(v_a/h) = 2 atanh r
@@ -22,7 +22,7 @@
 //! q₀ − c                      = l (v_a + v_b)(v_a T_b + v_b T_a)/((T_a + T_b)² T_a T_b),   q₀ = 2 l/(T_a + T_b)
 //! ```
 //!
-//! Nothing divides by w, so a weightless piece needs no case of its own.
+//! Nothing divides by w, so a weightless piece is no special case.
 
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the
 /// logarithms would lose as many to their difference; anything between 0.5 and 0.9 gives the same
@@ -30,8 +30,8 @@
 const LOG_FORM_FROM: f64 = 0.7;
 /// Below this r the series of atanh(r)/r to r¹⁴ is exact to round-off: the next term is r¹⁶/17.
 const SERIES_FORM_BELOW: f64 = 0.1;
-/// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at
-/// a fold.
+/// Smallest force that is distinguished from zero (relative to the caller's unit): keeps logarithms
+/// finite at a fold.
 const MIN_FORCE: f64 = 1e-300;
 
 /// The piece: load per length, length, 1/EA, in any consistent units.
@@ -71,7 +71,7 @@ struct EndForces {
     tb: f64,
     /// σ.
     sigma: f64,
-    /// q₀ and q − q₀.
+    /// The values q₀ and q − q₀.
     q: (f64, f64),
 }
 
@@ -169,25 +169,26 @@ impl ChainPiece {
     }
 }
 
-/// Newton iterations at most: the widest grid tried needs 14; a failure is not cured by more.
+/// Maximum number of Newton iterations: the widest tested grid needs 14, and a failure is not cured
+/// by more.
 const MAX_ITERATIONS: usize = 60;
-/// Halvings of one step at most: 2⁻⁴⁰ of a Newton step is round-off.
+/// Maximum number of halvings of one step: 2⁻⁴⁰ of a Newton step is round-off.
 const MAX_HALVINGS: usize = 40;
 /// Sufficient decrease (Armijo 1966): any small value serves a convex function.
 const ARMIJO: f64 = 1e-4;
-/// Below this part of the energy a predicted decrease drowns in round-off, and a smaller gradient
-/// is taken as progress instead. Too small: the search stalls a few digits short. Too large: a step
-/// that climbs may pass.
+/// Predicted decrease, as a fraction of the energy, below which it is lost in round-off, and a
+/// smaller gradient counts as progress instead. Smaller: the search stalls a few digits short.
+/// Larger: a step that climbs may pass.
 const ENERGY_NOISE: f64 = 1e-10;
-/// A step may take a force that must stay positive down to this part of itself. Smaller is no
-/// faster.
+/// Least ratio of a force that must stay positive to its value before a step. Smaller is no faster.
 const MIN_FORCE_RATIO: f64 = 0.1;
-/// Closure wanted, in units of round-off of the lengths involved.
+/// Wanted closure error, relative to the lengths involved.
 const CLOSURE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
-/// Closure accepted when round-off lets it get no better (stiff, nearly taut spans).
+/// Relative closure error that is accepted if round-off allows no better (stiff, nearly taut
+/// spans).
 const ACCEPTED_CLOSURE: f64 = 1e-11;
 
-/// The end of a Newton iteration.
+/// The result of a Newton iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Minimum {
     /// Force at the start, frame of the load.
@@ -196,13 +197,13 @@ pub(super) struct Minimum {
     pub v: f64,
     /// Iterations.
     pub iterations: usize,
-    /// Closure left, same unit as the lengths.
+    /// Remaining closure error, in the unit of the lengths.
     pub closure: f64,
     /// True if the closure is acceptable.
     pub converged: bool,
 }
 
-/// Knowledge of the sign of a horizontal force.
+/// The sign of a horizontal force, if it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HorizontalForce {
     /// It may have either sign.
@@ -213,7 +214,7 @@ pub(super) enum HorizontalForce {
 
 /// Minimises φ(h, v) − (h, v)·`chord` by Newton with Armijo's line search.
 ///
-/// `lengths` says how large lengths are (for round-off).
+/// `lengths` is the scale of lengths (for round-off).
 pub(super) fn minimise(
     energy: impl Fn(f64, f64) -> DualEnergy,
     chord: [f64; 2],
@@ -255,7 +256,7 @@ pub(super) fn minimise(
                 accepted = true;
                 break;
             }
-            // Halving a Newton step makes any gradient smaller that is more than round-off.
+            // Halving a Newton step reduces any gradient above round-off.
             if in_noise && closure <= ACCEPTED_CLOSURE * lengths {
                 break;
             }

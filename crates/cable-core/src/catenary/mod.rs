@@ -2,15 +2,15 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `span.rs` | [`Catenary`] and [`Span`]: the solved span and its questions |
+//! | `span.rs` | [`Catenary`] and [`Span`]: the solved span and its quantities |
 //! | `closed_form.rs` | the formulas and the Newton iteration of one piece |
 //! | `chain.rs` | several pieces with dead loads between them |
 //!
 //! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the
 //! end force; M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly
 //! distributed loads", *Engineering Structures* 10 (1988) 174–184, discuss its solution. Here the
-//! end force is the minimum of the convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so that
-//! one Newton with a line search finds it from any start: slack, taut, folded, vertical. See
+//! end force is the minimum of the convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so
+//! Newton's method with a line search finds it from any start: slack, taut, folded, vertical. See
 //! `closed_form.rs` for the formulas.
 //!
 //! Material is measured by its unstretched length s at rest temperature. Warmth lengthens it by 1 +

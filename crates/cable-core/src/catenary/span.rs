@@ -4,8 +4,8 @@ use super::closed_form::{self, ChainPiece, HorizontalForce};
 use crate::error::{NoEquilibrium, SolveError, SpanError};
 use crate::math::{Vec2, bounded, perp};
 
-/// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its
-/// square would leave the range of f64), and the span is a straight bar.
+/// Ratio of load to EA below which the load has no effect on a stretched cable (its square would
+/// leave the range of f64), and the span is a straight bar.
 const MIN_LOAD_RATIO: f64 = 1e-120;
 
 /// A cable between two points.
@@ -93,7 +93,8 @@ pub struct Catenary {
 }
 
 impl Span {
-    /// The first length s of it, as the kernel wants it: length at temperature, same total load.
+    /// The first length s of it in the form of `closed_form.rs`: length at temperature, same total
+    /// load.
     fn piece(&self, s: f64) -> ChainPiece {
         ChainPiece {
             w: self.weight.norm() / self.thermal_stretch,
@@ -144,7 +145,7 @@ impl Catenary {
         Ok(Self { span: *span, frame, horizontal: h * load, va: v * load, iterations })
     }
 
-    /// A straight bar: no load.
+    /// Solves a straight bar without load.
     fn bar(span: &Span, chord: f64, length: f64) -> Result<Self, SpanError> {
         if chord < length {
             return Err(SpanError::Slack { length_m: length, chord_m: chord });
@@ -160,8 +161,8 @@ impl Catenary {
         })
     }
 
-    /// A cable whose start force (N, pulling along growing arc length) is known, and with it where
-    /// it ends: a hanging tail, for instance. `span.chord` is not read.
+    /// A cable whose start force (N, along growing arc length) is known, which determines its end:
+    /// a hanging tail, for instance. `span.chord` is not read.
     #[must_use]
     pub fn from_start_force(span: &Span, force: Vec2) -> Self {
         let frame = Frame::new(span.weight, force).facing(force);
@@ -171,7 +172,7 @@ impl Catenary {
         c
     }
 
-    /// The span it answers.
+    /// The span that was solved.
     #[must_use]
     pub fn span(&self) -> &Span {
         &self.span
@@ -195,13 +196,13 @@ impl Catenary {
         self.frame.join(self.horizontal, self.v(s))
     }
 
-    /// Force at the start, N: what the cable does to what holds its start.
+    /// Force at the start, N: the force of the cable on the support at its start.
     #[must_use]
     pub fn start_force(&self) -> Vec2 {
         self.force_at(0.0)
     }
 
-    /// Force at the end, N: minus what the cable does to what holds its end.
+    /// Force at the end, N: minus the force of the cable on the support at its end.
     #[must_use]
     pub fn end_force(&self) -> Vec2 {
         self.force_at(self.span.length)

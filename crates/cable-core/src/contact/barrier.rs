@@ -9,7 +9,7 @@
 //! ```
 //! φ, φ' and φ'' are 0 at u = 1: the barrier is C². It is infinite at u = 0.
 
-/// A barrier.
+/// The logarithmic barrier, with its reach and its force scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Barrier {
     /// Gap at which contact begins (d̂), m.
@@ -18,7 +18,7 @@ pub struct Barrier {
     pub stiffness: f64,
 }
 
-/// Value, first and second derivative by the gap: J, N, N/m.
+/// The value of a barrier and its first and second derivative with respect to the gap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BarrierAt {
     /// Energy, J; infinite for a gap ≤ 0.
@@ -49,8 +49,8 @@ impl Barrier {
         }
     }
 
-    /// Returns how much less the normal force at a gap (m) is where the gap is wider by `by` (m),
-    /// N. The curvature times that is more, as the barrier is convex, and many times as much where
+    /// Returns by how much the normal force decreases (N) if a gap (m) widens by `by` (m). The
+    /// curvature times `by` overestimates it, as the barrier is convex, and many times over where
     /// the gap is less than `by`.
     #[must_use]
     pub(crate) fn relief(&self, gap: f64, by: f64) -> f64 {

@@ -14,7 +14,7 @@ pub(crate) fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     if dd == 0.0 { 0.0 } else { ((p - a).dot(&d) / dd).clamp(0.0, 1.0) }
 }
 
-/// The way to a point from the nearest point of a segment, m.
+/// The vector from the nearest point of a segment to a point, m.
 #[must_use]
 pub(crate) fn from_segment(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
     p - (a + (b - a) * nearest_fraction(p, a, b))
@@ -26,7 +26,7 @@ pub(crate) fn point_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     from_segment(p, a, b).norm()
 }
 
-/// The shortest way to the segment `a`–`b` from the segment `p`–`q`, m; none when they cross or
+/// The shortest vector from the segment `p`–`q` to the segment `a`–`b`, m; zero when they cross or
 /// touch.
 #[must_use]
 pub(crate) fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
@@ -38,7 +38,7 @@ pub(crate) fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
     let mut least = way.norm_squared();
     for other in [from_segment(b, p, q), -from_segment(p, a, b), -from_segment(q, a, b)] {
         let square = other.norm_squared();
-        // NaN stays.
+        // NaN is kept.
         if !(square >= least) && !least.is_nan() {
             (way, least) = (other, square);
         }

@@ -12,7 +12,7 @@
 
 use crate::math::{Mat2, Vec2, bounded};
 
-/// Value, first and second derivative of D: J, N, N/m.
+/// The value (J) of D and its first (N) and second (N/m) derivative.
 #[inline]
 #[must_use]
 pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
@@ -28,11 +28,11 @@ pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
     }
 }
 
-/// Branch of the law on which a contact is taken to be, wherever it slides to while that is being
-/// found out.
+/// The branch of the law that a contact is assumed to follow while an iteration searches for the
+/// right one, whatever its sliding is meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branch {
-    /// It holds.
+    /// It sticks.
     Stick,
     /// It slides forwards.
     Forwards,
@@ -52,10 +52,10 @@ impl Branch {
         }
     }
 
-    /// The branch to try next where this one led from one sliding y to another. From sliding to
-    /// sliding the other way leads through holding, and so does the way from one side of holding
-    /// beyond the other, where the law is nearly flat: else a contact that holds is thrown from one
-    /// side to the other for ever, each time by its whole force.
+    /// The branch to try next if this one led from one sliding y to another. A change from sliding
+    /// one way to sliding the other way passes through sticking. So does a step from one side of
+    /// sticking to beyond the other side, where the law is nearly flat: otherwise a contact that
+    /// sticks would jump from one side to the other for ever, each time by its whole force.
     #[inline]
     #[must_use]
     pub fn next(self, [from, to]: [f64; 2], epsilon: f64) -> Self {
@@ -67,7 +67,7 @@ impl Branch {
         }
     }
 
-    /// D' (N) and D'' (N/m) of this branch, carried on beyond its end: a holding contact by a
+    /// D' (N) and D'' (N/m) of this branch, extrapolated beyond its end: a sticking contact by a
     /// spring of R/ε.
     #[inline]
     #[must_use]
@@ -84,7 +84,8 @@ impl Branch {
     }
 }
 
-/// The same in the plane, isotropic: value, gradient, Hessian by the sliding vector.
+/// The isotropic law in the plane: value (J), gradient (N) and Hessian (N/m) with respect to the
+/// sliding vector.
 #[must_use]
 pub(crate) fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, Mat2) {
     let r = y.norm();
@@ -97,13 +98,13 @@ pub(crate) fn at_plane(y: Vec2, limit_force: f64, epsilon: f64) -> (f64, Vec2, M
     (value, n * slope, along * curvature + (Mat2::identity() - along) * (slope / r))
 }
 
-/// Sliding kept after an accepted step.
+/// The sliding that is kept after an accepted step, m.
 #[must_use]
 pub(crate) fn return_map(y: f64, epsilon: f64) -> f64 {
     bounded(y, -epsilon, epsilon)
 }
 
-/// Sliding vector kept after an accepted step.
+/// The sliding vector that is kept after an accepted step, m.
 #[must_use]
 pub(crate) fn return_map_plane(y: Vec2, epsilon: f64) -> Vec2 {
     let r = y.norm();
@@ -161,7 +162,7 @@ mod tests {
         assert!(Branch::Stick.force(f64::NAN, limit, epsilon).0.is_nan());
     }
 
-    /// A spring k that draws a contact to f/k: Newton on the law itself is thrown from side to
+    /// A spring k draws a contact to f/k. Newton's method on the law itself would jump from side to
     /// side.
     #[test]
     fn one_contact_on_a_spring_is_found_in_a_few_iterations() {

@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 
-/// One obstacle feature and where the cable is nearest to it.
+/// One feature of an obstacle, and the place where the cable is nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Distance between cable surface and obstacle surface, m; negative = penetration where a sign
@@ -12,7 +12,7 @@ pub struct Gap {
     pub normal: Vec2,
     /// Nearest point of the obstacle, m.
     pub point: Vec2,
-    /// Position of the nearest point along the asked cable segment, 0 to 1 (0 for a point query).
+    /// Position of the nearest point along the queried cable segment, 0 to 1 (0 for a point query).
     pub fraction: f64,
     /// Coulomb friction coefficient with this cable.
     pub friction: f64,

@@ -24,7 +24,8 @@ use super::moving_outline::Outline;
 use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
 use crate::scene::{LineEnds, Obstacle, Shape};
 
-/// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
+/// Two edges that turn by less than this angle (rad) are merged: a corner that the cable cannot
+/// feel would only cost time.
 const MIN_EDGE_TURN: f64 = 1e-12;
 
 /// The obstacles of a scene with their trees.
@@ -42,7 +43,7 @@ pub struct Body {
     pub name: String,
     /// Coulomb friction coefficient with the cable.
     pub friction: f64,
-    /// Distance of the cable's centre line from the edges when it touches, m.
+    /// Distance of the cable's centre line from the edges when they touch, m.
     pub offset: f64,
     /// Edges, in order; empty for a circle. Shared by all copies: maps are large.
     pub edges: Arc<Vec<Edge>>,
@@ -53,7 +54,7 @@ pub struct Body {
     pub first: usize,
     solid: bool,
     closed: bool,
-    /// None: it moves, and its few edges are all looked at.
+    /// `None` if the body moves: then all of its few edges are searched.
     bvh: Option<Arc<Bvh>>,
 }
 
@@ -81,13 +82,13 @@ pub struct Corner {
     pub after: Option<Vec2>,
 }
 
-/// A piece of an obstacle that something can be near to: an edge (with the corners it answers for)
+/// A part of an obstacle for distance queries: an edge (with the corners that are assigned to it)
 /// or a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ObstaclePart {
     /// Index of the body.
     pub body: usize,
-    /// Index of the edge; None: the body is a circle.
+    /// Index of the edge; `None` if the body is a circle.
     pub edge: Option<usize>,
 }
 
@@ -145,13 +146,13 @@ impl Edge {
 }
 
 impl Body {
-    /// Edge indices whose boxes meet the given box.
+    /// Indices of the edges whose boxes meet the given box.
     pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
         self.candidates_where(move |n, x| n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y)
     }
 
-    /// Edge indices whose boxes, from a lowest to a highest point, meet what is asked; `meets`
-    /// holds for every box around one for which it holds.
+    /// Indices of the edges whose boxes, given by their lowest and highest corners, satisfy
+    /// `meets`. A box that contains one for which `meets` holds has to satisfy it, too.
     pub(crate) fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
         let listed = self.bvh.iter().flat_map(move |bvh| {
             bvh.leaves(move |node| {
@@ -180,8 +181,8 @@ impl Body {
         Some(Corner { at, feature: self.first + 2 * k + 1, before, after })
     }
 
-    /// Corners that a candidate edge answers for: its start, and the end of an open line's last
-    /// edge.
+    /// Corners that are assigned to an edge: its start, and for the last edge of an open line its
+    /// end, too.
     pub(crate) fn corners_of(&self, k: usize) -> impl Iterator<Item = Corner> {
         let last = (k + 1 == self.edges.len() && !self.closed).then_some(k + 1);
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
@@ -196,27 +197,28 @@ impl Body {
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
     }
 
-    /// Returns whether it is an outline that moves.
+    /// Returns whether the body is an outline that moves.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.bvh.is_none()
     }
 
-    /// Returns whether it is ground: solid below an open line, so that nothing can go round it.
+    /// Returns whether the body is ground: solid below an open line, so that nothing can pass round
+    /// it.
     #[must_use]
     pub(crate) fn is_ground(&self) -> bool {
         self.solid && !self.closed && self.center.is_none()
     }
 
-    /// Returns whether contact at a corner can be felt by a straight segment: not where a solid
-    /// recedes from it.
+    /// Returns whether a straight segment can touch the corner: it cannot where the corner of a
+    /// solid is concave.
     #[inline]
     #[must_use]
     pub(crate) fn is_exposed(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
     }
 
-    /// A contact of this body at distance `distance` of the centre line, along `normal`.
+    /// The gap to this body of a centre line at `distance` (m), along `normal`.
     #[inline]
     #[must_use]
     pub fn gap(&self, feature: usize, distance: f64, normal: Vec2, point: Vec2) -> Gap {
@@ -250,15 +252,15 @@ impl Body {
         };
         let side = match corner {
             _ if !self.solid => 1.0,
-            // Under the end of an open ground is inside, beyond it outside.
+            // Points below the end of an open ground line are inside, points beyond it are outside.
             Some(Corner { before: None, .. }) if p.x >= at.x => (p - at).dot(&e.normal()).signum(),
             Some(Corner { after: None, .. }) if p.x <= at.x => (p - at).dot(&e.normal()).signum(),
             Some(c) if c.is_convex() => 1.0,
             Some(_) => -1.0,
             None => (p - e.from).dot(&e.normal()).signum(),
         };
-        // Beside an edge it is the edge's own: at a point on the edge p − at is what rounding left
-        // of it.
+        // Beside an edge the normal is that of the edge: for a point on the edge, p − at would be
+        // only rounding.
         let normal = match corner {
             Some(_) => unit_or((p - at) * side, e.normal()),
             None if self.solid || (p - e.from).dot(&e.normal()) >= 0.0 => e.normal(),
@@ -268,7 +270,8 @@ impl Body {
         Some(gap)
     }
 
-    /// The edge nearest to a point and not further than `most`: how far, which, and where along it.
+    /// The edge nearest to a point within `most` (m): its distance (m), its index, and the position
+    /// (0 to 1) along it.
     fn nearest(&self, p: Vec2, most: f64) -> Option<(f64, usize, f64)> {
         let to_box = |node: &BvhNode, _: f64| {
             let (low, high) = (node.mins(), node.maxs());
@@ -294,7 +297,8 @@ impl Body {
             return (0..self.edges.len()).filter_map(of).reduce(nearer).filter(|(d, ..)| *d <= most);
         };
         let (k, (d, f)) = bvh.find_best(most.next_up(), to_box, to_edge)?;
-        // Of two edges that share the nearest corner the lower one, whatever the order of the tree.
+        // Of two edges that share the nearest corner, the one with the lower index is taken,
+        // whatever the order of the tree.
         let k = k as usize;
         Some(match f {
             0.0 if k > 0 => (d, k - 1, 1.0),
@@ -353,8 +357,7 @@ impl Geometry {
         Self { bodies }
     }
 
-    /// Adds an outline that can be moved, for a cable of this radius (m); it is the body with the
-    /// number `obstacle`.
+    /// Adds a movable outline for a cable of this radius (m); `obstacle` is its number as a body.
     pub(crate) fn add_outline(&mut self, outline: &Outline, obstacle: usize, cable_radius: f64) {
         self.bodies.push(Body {
             obstacle,
@@ -370,7 +373,7 @@ impl Geometry {
         });
     }
 
-    /// Puts the outline that was added last where it is now.
+    /// Moves the outline that was added last to its present pose.
     pub(crate) fn place_outline(&mut self, outline: &Outline, placement: RigidPose) {
         let Some(body) = self.bodies.last_mut().filter(|b| b.moves()) else { return };
         for (edge, [p, q]) in Arc::make_mut(&mut body.edges).iter_mut().zip(outline.edges(placement)) {
@@ -378,7 +381,7 @@ impl Geometry {
         }
     }
 
-    /// Returns whether there is no feature.
+    /// Returns whether the geometry has no feature.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
@@ -391,7 +394,7 @@ impl Geometry {
         &self.bodies
     }
 
-    /// All parts that a cable inside the box from `low` to `high` can come nearer than `reach` to
+    /// All parts that can be nearer than `reach` (m) to a cable inside the box from `low` to `high`
     /// (m), and some more.
     pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = ObstaclePart> {
         self.bodies.iter().enumerate().flat_map(move |(body, b)| {
@@ -408,7 +411,8 @@ impl Geometry {
         self.bodies.iter().find(|b| b.features().contains(&feature))
     }
 
-    /// Direction outwards of the corner that a gap is to; None if it is not to a corner of a solid.
+    /// Outward direction of the corner that a gap leads to; `None` if it does not lead to a corner
+    /// of a solid.
     #[must_use]
     pub(crate) fn outward_of(&self, gap: &Gap) -> Option<Vec2> {
         let body = self.body_of(gap.feature).filter(|b| b.solid)?;
@@ -435,7 +439,7 @@ impl Body {
     }
 }
 
-/// Points as vectors without repeats, non-finite ones and corners that do not turn.
+/// The points as vectors, without repeated points, non-finite points and corners that do not turn.
 fn clean(points: &[Point], ends: LineEnds) -> Vec<Vec2> {
     let closed = ends == LineEnds::Joined;
     let mut out: Vec<Vec2> = Vec::with_capacity(points.len());

@@ -52,7 +52,7 @@ impl World {
         Self { geometry: geometry::Geometry::new(obstacles, cable_friction, cable_radius) }
     }
 
-    /// The same obstacles and an outline that can be moved, for a cable of this radius (m).
+    /// Returns the same obstacles with a movable outline, for a cable of this radius (m).
     #[must_use]
     pub(crate) fn with_outline(&self, outline: &moving_outline::Outline, cable_radius: f64) -> Self {
         let mut geometry = self.geometry.clone();
@@ -61,12 +61,12 @@ impl World {
         Self { geometry }
     }
 
-    /// Puts the outline where it is now.
+    /// Moves the outline to its present pose.
     pub(crate) fn place_outline(&mut self, outline: &moving_outline::Outline, placement: RigidPose) {
         self.geometry.place_outline(outline, placement);
     }
 
-    /// Returns whether there is nothing to touch.
+    /// Returns whether the world holds no obstacle.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.geometry.is_empty()
@@ -87,9 +87,9 @@ impl World {
         self.geometry.segment_gaps(a, b, reach, out);
     }
 
-    /// The largest fraction of the move `a0→a1, b0→b1` a centre-line segment can make and keep at
-    /// least `keep` (0 to 1) of each gap it had. 1 = free. Conservative: never lets the segment
-    /// cross.
+    /// The largest fraction of the move `a0→a1, b0→b1` for which a centre-line segment keeps at
+    /// least `keep` (0 to 1) of each gap that it had; 1 if the whole move is free. The bound is
+    /// conservative: the segment never crosses a feature.
     #[must_use]
     pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
         self.geometry.free_fraction(from, to, keep)

@@ -1,7 +1,7 @@
 //! The outline of a robot is an obstacle that moves as a whole.
 //!
-//! In a `Geometry` it is one body more, the last one, put where it is before every step.
-//! While a step is worked out it stands still.
+//! In a `Geometry` it is an additional body, the last one. It is moved to its pose before every
+//! step, and stands still while the step is solved.
 
 use super::distance::{point_segment, segment_segment};
 use crate::math::{RigidPose, Vec2, cross, larger};
@@ -16,12 +16,13 @@ pub struct Outline {
     pub friction: f64,
     /// Point at which the cable hangs on it, in its own axes, m.
     pub hitch: Vec2,
-    /// Name of what it belongs to.
+    /// Name of the robot that it belongs to.
     pub name: String,
 }
 
 impl Outline {
-    /// An outline by its corners and its hitch in its own axes, m; None if they enclose nothing.
+    /// An outline, given by its corners and its hitch in its own axes (m); `None` if the corners
+    /// enclose no area.
     #[must_use]
     pub fn new(corners: &[Vec2], hitch: Vec2, placement: RigidPose, friction: f64, name: String) -> Option<Self> {
         let mut kept: Vec<Vec2> = Vec::with_capacity(corners.len());
@@ -44,14 +45,14 @@ impl Outline {
         Some(Self { corners: kept, placement, friction, hitch, name })
     }
 
-    /// Its edges at a placement, clockwise, m.
+    /// The edges at a placement, clockwise, m.
     pub fn edges(&self, placement: RigidPose) -> impl Iterator<Item = [Vec2; 2]> {
         let n = self.corners.len();
         (0..n).map(move |k| [self.corners[k], self.corners[(k + 1) % n]].map(|p| placement.place(p)))
     }
 
-    /// Returns whether a chain of points (m) stays farther away than `least` (m) from the outline
-    /// at a placement.
+    /// Returns whether a chain of points (m) is farther than `least` (m) from the outline at a
+    /// placement.
     #[must_use]
     pub(crate) fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
         let far = self.corners.iter().map(|c| c.norm()).fold(0.0, larger) + least;
@@ -66,7 +67,7 @@ impl Outline {
         true
     }
 
-    /// The longest way that a point of it goes between two placements, m.
+    /// The largest distance that a point of the outline moves between two placements, m.
     #[must_use]
     pub(crate) fn max_displacement(&self, from: &RigidPose, to: &RigidPose) -> f64 {
         let ways = self.corners.iter().map(|c| (to.place(*c) - from.place(*c)).norm());

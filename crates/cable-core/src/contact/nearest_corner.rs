@@ -4,8 +4,8 @@ use super::distance::from_segment;
 use super::geometry::{Body, Geometry};
 use crate::math::{Vec2, smaller};
 
-/// The body whose convex corner or circle is nearest to a chain of nodes; None where the gap is
-/// not below `reach` (m).
+/// The body whose convex corner or circle is nearest to a chain of nodes; `None` if the gap is not
+/// below `reach` (m).
 #[must_use]
 pub(crate) fn nearest_wrap_body<'a>(geometry: &'a Geometry, chain: &[Vec2], reach: f64) -> Option<&'a Body> {
     let first = *chain.first()?;

@@ -1,17 +1,18 @@
-//! A neighbour list (Verlet list) remembers what a segment of a chain can come near to while the
-//! chain stays about where it was.
+//! A neighbour list (Verlet list) remembers the parts of obstacles that a segment of a chain can
+//! come near to while the chain moves little.
 //!
 //! A search of the trees for every segment, in every iteration of a step, costs more than the
-//! step's equations. So each segment keeps a list: all parts within R of the box of its ends a₀,
-//! b₀. A segment (a, b) whose query reaches r is answered by the list as long as
+//! step's equations. So each segment keeps a list of all parts within R of the box of its ends a₀,
+//! b₀. The list answers a query of the segment (a, b) with the reach r as long as
 //! ```text
 //! max(|a − a₀|, |b − b₀|) + r ≤ R
 //! ```
 //! since every point of it is then within R − r of the box. Else the trees are asked: the list
 //! never decides what is found.
 //!
-//! A segment whose list holds parts is mostly still clear of them. So its gap G from the nearest of
-//! them is measured once a step, with its ends at a₁, b₁, and nothing is within r of it as long as
+//! Most segments whose list holds parts are still clear of them. So the gap G from the nearest of
+//! them is measured once a step, with the ends of the segment at a₁, b₁, and nothing is within r of
+//! the segment as long as
 //! ```text
 //! max(|a − a₁|, |b − b₁|) + r < G
 //! ```
@@ -20,7 +21,7 @@ use super::distance::{point_segment, segment_segment};
 use super::geometry::{Geometry, ObstaclePart};
 use crate::math::{Vec2, smaller};
 
-/// Rounding of a gap, m: a segment is clear only if it is by this much.
+/// Allowance for the rounding of a gap, m: a segment is clear only by more than this.
 const GAP_ROUNDING: f64 = 1e-9;
 
 /// The list of one segment.
@@ -31,20 +32,21 @@ struct NeighbourList {
     first: usize,
     /// Ends of the segment when its gap was measured, m.
     measured: [Vec2; 2],
-    /// Its gap then, m.
+    /// The gap of the segment at that time, m.
     gap: f64,
 }
 
 impl NeighbourList {
-    /// True if a segment whose ends come to all these places (m) is never within `reach` (m) of
-    /// anything.
+    /// Returns whether a segment whose ends pass through all these places (m) is never within
+    /// `reach` (m) of anything.
     #[inline]
     fn is_clear<const N: usize>(&self, at: [[Vec2; 2]; N], reach: f64) -> bool {
         stays_within(self.gap - reach - GAP_ROUNDING, self.measured, at)
     }
 }
 
-/// True if both ends of a segment are, at all these places, within `room` of where they were (m).
+/// Returns whether all these places (m) of the ends of a segment are within `room` (m) of their
+/// former place.
 #[inline]
 fn stays_within<const N: usize>(room: f64, from: [Vec2; 2], at: [[Vec2; 2]; N]) -> bool {
     let inside = |p: Vec2, from: Vec2| room > 0.0 && (p - from).norm_squared() <= room * room;
@@ -65,7 +67,7 @@ impl NeighbourLists {
         self.parts.clear();
     }
 
-    /// Makes room for so many lists of one part each.
+    /// Reserves memory for this many lists of one part each.
     pub(crate) fn reserve(&mut self, lists: usize) {
         self.entries.reserve(lists);
         self.parts.reserve(lists);
@@ -85,7 +87,7 @@ impl NeighbourLists {
         self.measure(geometry, self.entries.len() - 1, ends);
     }
 
-    /// Measures the gap of segment `e`, with its ends here (m), from what its list holds.
+    /// Measures the gap of segment `e`, with its ends at `ends` (m), from the parts on its list.
     pub fn measure(&mut self, geometry: &Geometry, e: usize, ends: [Vec2; 2]) {
         let parts = self.parts_of(e);
         if parts.is_empty() {
@@ -106,23 +108,23 @@ impl NeighbourLists {
         self.parts.get(entry.first..end).unwrap_or_default()
     }
 
-    /// True if segment `e`, whose ends come to all these places (m), is known to be never within
-    /// `reach` (m) of anything.
+    /// Returns whether segment `e`, whose ends pass through all these places (m), is known never to
+    /// be within `reach` (m) of anything.
     #[inline]
     #[must_use]
     pub fn is_clear<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> bool {
         self.entries.get(e).is_some_and(|entry| entry.is_clear(at, reach))
     }
 
-    /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can
-    /// be within `reach` (m) of; an empty one if that is known to be nothing.
+    /// The list of segment `e` if it holds all parts within `reach` (m) of the segment at each of
+    /// the places `at` (m) of its ends; an empty list if it is known that there are none.
     #[inline]
     #[must_use]
     pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[ObstaclePart]> {
         if self.entries.get(e)?.is_clear(at, reach) { Some(&[]) } else { self.listed(e, at, reach) }
     }
 
-    /// The same, whatever the gap of the segment is.
+    /// Does the same as `of`, without use of the measured gap of the segment.
     #[inline]
     #[must_use]
     pub fn listed<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[ObstaclePart]> {
@@ -166,8 +168,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever a list answers is what the trees answer: pairs of nodes and segments, and free
-        /// ways.
+        /// A list gives the same answers as the trees: the pairs of nodes and segments, and the
+        /// free fractions of a move.
         #[test]
         fn lists_find_what_the_trees_find(
             at in (0.0f64..9.0, 0.5f64..4.0), length in (-0.6f64..0.6, -0.6f64..0.6),

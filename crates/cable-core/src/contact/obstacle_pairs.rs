@@ -1,12 +1,12 @@
 //! Contact pairs join a chain of cable segments with the obstacles and are smooth in the chain's
 //! position.
 //!
-//! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential
-//! Contact", ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle)
-//! against cable segments. Where two edges meet, both have the corner as nearest point of a node
-//! there; counted plainly a node passing a flat joint would feel a bump. So corners enter by
-//! inclusion and exclusion (Li, Ferguson, Schneider et al., "Convergent incremental potential
-//! contact", 2023):
+//! There are two families, each complete for one kind of contact, as in Li et al., "Incremental
+//! Potential Contact", ACM TOG 2020: cable node against boundary edges, and boundary corner (or
+//! circle) against cable segments. Where two edges meet, both can have the corner as the point
+//! nearest to a node. If both were counted, a node that passes a flat joint would feel a bump. So
+//! corners enter by inclusion and exclusion (Li, Ferguson, Schneider et al., "Convergent
+//! incremental potential contact", 2023):
 //!
 //!   Σ over edges b(d(p, edge)) − Σ over inner corners b(d(p, corner)),
 //!
@@ -17,8 +17,8 @@ use super::Gap;
 use super::geometry::{Body, Geometry, ObstaclePart};
 use crate::math::Vec2;
 
-/// A pair is passed over as too far only if it is this many times too far: no rounding decides what
-/// touches.
+/// A pair is discarded only if its distance exceeds the reach by this factor, so that rounding does
+/// not decide which pairs touch.
 const CULLING_MARGIN: f64 = 1.0 + 1e-9;
 
 /// A contact pair with its sign.
@@ -45,8 +45,8 @@ impl Geometry {
         self.node_pairs_among(self.parts(p, p, reach), &[before, Some(p), after], reach, out);
     }
 
-    /// The same among `parts`, which hold all that are within reach. The chain is the node between
-    /// its neighbours.
+    /// Finds the pairs of a node among `parts`, which hold all parts within reach. The chain is the
+    /// node between its neighbours.
     pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = ObstaclePart>,
@@ -64,7 +64,7 @@ impl Geometry {
                 continue;
             };
             let (e, within) = (&body.edges[k], CULLING_MARGIN * (reach + body.offset));
-            // Nothing of an edge is nearer than the line it lies on.
+            // No point of an edge is nearer than the straight line through the edge.
             if (p - e.from).dot(&e.normal()).abs() > within {
                 continue;
             }
@@ -82,12 +82,12 @@ impl Geometry {
         }
     }
 
-    /// Pairs of the inside of one segment against corners and circles within `reach`.
+    /// Pairs of the inside of one segment with the corners and circles within `reach` (m).
     pub(crate) fn segment_pairs(&self, a: Vec2, b: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
         self.segment_pairs_among(self.parts(a.inf(&b), a.sup(&b), reach), [a, b], reach, out);
     }
 
-    /// The same among `parts`, which hold all that are within reach.
+    /// Finds the pairs of a segment among `parts`, which hold all parts within reach.
     pub(crate) fn segment_pairs_among(
         &self,
         parts: impl Iterator<Item = ObstaclePart>,
@@ -152,7 +152,7 @@ fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pa
     }
 }
 
-/// Node against a corner: what inclusion and exclusion leave of it.
+/// Node against a corner, with the weight that inclusion and exclusion leave.
 #[inline]
 fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let (clamped, edges) = corner.clamped(p);
@@ -160,7 +160,7 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
     push_point(body, corner.feature, [p, corner.at], weight, reach, out);
 }
 
-/// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's
+/// Corner or circle against a node, with the weight that inclusion and exclusion over the node's
 /// segments leave.
 #[inline]
 fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: &[Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {

@@ -1,13 +1,13 @@
 //! Self-contact pairs the nodes of a cable with its own segments.
 //!
 //! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and
-//! segments are all that is needed. As with obstacles, nodes where two segments meet enter by
-//! inclusion and exclusion (see `pairs`), so that the sum is once the barrier along a straight
-//! stretch and continuous round a bend.
+//! segments are sufficient. As with obstacles, nodes where two segments meet enter by inclusion and
+//! exclusion (see `obstacle_pairs`), so that the sum is one barrier along a straight stretch and is
+//! continuous round a bend.
 //!
-//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the
-//! cable can be bent back is no contact: two legs of a bend of the diameter d touch after π d/2 of
-//! arc length.
+//! Gaps are distances of centre lines less one diameter. Two places whose arc lengths differ by
+//! less than the cable needs to bend back on itself are no contact: the two legs of a bend of the
+//! diameter d touch after π d/2 of arc length.
 
 use super::distance::{from_segment, nearest_fraction};
 use super::sweep::advance;
@@ -17,7 +17,7 @@ use crate::math::Vec2;
 /// radius d/2 takes 1.57, and segments need some room beside that.
 const MIN_ARC_DIAMETERS: f64 = 2.4;
 
-/// Distances are trusted to this many units in the last place of the coordinates.
+/// Distances are taken to be accurate to this many units in the last place of the coordinates.
 const ROUNDING_ULPS: f64 = 16.0;
 
 /// A node near a segment of the same cable.
@@ -27,7 +27,7 @@ pub struct SelfPair {
     pub node: usize,
     /// First node of the segment.
     pub segment: usize,
-    /// Place of the nearest point on the segment, 0 to 1.
+    /// Position of the nearest point along the segment, 0 to 1.
     pub fraction: f64,
     /// Unit vector from the segment to the node.
     pub normal: Vec2,
@@ -38,13 +38,13 @@ pub struct SelfPair {
 }
 
 impl SelfPair {
-    /// The nodes it acts on and their parts of the gap's slope.
+    /// The nodes that the pair acts on, each with its factor in the gradient of the gap.
     #[must_use]
     pub fn shares(&self) -> [(usize, f64); 3] {
         [(self.node, 1.0), (self.segment, self.fraction - 1.0), (self.segment + 1, -self.fraction)]
     }
 
-    /// A field's value at the node less that at the nearest point of the segment.
+    /// The value of a field at the node minus its value at the nearest point of the segment.
     #[must_use]
     pub fn difference(&self, field: &[Vec2]) -> Vec2 {
         self.shares().iter().fold(Vec2::zeros(), |sum, (k, part)| sum + field[*k] * *part)
@@ -64,7 +64,7 @@ pub struct SelfContact {
     pub diameter: f64,
 }
 
-/// Nodes by x, kept from search to search: what is nearly sorted is sorted quickly.
+/// Nodes sorted by x, and kept from search to search: a nearly sorted list is sorted quickly.
 #[derive(Clone, Debug, Default)]
 pub struct SortedNodes(Vec<usize>);
 
@@ -84,7 +84,7 @@ impl SortedNodes {
     }
 }
 
-/// A node, and the place of a segment that is nearest to it.
+/// A node, and the point of a segment that is nearest to it.
 #[derive(Clone, Copy)]
 struct Pairing {
     node: usize,
@@ -127,7 +127,8 @@ impl SelfContact {
                 if fraction > 0.0 && fraction < 1.0 {
                     self.push(x, Pairing { node: p, segment: e, fraction, weight: 1.0 }, reach, out);
                 }
-                // Each segment answers for the joint at its end, the first one for its start too.
+                // Each segment handles the joint at its end, the first segment also the one at its
+                // start.
                 let joints = [(e == 0).then_some(0), Some(e + 1)];
                 for v in joints.into_iter().flatten() {
                     let weight = self.joint_weight(x, arc, p, v);
@@ -136,8 +137,8 @@ impl SelfContact {
                         self.push(x, Pairing { node: p, segment: e, fraction, weight }, reach, out);
                     }
                 }
-                // A joint whose later segment alone is far enough along the cable has nobody else
-                // to answer for it.
+                // If only the later segment of a joint is far enough along the cable, no other
+                // segment handles that joint.
                 if e > 0 && !self.apart(arc, p, e - 1) {
                     let weight = self.joint_weight(x, arc, p, e);
                     if weight != 0.0 {
@@ -149,7 +150,7 @@ impl SelfContact {
         out.sort_by_key(|pair| (pair.node, pair.segment));
     }
 
-    /// Returns what inclusion and exclusion leave of joint `v` for node `p`.
+    /// Returns the weight that inclusion and exclusion leave of joint `v` for node `p`.
     fn joint_weight(&self, x: &[Vec2], arc: &[f64], p: usize, v: usize) -> f64 {
         let clamped = |e: usize, end: f64| {
             (e + 1 < x.len() && self.apart(arc, p, e)).then(|| nearest_fraction(x[p], x[e], x[e + 1]) == end)
@@ -170,8 +171,8 @@ impl SelfContact {
         }
     }
 
-    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves
-    /// `keep` of every gap, or `most` (m) where that is less.
+    /// The largest fraction (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves
+    /// of every gap the fraction `keep`, or `most` (m) if that is less.
     pub fn free_fraction(
         &self,
         x: &[Vec2],
@@ -195,14 +196,14 @@ impl SelfContact {
         for e in 0..x.len() - 1 {
             let [a, b] = [step(e), step(e + 1)];
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
-            // Nothing farther than this can come too near: both may move the widest step, and keep
-            // its part of the gap.
+            // Nothing farther than this can come too near: both may move by the largest step and
+            // still keep the required fraction of the gap.
             let near = self.diameter + 2.0 * widest * limit / (1.0 - keep) + noise;
             for p in order.between(x, low.x - near, high.x + near) {
                 if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
                     continue;
                 }
-                // Seen from the node, which stands still then, the segment moves.
+                // In the frame of the node, which is then at rest, the segment moves.
                 let c = step(p);
                 let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
                 let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
@@ -212,8 +213,8 @@ impl SelfContact {
         free
     }
 
-    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing
-    /// is so near.
+    /// The smallest gap (m) within `within` (m) and the node that has it; `None` if there is no
+    /// such gap.
     pub fn smallest_gap(&self, x: &[Vec2], arc: &[f64], within: f64) -> Option<(f64, usize)> {
         let mut pairs = Vec::new();
         self.pairs(x, arc, within, &mut SortedNodes::default(), &mut pairs);
@@ -239,8 +240,8 @@ mod tests {
     fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
         let mut pairs = Vec::new();
         shape.pairs(x, s, barrier.reach, &mut SortedNodes::default(), &mut pairs);
-        // Seen from the last node: what the nodes it passes feel of it comes on top where it is
-        // over one of them.
+        // Only the pairs of the last node are counted: near another node that it passes, the pairs
+        // of that node would come on top.
         pairs.iter().filter(|p| p.node + 1 == x.len()).map(|p| p.weight * barrier.at(p.gap_m).value).sum()
     }
 

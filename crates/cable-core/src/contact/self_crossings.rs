@@ -5,7 +5,7 @@
 
 use crate::math::{Vec2, cross};
 
-/// Segments in a leaf. Fewer: more boxes; more: more pairs to look at.
+/// Segments in a leaf. Fewer segments mean more boxes, more segments mean more pairs to test.
 const LEAF_SEGMENTS: usize = 4;
 
 /// A crossing of segment `first` with the later segment `second`.
@@ -15,20 +15,21 @@ pub(crate) struct SelfCrossing {
     pub first: usize,
     /// Index of a later one.
     pub second: usize,
-    /// Place on each, from 0 up to but not 1: a crossing at a joint is found once.
+    /// Position on each of them, from 0 (included) to 1 (excluded), so that a crossing at a joint
+    /// is found once.
     pub fractions: [f64; 2],
     /// Sine of the angle between them.
     pub sine: f64,
 }
 
-/// Least and greatest corner of what a run of segments covers.
+/// The lowest and the highest corner of the box round a run of segments, m.
 type BoundingBox = [Vec2; 2];
 
-/// All crossings of the segments `points[k]`–`points[k + 1]`, by first and second segment.
-/// `joined(k)` says whether segment k is one (a break of the line is none).
+/// All crossings of the segments `points[k]`–`points[k + 1]`, ordered by first and second segment.
+/// `joined(k)` tells whether segment k exists; it does not at a break of the line.
 pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<SelfCrossing> {
     let segments = points.len().saturating_sub(1);
-    // A line that goes on and on in one direction does not come back.
+    // A line that always advances in one direction does not come back.
     let goes_on = |way: fn(&[Vec2]) -> f64| points.windows(2).all(|w| way(w) > 0.0);
     if goes_on(|w| w[1].x - w[0].x) || goes_on(|w| w[0].x - w[1].x) {
         return Vec::new();

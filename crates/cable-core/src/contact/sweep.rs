@@ -1,7 +1,7 @@
 //! Conservative advancement bounds how far a moving segment can go without crossing anything.
 //!
-//! Let n be the unit vector along the shortest way from a feature F to the moving segment (a, b) at
-//! t. Both are convex, so for every later t′
+//! Let n be the unit vector along the shortest line from a feature F to the moving segment (a, b)
+//! at t. Both are convex, so for every later t′
 //! ```text
 //! D(t′) ≥ min(n·a(t′), n·b(t′)) − max over F of n·x,      with equality at t′ = t
 //! ```
@@ -9,30 +9,32 @@
 //! there (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, with the
 //! directed bound of Zhang, Lee, Kim, "Interactive continuous collision detection for non-convex
 //! polyhedra", The Visual Computer 22, 2006; D_keep as in Li et al., "Codimensional incremental
-//! potential contact", ACM TOG 2021). What slides along an edge is not stopped by it, however near
-//! it is.
+//! potential contact", ACM TOG 2021). A segment that slides along an edge is not stopped by it,
+//! however near it is.
 
 use super::distance::{between_segments, from_segment, point_segment, segment_segment};
 use super::geometry::{Geometry, ObstaclePart};
 use crate::math::{Vec2, cross, larger, smaller};
 
-/// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still
-/// safe); the distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
+/// Steps of advancement per feature. Fewer steps return a shorter free fraction at a glancing
+/// approach, which is still safe. The remaining distance shrinks geometrically, and 1e5 random
+/// sweeps never used more than 40.
 const MAX_ADVANCES: usize = 48;
 
-/// Advancement ends when what is left to advance is this part of the gap: smaller costs steps,
-/// larger gives away free way.
+/// Advancement ends when the remaining advance is this fraction of the gap. A smaller value costs
+/// steps, a larger value shortens the free fraction.
 const CONVERGED_FRACTION: f64 = 0.02;
 
-/// Distances are trusted to this many units in the last place of the coordinates.
+/// Distances are taken to be accurate to this many units in the last place of the coordinates.
 const ROUNDING_ULPS: f64 = 16.0;
 
-/// A gap below this (m) counts as touching: only the centre line is then kept from crossing.
-/// Supports are drawn right on the ground, with a gap of a rounding error; keeping a part of that
-/// would hold them for ever. The barrier never lets a free node come so near.
+/// A gap below this (m) counts as touching: then only the centre line is kept from crossing.
+/// Supports are often drawn exactly on the ground, with a gap of a rounding error, and if a
+/// fraction of that had to be kept they could never move. The barrier never lets a free node come
+/// so near.
 const TOUCHING_GAP: f64 = 1e-9;
 
-/// Largest part of a gap that can be asked to stay.
+/// Largest fraction of a gap that a caller can ask to keep.
 const MAX_KEEP: f64 = 0.9;
 
 impl Geometry {
@@ -42,8 +44,9 @@ impl Geometry {
         self.free_fraction_round(&Sweep::new(from, to, keep), [None, None])
     }
 
-    /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or
-    /// circles `round`, at one or both ends: near these only its other end can come too close.
+    /// Does the same as [`Self::free_fraction`] for a segment that is tangent, at one or both ends,
+    /// to the rounds of the corners or circles `round`: to these only the other end of the segment
+    /// can come too close.
     #[must_use]
     pub(crate) fn free_fraction_round(&self, sweep: &Sweep, round: [Option<usize>; 2]) -> f64 {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
@@ -60,7 +63,8 @@ impl Geometry {
         of_one_body.filter(blocks).filter_map(|parts| parts.first()).map(|part| part.body).collect()
     }
 
-    /// The same among `parts`, which hold all within the sweep's margin of its box.
+    /// Returns the free fraction with respect to `parts`, which hold all parts within the margin of
+    /// the sweep from its box.
     pub(crate) fn free_fraction_among(
         &self,
         parts: impl Iterator<Item = ObstaclePart>,
@@ -88,8 +92,8 @@ impl Geometry {
                 [true, true] => continue,
             };
             match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
-                // Both ends on one side of its line and far enough from that: the edge cannot be
-                // met.
+                // If both ends are on one side of the line through the edge and far enough from it,
+                // the segment cannot meet the edge.
                 (Some(e), _) if way_off([a, b], e.from, e.normal()) - body.offset > sweep.clear(free) => {}
                 (Some(e), _) => {
                     let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.from, e.to);
@@ -106,18 +110,18 @@ impl Geometry {
     }
 }
 
-/// A segment on its way.
+/// A segment that moves.
 #[derive(Clone, Copy, Debug)]
 pub struct Sweep {
-    /// Its ends at the start, m.
+    /// Ends of the segment at the start, m.
     pub from: [Vec2; 2],
-    /// Their displacements, m.
+    /// Displacements of the ends, m.
     pub go: [Vec2; 2],
-    /// Corners of the box that holds it all the way, m.
+    /// Lowest corner of the box that contains the segment during the whole move, m.
     pub low: Vec2,
-    /// See `low`.
+    /// Highest corner of that box, m.
     pub high: Vec2,
-    /// Distance from the box beyond which a thing keeps its part of the gap by itself, m.
+    /// Distance from the box beyond which the required fraction of every gap is kept anyway, m.
     pub margin: f64,
     speed: f64,
     keep: f64,
@@ -126,7 +130,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// The move `from` → `to` (m) that is to leave the part `keep` of each gap.
+    /// The move `from` → `to` (m) that is to leave the fraction `keep` of each gap.
     #[must_use]
     pub fn new(from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> Self {
         let [a, b] = from;
@@ -149,7 +153,8 @@ impl Sweep {
         }
     }
 
-    /// The same where no more than `most` (m) need be left of a gap, however wide it was.
+    /// Returns the same sweep, in which at most `most` (m) of a gap has to be left, however wide
+    /// the gap was.
     #[must_use]
     pub(crate) fn at_most(self, most: f64) -> Self {
         let whole = most + self.noise;
@@ -158,14 +163,15 @@ impl Sweep {
 }
 
 impl Sweep {
-    /// The gap (m) beyond which the part `limit` of the way is free whatever the direction.
+    /// The gap (m) beyond which the fraction `limit` of the move is free, whatever the direction.
     fn clear(&self, limit: f64) -> f64 {
         let way = self.speed * limit + 2.0 * self.noise + TOUCHING_GAP;
         smaller(way / (1.0 - self.keep), way + self.most)
     }
 }
 
-/// Least distance of a segment from a line through `p` of unit normal `n`, m; 0 where it crosses.
+/// Least distance of a segment from the line through `p` with the unit normal `n`, m; 0 if the
+/// segment crosses the line.
 fn way_off([a, b]: [Vec2; 2], p: Vec2, n: Vec2) -> f64 {
     let (a, b) = ((a - p).dot(&n), (b - p).dot(&n));
     if a > 0.0 && b > 0.0 {
@@ -207,9 +213,10 @@ impl Geometry {
     }
 }
 
-/// The free way up to `limit` of a segment whose ends are given with how far they go, against the
-/// feature between two points: `way` is the shortest from the feature to where the ends are. The
-/// part `keep` of the gap is left, or `most` (m) where that is less.
+/// The free fraction (up to `limit`) of the move of a segment, given by its ends and their
+/// displacements (m), with respect to the feature between two points. `way` is the shortest vector
+/// (m) from the feature to the segment between given ends. The fraction `keep` of the gap is left,
+/// or `most` (m) if that is less.
 pub(super) fn advance(
     moving: [(Vec2, Vec2); 2],
     way: impl Fn([Vec2; 2]) -> Vec2,
@@ -222,9 +229,9 @@ pub(super) fn advance(
     let at = |t: f64| moving.map(|(p, go)| p + go * t);
     let mut away = way(at(0.0));
     let mut d = away.norm();
-    // A cable already overlapping (not this model's doing) still must not be crossed by its centre
-    // line; a centre line already across cannot be crossed again, and holding it there would trap
-    // it.
+    // If the cable overlaps already (this model does not do that), its centre line still must not
+    // cross. If the centre line is across already, it cannot cross again, and stopping it there
+    // would trap it.
     if d <= 0.0 {
         return limit;
     }
@@ -243,7 +250,7 @@ pub(super) fn advance(
         let mut next = limit;
         for (p, go) in moving {
             let (height, rate) = (n.dot(&p), n.dot(&go));
-            // So written that what is not a number ends here.
+            // The comparison is negated so that NaN ends the loop here.
             if !(height + rate * next >= least) {
                 next = (least - height) / rate;
             }
@@ -269,7 +276,7 @@ pub(super) fn advance(
     t
 }
 
-/// A point that moves evenly.
+/// A point that moves uniformly.
 #[derive(Clone, Copy, Debug)]
 struct MovingPoint {
     /// Position at the start, m.
@@ -278,11 +285,11 @@ struct MovingPoint {
     go: Vec2,
 }
 
-/// Until when (from `t` on, at most `limit`) the line through two moving points keeps a feature on
-/// one side, at least `least` (m) away.
+/// The latest time (after `t`, at most `limit`) up to which the line through two moving points
+/// keeps a feature on one side, at least `least` (m) away.
 ///
 /// With e = b − a, r = p − a for a point p of the feature and τ = t′ − t, the line is at least K
-/// from p while
+/// away from p while
 /// ```text
 /// ± e(τ) × r(τ) ≥ K |e(τ)|,      |e(τ)| ≤ L + Λ τ  up to the limit, as |e| is convex
 /// ```

@@ -1,23 +1,24 @@
-//! This test tells whether a cable has passed through something between two shapes.
+//! This test tells whether a cable has passed through an obstacle between two shapes.
 //!
-//! The old shape and back along the new one is a closed way; what it goes round was passed through.
-//! Corners and posts are looked at: nothing thinner is an obstacle.
+//! The old shape, followed by the new shape backwards, is a closed curve, and the cable has passed
+//! through every obstacle that the curve encloses. Corners and posts are tested; there are no
+//! thinner obstacles.
 
 use super::World;
 use crate::math::{Vec2, cross};
 
-/// A point no cable passes through.
+/// A point that no cable can pass through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpassableCorner {
-    /// Its place, m.
+    /// Its position, m.
     pub at: Vec2,
     /// Index of the body.
     pub body: usize,
-    /// Its feature; that of the whole post for all its points.
+    /// Its feature; all points of a post have the feature of the post.
     pub feature: usize,
 }
 
-/// Convex corners and the middles of posts, in order of x.
+/// Convex corners and the centres of posts, in order of x.
 #[must_use]
 pub fn corners(world: &World) -> Vec<ImpassableCorner> {
     let mut out = Vec::new();
@@ -30,11 +31,11 @@ pub fn corners(world: &World) -> Vec<ImpassableCorner> {
     out
 }
 
-/// A corner that lies between the old shape and the new one, the farthest from the new one.
-/// `corners`: in order of x; `turns`: memory.
+/// The corner between the old and the new shape that is farthest from the new one. `corners` are in
+/// order of x; `turns` is reused memory.
 ///
-/// The winding number of the closed way round a corner is the number of its passes above it to the
-/// right, less those to the left.
+/// The winding number of the closed curve about a corner is the number of times that it passes
+/// above the corner to the right, minus the number of times to the left.
 pub fn through(
     corners: &[ImpassableCorner],
     old: &[Vec2],
@@ -60,7 +61,7 @@ pub fn through(
     let (Some(&start), Some(&end)) = (old.first(), old.last()) else { return None };
     old.windows(2).for_each(|w| pass(w[0], w[1]));
     new.windows(2).for_each(|w| pass(w[1], w[0]));
-    // The ends, where they moved.
+    // The ends are joined where they have moved.
     if let (Some(&a), Some(&b)) = (new.first(), new.last()) {
         pass(end, b);
         pass(a, start);

@@ -1,4 +1,4 @@
-//! Queries against brute force, sweeps against exact crossing times.
+//! Queries are compared with a search of everything, and sweeps with exact crossing times.
 
 use super::*;
 use crate::math::{Point, cross, vec2};
@@ -64,7 +64,7 @@ fn inside_polygon(p: Vec2, points: &[Point]) -> bool {
     })
 }
 
-/// Signed gap by looking at everything, with the inside decided by crossing parity.
+/// Signed gap (m) by a search of everything, with the inside decided by crossing parity.
 fn brute(p: Vec2, obstacles: &[Obstacle]) -> f64 {
     let line = |points: &[Point], closed: bool| {
         let n = points.len();
@@ -185,7 +185,7 @@ fn the_nearest_pair_is_the_gap_of_the_segment() {
                 nearest = nearest.min(distance::point_segment(c, a, b) - body.offset);
             }
         }
-        // Inside a solid, or across an edge, pairs say nothing.
+        // Inside a solid or across an edge, pairs have no meaning.
         let outside = |p: Vec2| brute(p, &obstacles) > -RADIUS;
         if nearest > -RADIUS && nearest < 0.299 && outside(a) && outside(b) {
             met += 1;
@@ -220,7 +220,8 @@ fn pair_sums_have_no_jump() {
         let x0 = [start, start + dice.point(0.4, 0.0), start + dice.point(0.6, 0.0)];
         let move_ = [dice.point(0.05, 0.0), dice.point(0.05, 0.0), dice.point(0.05, 0.0)];
         let at = |t: f64| [x0[0] + move_[0] * t, x0[1] + move_[1] * t, x0[2] + move_[2] * t];
-        // Crossing an edge flips normals but not distances; distances are what is summed here.
+        // A node that crosses an edge flips normals but not distances, and only distances are
+        // summed here.
         let e: Vec<f64> = (0..=steps).map(|i| energy(&at(f64::from(i) / f64::from(steps)))).collect();
         for w in e.windows(2) {
             worst = worst.max((w[1] - w[0]).abs());
@@ -274,7 +275,7 @@ fn sweeps_never_cross_anything() {
     let mut dice = Dice(5);
     let (mut stopped, mut blocked) = (0, 0);
     for round in 0..100_000 {
-        // A third of the moves is 10 m long, a third short, a third almost nothing.
+        // A third of the moves are 10 m long, a third are short, and a third are tiny.
         let reach = [10.0, 0.3, 1e-3][round % 3];
         let a = dice.point(9.0, 0.0);
         let from = [a, a + dice.point(0.3, 0.0)];
@@ -306,22 +307,23 @@ fn sweeps_never_cross_anything() {
 #[test]
 fn advancement_gives_most_of_the_free_way() {
     let world = World::new(&[obstacle(terrain(&[[-9.0, 0.0], [9.0, 0.0]]))], 0.5, RADIUS);
-    // Straight down from 1 m above touch by 2 m: 0.8 of the gap, 0.4 of the way, may be used.
+    // The segment moves down by 2 m from 1 m above contact: 0.8 of the gap, 0.4 of the move, may be
+    // used.
     let (a, b) = (Vec2::new(0.0, 1.0 + RADIUS), Vec2::new(1.0, 1.0 + RADIUS));
     let down = Vec2::new(0.0, -2.0);
     assert!((world.free_fraction([a, b], [a + down, b + down], 0.2) - 0.4).abs() < 1e-9);
-    // Up or along: free. No move: free.
+    // A move up or along is free, and so is no move.
     assert_eq!(world.free_fraction([a, b], [a - down, b - down], 0.2), 1.0);
     assert_eq!(world.free_fraction([a, b], [a, b], 0.2), 1.0);
-    // A micrometre above the ground as well; and where it comes down on the way, as far as that
-    // allows.
+    // The same holds a micrometre above the ground, and if the segment descends meanwhile, as far
+    // as that allows.
     let low = |p: Vec2| Vec2::new(p.x, RADIUS + 1e-6);
     let along = Vec2::new(3.0, 0.0);
     assert_eq!(world.free_fraction([low(a), low(b)], [low(a) + along, low(b) + along], 0.2), 1.0);
     let slanting = along + Vec2::new(0.0, -1e-6);
     let free = world.free_fraction([low(a), low(b)], [low(a) + slanting, low(b) + slanting], 0.2);
     assert!((free - 0.8).abs() < 1e-6, "{free}");
-    // NaN never passes.
+    // A move to NaN is never free.
     assert_eq!(world.free_fraction([a, b], [a * f64::NAN, b], 0.2), 0.0);
 }
 
@@ -343,7 +345,7 @@ fn ten_metres_in_a_step_do_not_pass_a_beam_or_a_thin_line() {
             };
             let world = World::new(&[obstacle(shifted)], 0.5, RADIUS);
             let step = Vec2::new(10.0, 0.0);
-            // End on, broadside, and an end that swings.
+            // The segment moves end on, broadside, and with one end that swings.
             for (a, b, to_b) in [
                 (Vec2::new(0.0, 0.0), Vec2::new(-1.0, 0.0), Vec2::new(9.0, 0.0)),
                 (Vec2::new(0.0, -0.5), Vec2::new(0.0, 0.5), Vec2::new(10.0, 0.5)),
@@ -357,9 +359,9 @@ fn ten_metres_in_a_step_do_not_pass_a_beam_or_a_thin_line() {
     }
 }
 
-/// A sweep bounded by the speed of the bar's ends ends long before: by far the most of the gap was
-/// left after 48 advances, and a cable that a hand draws round a corner went a hundredth of its way
-/// in each iteration.
+/// A sweep that is bounded by the speed of the ends of the bar stops long before: most of the gap
+/// was left after 48 advances, and a cable that a hand draws round a corner went a hundredth of its
+/// way in each iteration.
 #[test]
 fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
     let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.05 };
@@ -370,8 +372,8 @@ fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
         let gap = 10f64.powf(-6.0 + 3.0 * dice.unit());
         let y = 0.05 + RADIUS + gap;
         let from = [Vec2::new(-0.02 - 0.2 * dice.unit(), y), Vec2::new(0.02 + 0.2 * dice.unit(), y)];
-        // Along itself, turning, and a little up: what a taut cable does that slides round a
-        // corner.
+        // The bar moves along itself, turns, and rises a little, as a taut cable does that slides
+        // round a corner.
         let along = Vec2::new(0.03 * (dice.unit() - 0.5), gap * dice.unit());
         let turn = 0.02 * (dice.unit() - 0.5);
         let go = [along - Vec2::y() * turn * from[0].x.abs(), along + Vec2::y() * turn * from[1].x.abs()];
@@ -380,8 +382,8 @@ fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
             |t: f64| distance::point_segment(Vec2::zeros(), from[0] + go[0] * t, from[1] + go[1] * t) - 0.05 - RADIUS;
         let first = (0..=20_000).map(|k| f64::from(k) / 20_000.0).find(|&t| gap_at(t) < 0.5 * gap).unwrap_or(1.0);
         assert!(free <= first + 1e-12 && gap_at(free) >= 0.5 * gap - 1e-12, "{free} {first}");
-        // Two hundredths of the gap may be given away, and where it closes with the square of the
-        // way one hundredth of that.
+        // Two hundredths of the gap may be given away; if the gap closes with the square of the
+        // displacement, one hundredth of the displacement.
         assert!(free > 0.97 * first - 1e-4, "{free} of {first}, gap {gap:e}");
         cut += usize::from(first < 1.0);
     }

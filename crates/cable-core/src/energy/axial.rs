@@ -1,4 +1,4 @@
-//! The pull of a straight bar is its stiffness times its strain.
+//! The tension of a straight bar is its stiffness times its strain.
 
 /// A straight bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// Tension at a length, N; negative = compression.
+    /// Tension (N) at a length (m); negative in compression.
     #[must_use]
     pub fn tension(&self, length: f64) -> f64 {
         self.stiffness * (length / self.rest_length - 1.0)

@@ -25,8 +25,8 @@ impl Bar {
     pub(crate) fn stiffness_block(&self, d: Vec2, curvature: Curvature) -> Mat2 {
         let length = d.norm();
         if !(length > 0.0) {
-            // Both nodes in one place: no direction. The limit over all directions of the material
-            // part.
+            // With both nodes in one place the bar has no direction. The material part is averaged
+            // over all directions.
             return Mat2::identity() * (0.5 * self.stiffness / self.rest_length);
         }
         let t = d / length;
@@ -48,7 +48,7 @@ impl Energy<2> for Bar {
     fn gradient(&self, x: &[Vec2; 2]) -> [Vec2; 2] {
         let d = x[1] - x[0];
         let length = d.norm();
-        // Nodes in one place push nowhere: the mean over all directions.
+        // Nodes in one place exert no force, which is the mean over all directions.
         let force = if length > 0.0 { d * (self.tension(length) / length) } else { d };
         [-force, force]
     }

@@ -1,4 +1,4 @@
-//! The bending energy is that of the turn between two bars, or of the turn out of a clamp.
+//! The bending energy depends on the angle between two bars, or between a clamp and a bar.
 //!
 //! The turn at a node between the vectors `a` (into it) and `b` (out of it) is ψ = angle(b) −
 //! angle(a). With the length l̄ that belongs to the node the curvature is κ = ψ/l̄
@@ -9,9 +9,9 @@
 //!                               ∇² = [[2 v_x v_y, v_y² − v_x²], [v_y² − v_x², −2 v_x v_y]] / v⁴
 //! ```
 //! Inside the cable l̄ is half the sum of both rest lengths. At a clamp the angle of the clamp
-//! takes the place of angle(a), and the stretch that bends is from the clamp to the middle of the
-//! first bar: **l̄ = l₀/2**; taking l₀ instead puts the clamp half a bar away and costs 1 % of the
-//! clamp moment at any usual mesh. [`Curvature::Clipped`] leaves the term with ψ out.
+//! takes the place of angle(a), and the bent length is from the clamp to the middle of the first
+//! bar: **l̄ = l₀/2**. With l₀ instead the clamp would stand half a bar away, an error of 1 % of
+//! the clamp moment on a usual mesh. [`Curvature::Clipped`] leaves the term with ψ out.
 
 use super::{Blocks, Curvature, Energy};
 use crate::math::{Mat2, Vec2, cross};
@@ -23,7 +23,8 @@ pub struct BendingEnergy {
     pub stiffness: f64,
     /// Half the sum of both bars' rest lengths, m.
     pub length: f64,
-    /// Turn from which it is measured, rad: 0, and of a loss that at the start of the step.
+    /// Reference turn, rad: 0 for the elastic energy, and for a loss the turn at the start of the
+    /// step.
     pub from: f64,
 }
 
@@ -36,23 +37,23 @@ pub struct ClampBend {
     pub length: f64,
     /// Unit vector of the clamp, pointing to growing arc length.
     pub direction: Vec2,
-    /// Turn from which it is measured, rad.
+    /// Reference turn, rad.
     pub from: f64,
 }
 
-/// The angle from `a` to `b`, rad in (−π, π]; 0 where one of them has no direction.
+/// The angle from `a` to `b`, rad in (−π, π]; 0 if one of them is zero.
 #[must_use]
 pub fn turn(a: Vec2, b: Vec2) -> f64 {
     cross(a, b).atan2(a.dot(&b))
 }
 
-/// ∇ angle(v), 1/m; 0 for a vector without direction.
+/// ∇ angle(v), 1/m; 0 for the zero vector.
 fn angle_gradient(v: Vec2) -> Vec2 {
     let square = v.norm_squared();
     if square > 0.0 { Vec2::new(-v.y, v.x) / square } else { Vec2::zeros() }
 }
 
-/// ∇² angle(v), 1/m²; 0 for a vector without direction.
+/// ∇² angle(v), 1/m²; 0 for the zero vector.
 fn angle_hessian(v: Vec2) -> Mat2 {
     let square = v.norm_squared();
     if !(square > 0.0) {

@@ -1,4 +1,4 @@
-//! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m).
+//! The energies of a cable's nodes are given as value (J), gradient (N) and Hessian (N/m).
 //!
 //! | room | content |
 //! |---|---|

@@ -56,13 +56,12 @@ impl SavedRun {
 /// Reads a run folder, whole or partial, up to the last instant that is whole in all its tables. No
 /// table may have more than `limit_bytes`.
 ///
-/// # Errors
-/// What is missing or broken, and where.
+/// # Errors An error names the missing or broken part and its place.
 pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, FileError> {
     let folder = folder.as_ref();
     let manifest = read_manifest(folder);
-    // Where a successor is half way into its place, what has not moved yet is still in the folder
-    // it comes from.
+    // If a newer run has replaced the old one only in part, its remaining files are still in the
+    // folder from which they are moved.
     let from = manifest.as_ref().and_then(|m| successor(folder, m));
     let place =
         |name: &str| from.iter().map(|f| f.join(name)).find(|p| p.exists()).unwrap_or_else(|| folder.join(name));

@@ -1,5 +1,5 @@
-//! An answer has so many nodes on an arc that the straight lines between them can be taken for the
-//! cable.
+//! This module chooses the number of nodes on an arc of an answer, so that the straight lines
+//! between them represent the cable.
 //!
 //! A chord of an arc of radius r and turn φ comes inside it by its sagitta, r(1 − cos(φ/2)). With a
 //! the greatest one allowed, φ ≤ 2 acos(1 − a/r) = 4 asin √(a/2r): the second form keeps its digits
@@ -7,18 +7,19 @@
 
 use crate::math::smaller;
 
-/// Greatest sagitta, m, and as a part of the cable's diameter. An answer promises 1 mm and 2 %; the
-/// rest is for how far the ends of an arc themselves are off, and for circles that are themselves
-/// drawn. Larger: a reader of the nodes finds the cable inside a post. Smaller: nodes grow as the
-/// root of it, and show nothing more.
+/// Greatest sagitta, m. An answer promises 1 mm and 2 % of the cable's diameter; the rest is for
+/// the errors of the ends of an arc, and for circles that are drawn as polygons. Larger: the nodes
+/// of a cable appear inside a post. Smaller: the number of nodes grows as the inverse root without
+/// visible effect.
 const SAGITTA_M: f64 = 0.8e-3;
+/// Greatest sagitta as a fraction of the cable's diameter.
 const SAGITTA_DIAMETERS: f64 = 0.016;
 /// Greatest turn between two nodes, rad: tension that grows as e^{μφ} leaves a straight line by
 /// (μφ)²/8 of itself, 2e-3 at μ = 1. Larger: tension read between nodes is off by more; smaller:
 /// small corners fill the answer.
 const TURN: f64 = 0.13;
-/// Parts of one arc at most. More: a thin cable on a drum of kilometres fills the memory; fewer:
-/// chords of such a drum cut it by more than is promised.
+/// Maximum number of parts of one arc. Larger: a thin cable on a drum of kilometres fills the
+/// memory; smaller: chords on such a drum cut it by more than is promised.
 const MOST_PARTS: f64 = 8192.0;
 
 fn sagitta_limit(cable_radius: f64) -> f64 {
@@ -32,8 +33,8 @@ pub(in crate::model) fn early_leave(radius: f64, cable_radius: f64) -> f64 {
     if radius > sagitta { 2.0 * (0.5 * sagitta / radius).sqrt().asin() } else { TURN }
 }
 
-/// Parts that an arc of the centre line with a radius (m) and a turn (rad) is cut into, for a cable
-/// of a radius (m).
+/// Number of parts into which an arc of the centre line with a radius (m) and a turn (rad) is
+/// divided, for a cable of a radius (m).
 pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usize {
     let sagitta = sagitta_limit(cable_radius);
     let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
@@ -48,9 +49,9 @@ pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usiz
     }
 }
 
-/// The parts of the material of an arc that lie before each of its nodes but the first, from 0 to
-/// 1, for a strain along it: the more the cable is strained the less material there is, ds ~
-/// dφ/(1 + ε). Simpson's rule for each part.
+/// The fractions of the material of an arc that lie before each of its nodes but the first, for a
+/// strain along it: where the strain is greater there is less material, ds ~ dφ/(1 + ε). Each part
+/// is integrated by Simpson's rule.
 pub(in crate::model) fn material(parts: usize, strain: impl Fn(f64) -> f64) -> Vec<f64> {
     let rate = |f: f64| 1.0 / (1.0 + strain(f));
     let step = 1.0 / parts as f64;

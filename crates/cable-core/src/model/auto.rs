@@ -1,4 +1,4 @@
-//! The chooser takes the cheapest model that can answer, and says why.
+//! This module chooses the cheapest model that can answer, and gives the reason.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub enum Question {
     History(Inertia),
 }
 
-/// Returns whether nothing but pulleys holds the cable.
+/// Returns whether pulleys alone hold the cable.
 fn runs_free(problem: &Problem) -> bool {
     let held = |s: &SupportPoint| s.at.is_some() && s.kind != SupportKind::Pulley;
     problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(held)
@@ -41,7 +41,7 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, ModelReason) {
     } else if runs_free(problem) {
         (Model::Spans, ModelReason::EndOverPulleys)
     } else if problem.supports.iter().any(|s| s.wheel_radius > 0.0 && s.friction > 0.0) {
-        // `catenary` keeps the friction of a whole wheel as one number: it finds some motions
+        // `catenary` stores the friction of a whole wheel as one number: it follows some motions
         // slowly and some not at all.
         (Model::Spans, ModelReason::WheelFriction)
     } else {
@@ -49,15 +49,15 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, ModelReason) {
     }
 }
 
-/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason.
+/// The model for all cables of a scene: the most capable of those chosen for each, and the reason.
 #[must_use]
 pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, ModelReason) {
     let chosen = problems.iter().map(|p| choose(p, question));
     chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, ModelReason::SupportsOnly))
 }
 
-/// The model that answers for rest cables whose masses will move, from which
-/// [`Model::MOST_CAPABLE`] takes over as they begin to: `spans`. None where another would have to,
+/// The model that answers for the equilibrium of cables that will move: `spans`, from which
+/// [`Model::MOST_CAPABLE`] takes over when motion begins. None if another model would be needed,
 /// which cannot move.
 #[must_use]
 pub(crate) fn before_motion<'a>(mut cables: impl Iterator<Item = &'a Problem>) -> Option<Model> {
@@ -65,8 +65,8 @@ pub(crate) fn before_motion<'a>(mut cables: impl Iterator<Item = &'a Problem>) -
     is_spans.then_some(Model::Spans)
 }
 
-/// Returns what is built where a model was chosen: `spans` and `fem` take turns, and behind
-/// `catenary` stands one that meets the wheels which the cable leaves.
+/// Returns the model that is built for a chosen one: `spans` and `fem` take turns, and `catenary`
+/// has a fallback for wheels that the cable leaves.
 #[must_use]
 pub(crate) fn built_for(chosen: Model) -> Model {
     if matches!(chosen, Model::Spans | Model::Catenary) { Model::Auto } else { chosen }

@@ -4,26 +4,27 @@
 //! ```text
 //! F = k (h − x) + c (ḣ − ẋ)
 //! ```
-//! so the support is where this and the cable's pull balance: what is beyond the cable's length is
-//! pulled harder and harder, not reached. The support is a node of the cable like any other. With
-//! both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again,
-//! of stiffness κ = k + c/Δt to a place p, so it is one more term of the energy that a step
-//! minimises, convex, and needs no exchange of forces and no limit of the step (`Hand::pull`).
+//! so the support is where this force and the cable's pull balance: a hand beyond the cable's
+//! length pulls harder and harder but does not get the support there. The support is a node of the
+//! cable like any other. With both velocities those of the step, the changes over its time, F = κ
+//! (p − x) is a spring again, of stiffness κ = k + c/Δt to a place p, so it is one more term of the
+//! energy that a step minimises, convex, and needs no exchange of forces and no limit of the step
+//! (`Hand::pull`).
 
 use super::smoothed_target::SmoothedTarget;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::solution::{HandReport, Warning, WarningCause};
 
-/// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of
-/// the mouse over metres of scene, which no hand could do there, breaks the cable; slower: the
-/// support trails a hand that means it.
+/// Default for the greatest speed of a hand, m/s: that of an arm. Larger: a flick of the mouse over
+/// metres of scene, which no real hand could do, breaks the cable; smaller: the support lags behind
+/// a deliberate fast motion.
 pub(crate) const HAND_SPEED: f64 = 2.0;
-/// Part of the cable's length that a hand is ahead of a support where it carries the whole cable,
-/// unless its stiffness is asked for. Smaller: a hand that is put a little beyond the cable's
-/// length breaks it at once; larger: what is drawn hangs far below the pointer.
+/// Default distance of a hand ahead of a support when it carries the whole cable, as a fraction of
+/// the cable's length. Smaller: a hand a little beyond the cable's length breaks it at once;
+/// larger: the support hangs far below the pointer.
 const HAND_GIVE_FRACTION: f64 = 0.01;
-/// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is
+/// Damping ratio of the whole cable on a hand's spring; for half of it, which a hand carries, it is
 /// 0.35. Less: a cable that was lifted goes on bobbing; more: a hand that starts at its greatest
 /// speed pushes the cable by more than that weighs.
 const HAND_DAMPING_RATIO: f64 = 0.25;
@@ -46,13 +47,13 @@ pub(crate) struct Hand {
     end: SmoothedTarget,
     /// N/m.
     stiffness: f64,
-    /// N s/m.
+    /// Damping coefficient, N s/m.
     damping: f64,
 }
 
 impl Hand {
-    /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so
-    /// far, so nothing jerks; `stiffness` N/m, by default that of [`default_hand_stiffness`].
+    /// Grips a support at `at` (m) with the force (N, on the cable) that has held it so far, so
+    /// nothing jerks; `stiffness` N/m, by default that of [`default_hand_stiffness`].
     #[must_use]
     pub fn grip(problem: &Problem, stiffness: Option<f64>, at: Vec2, force: Vec2) -> Self {
         let stiffness = stiffness.unwrap_or_else(|| default_hand_stiffness(problem));
@@ -72,8 +73,9 @@ impl Hand {
         &self.end
     }
 
-    /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of
-    /// a spring without a damper: stiffness (N/m) and place (m); the support comes from `from` (m).
+    /// Its force on the cable at the end of a step of `dt_s` as that of a spring without a damper:
+    /// stiffness (N/m) and place (m). The free end has made the step already; the support started
+    /// from `from` (m).
     #[must_use]
     pub fn pull(&self, dt_s: f64, from: Vec2) -> (f64, Vec2) {
         let rate = self.damping / dt_s;
@@ -89,9 +91,8 @@ impl Hand {
         HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
     }
 
-    /// Returns what is to be said where the hand is behind its target, or the support, at `at` (m),
-    /// behind the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest`
-    /// in m/s.
+    /// Returns a warning if the hand is behind its target, or the support, at `at` (m), behind the
+    /// hand by more than a hundredth of the cable; `force` on the cable in N, `fastest` in m/s.
     #[must_use]
     pub fn warning(
         &self,

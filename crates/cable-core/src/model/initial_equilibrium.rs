@@ -1,5 +1,5 @@
-//! The initial equilibrium of a cable is the one that `spans` finds with the least sliding,
-//! whichever model continues from there.
+//! This module finds the initial equilibrium of a cable: the one of `spans` with the least slide,
+//! for any model that continues from it.
 
 use std::sync::Arc;
 
@@ -14,21 +14,21 @@ use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, ShownEquilibrium, SlideReason, Warning, WarningCause};
 use crate::state::State;
 
-/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes
-/// it unseen.
+/// Distance (m) to the robot below which a model that knows the robot is used. Smaller: one step
+/// could carry the cable past it.
 const ROBOT_CLEARANCE_M: f64 = 0.02;
-/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across
-/// round things are; more: a slack cable that hangs in the ground is shown.
+/// Depth (m) in an obstacle from which an answer of `spans` is rejected. Smaller: chords across
+/// round obstacles are rejected; larger: a slack cable that hangs in the ground is accepted.
 const MAX_BURIAL_M: f64 = 0.02;
-/// Depth of the search, m: a node deeper inside came in elsewhere.
+/// Greatest depth of the search, m: a cable with a deeper node has entered elsewhere, too.
 const BURIAL_SEARCH_M: f64 = 0.5;
 
-/// Strands whose surfaces are nearer than this, m, or than this part of the diameter, whichever is
-/// more, are answered by the model that knows of their contact, whose forces begin at 1e-4 m. Less:
-/// a contact may be missed by rounding; more: bends are taken for contacts.
+/// Distance between the surfaces of two strands below which a model with self-contact is used: the
+/// larger of a length (m) and a fraction of the diameter. Contact forces begin at 1e-4 m. Smaller:
+/// a contact may be missed by round-off; larger: bends count as contacts.
 const STRAND_CLEARANCE: (f64, f64) = (2e-4, 0.1);
 
-/// A first rest.
+/// An initial equilibrium.
 #[derive(Clone, Debug)]
 pub struct InitialEquilibrium {
     /// The cable there.
@@ -39,11 +39,10 @@ pub struct InitialEquilibrium {
     pub spans: Box<SpansModel>,
 }
 
-/// Returns where the cable comes to lie with the least sliding, supports `dragged` (m) and the
-/// robot led to where it is; None where `spans` does not know.
+/// Returns the equilibrium with the least slide, with supports `dragged` (m) and the robot at its
+/// pose; None if `spans` finds none.
 ///
-/// # Errors
-/// That it slides from where it is laid.
+/// # Errors The error that the cable slides from where it is laid.
 pub fn initial_equilibrium(
     problem: &Arc<Problem>,
     settings: Settings,
@@ -63,7 +62,7 @@ pub fn initial_equilibrium(
         Err(_) => return Ok(None),
     };
     if problem.bending_stiffness > 0.0 {
-        // A cable that lies loose tells a stiff one nothing: no tension draws it straight.
+        // A loose cable gives no shape for a stiff one, because no tension draws it straight.
         if spans.lies_loose() {
             return Ok(None);
         }
@@ -83,8 +82,8 @@ fn of_flexible(warning: &mut Warning) {
     }
 }
 
-/// Returns whether a flexible cable that slid from where it was laid slides on from where it is
-/// said to rest: that was no rest then.
+/// Returns whether a flexible cable that slid from where it was laid slides on from its reported
+/// equilibrium, which is then none.
 #[must_use]
 pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
@@ -93,8 +92,8 @@ pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &Cab
     problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
 }
 
-/// Work of the weight and the dead loads of a cable on its way from one shape to another, J. What
-/// slides away to where it rests comes down: friction only takes.
+/// Work of the weight and the dead loads of a cable between two shapes, J. A cable that slides to
+/// its equilibrium goes down, because friction only dissipates.
 #[must_use]
 pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) -> f64 {
     let moved = |n: &Node| from.position_at(n.arc_length_m).map_or_else(Vec2::zeros, |before| n.at() - before);
@@ -113,7 +112,7 @@ pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) ->
     weight + loads + hung
 }
 
-/// Returns what there is to say of a rest that was found where a cable slid to.
+/// Returns the warning for an equilibrium that a cable reached by sliding.
 #[must_use]
 pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     let why = match slides {
@@ -129,8 +128,8 @@ pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     Warning::new(WarningCause::SlidFromRoute { why }, &problem.cable.name, 0.0, [0.0; 2])
 }
 
-/// The cable as `spans` can lay it: without the robot, which moves; as one that can pass itself; a
-/// stiff one as a flexible one, it bends from there; and supports that let go later hold it.
+/// The cable that `spans` can solve: without the robot and self-contact, flexible even if the real
+/// one is stiff, and held by all supports even if they release it later.
 fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     let plain = Problem::without_self_contact(Problem::without_outline(problem.clone()));
     let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);
@@ -144,15 +143,15 @@ fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     Arc::new(flexible)
 }
 
-/// Returns whether the cable is in touch with the robot, or in its place.
+/// Returns whether the cable touches the robot, or overlaps it.
 #[must_use]
 pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
     let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
-/// Returns whether the cable is an obstacle to itself and two of its strands cross, or touch but
-/// for [`STRAND_CLEARANCE`]. Strands are apart along the cable as [`SelfContact`] has it.
+/// Returns whether the cable has self-contact and two of its strands cross, or are nearer than
+/// [`STRAND_CLEARANCE`]. [`SelfContact`] defines how far apart along the cable two strands are.
 #[must_use]
 pub(crate) fn meets_itself(problem: &Problem, nodes: &[Node]) -> bool {
     if !problem.cable.self_contact {
@@ -171,7 +170,7 @@ pub(crate) fn meets_itself(problem: &Problem, nodes: &[Node]) -> bool {
     SelfContact { diameter }.smallest_gap(&at, &arc, clearance).is_some() || !crossings(&at, |_| true).is_empty()
 }
 
-/// Returns whether a cable lies in an obstacle, deeper than what the models disagree by.
+/// Returns whether a cable lies in an obstacle, deeper than the difference between the models.
 #[must_use]
 pub(crate) fn is_buried(problem: &Problem, nodes: &[Node]) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);

@@ -12,12 +12,12 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ModelReason, Warning};
 use crate::state::State;
 
-/// The part that inertia takes in a step.
+/// The role of inertia in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
     /// Masses accelerate.
     Dynamic,
-    /// Supports move infinitely slowly: friction remembers, masses do not.
+    /// Supports move infinitely slowly: friction keeps its memory, and masses do not accelerate.
     QuasiStatic,
 }
 
@@ -36,13 +36,13 @@ impl StepReport {
         let Cost { iterations, halved_steps, residual_n, inner_step_s } = more.cost;
         self.cost.iterations += iterations;
         self.cost.halved_steps += halved_steps;
-        // Not `max`: what is not a number must show.
+        // `larger` keeps NaN, unlike `max`.
         self.cost.residual_n = larger(self.cost.residual_n, residual_n);
         if inner_step_s > self.cost.inner_step_s {
             self.cost.inner_step_s = inner_step_s;
         }
         for warning in more.warnings {
-            // Of the parts of a step each says the same again, with figures of its own.
+            // Each part of a step repeats the warning with figures of its own.
             self.warnings.retain(|w| !w.has_cause_of(&warning));
             self.warnings.push(warning);
         }
@@ -52,16 +52,16 @@ impl StepReport {
 /// The contact of a cable with the outline of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotContact {
-    /// Its force on it, N.
+    /// Force of the cable on the outline, N.
     pub force_n: Vec2,
-    /// Its pose: that to which it was led unless the cable was in its way.
+    /// Pose of the outline: its target, unless the cable was in its way.
     pub placement: RigidPose,
-    /// Distance of that from the pose to which it was led, m.
+    /// Distance of that pose from its target, m.
     pub left_m: f64,
 }
 
-/// The resources that a model has for itself alone: the memory it works in, and its obstacles,
-/// among which it moves the outline of the robot.
+/// The resources that a model does not share: its working memory, and its obstacles, among which it
+/// moves the outline of the robot.
 #[derive(Debug)]
 pub struct OwnedResources {
     /// Its working memory, of a type that it alone knows.
@@ -78,26 +78,24 @@ pub trait Mechanics: Send {
     /// The kind of this model.
     fn model(&self) -> Model;
 
-    /// Returns why it is this model, where that changed on the way.
+    /// Returns the reason for this model, if the model changed during a run.
     fn reason(&self) -> Option<&ModelReason> {
         None
     }
 
-    /// Returns why the model that was asked first has no answer, where another one gave the present
-    /// one.
+    /// Returns the error of the model that was tried first, if another one gave the present answer.
     fn refusal(&self) -> Option<&SolveError> {
         None
     }
 
-    /// Finds the resting place at the present time from the present state (after `new`: from the
+    /// Finds the equilibrium at the present time from the present state (after `new`: from the
     /// route) and sets velocities to zero.
     ///
-    /// # Errors
-    /// A typed reason when there is none, or none was found.
+    /// # Errors The reason if there is no equilibrium, or none was found.
     fn settle(&mut self) -> Result<StepReport, SolveError>;
 
     /// Advances time by exactly `dt_s` (sub-stepping inside as the model needs). On an error the
-    /// state is the last good one, its time says how far it came.
+    /// state is the last good one, with the time that was reached.
     ///
     /// # Errors
     /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed`
@@ -118,7 +116,7 @@ pub trait Mechanics: Send {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError>;
 
-    /// Returns where the cable is.
+    /// Returns the state of the cable.
     fn state(&self) -> State;
 
     /// Time reached, s.
@@ -126,16 +124,15 @@ pub trait Mechanics: Send {
         self.state().time_s
     }
 
-    /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from
+    /// Adopts a state of the same cable, resampled on this model's mesh (after an edit, or from
     /// another model).
     ///
-    /// # Errors
-    /// When a number is not finite or the state does not fit the cable; `Buried` when the model
-    /// cannot go on from inside an obstacle.
+    /// # Errors An error if a number is not finite or the state does not fit the cable; `Buried` if
+    /// the model cannot continue from inside an obstacle.
     fn set_state(&mut self, state: &State) -> Result<(), SolveError>;
 
-    /// Goes on from an answer of the same cable, by this model or another: as [`Self::set_state`],
-    /// and where the model can, what friction held is still held.
+    /// Continues from an answer of the same cable, by this model or another: as
+    /// [`Self::set_state`], and with the friction of the answer if the model can adopt it.
     ///
     /// # Errors
     /// As [`Self::set_state`].
@@ -145,8 +142,8 @@ pub trait Mechanics: Send {
 
     /// From now on a support follows `target_m` (smoothly and no faster than
     /// [`super::Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the next `settle` or
-    /// quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in
-    /// the next step, whatever that takes.
+    /// quasi-static step it is there) instead of its `motion`. A support on a robot moves there
+    /// evenly in the next step, without a speed limit.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
     /// From now on a hand at `hand_m` (m) holds a support by a spring
@@ -157,28 +154,27 @@ pub trait Mechanics: Send {
         self.drag_support(support, hand_m);
     }
 
-    /// The outline of the robot goes there in the next advance; what is put somewhere
-    /// ([`Self::set_state`]) finds it there at once. Models that know nothing of it leave it out.
+    /// The outline of the robot moves to this pose in the next `advance`; after [`Self::set_state`]
+    /// it is there at once. Models without the outline ignore it.
     fn set_robot_pose(&mut self, _to: RigidPose) {}
 
-    /// From now on a search for an equilibrium and an advance without inertia may do so much work
-    /// at most, in iterations times elements, and fail beyond it. Models that need little leave it
-    /// out.
+    /// From now on a search for an equilibrium and an advance without inertia fail beyond this
+    /// work, in iterations times elements. Models that need little work ignore it.
     fn limit_work(&mut self, _work: usize) {}
 
-    /// The first equilibrium is not asked of `spans`, which is known to have none. Models that
-    /// never ask leave it out.
+    /// The initial equilibrium is not sought with `spans`, which is known to have none. Models that
+    /// never use it ignore this.
     fn start_without_spans(&mut self) {}
 
-    /// Returns what the cable does to the outline of the robot; None where the model leaves it out,
-    /// or there is none.
+    /// Returns the action of the cable on the outline of the robot; None without an outline, or if
+    /// the model ignores it.
     fn robot_contact(&self) -> Option<RobotContact> {
         None
     }
 
-    /// Gives the cable to the next model or the next finer mesh, where there is one behind this
-    /// one, because of what the laws say of its answer; the next [`Self::settle`] is that one's.
-    /// Returns whether there was one.
+    /// Hands the cable to the next model or the next finer mesh, if there is one, because the
+    /// answer violates a law (`why`); the next [`Self::settle`] uses that. Returns whether there
+    /// was one.
     fn fall_back(&mut self, _why: &SolveError) -> bool {
         false
     }
@@ -189,24 +185,23 @@ pub trait Mechanics: Send {
     /// The problem it solves.
     fn problem(&self) -> &Arc<Problem>;
 
-    /// Longest inner step that the next step with inertia is made of, s; infinite where there is
-    /// none to speak of.
+    /// Longest inner step of the next step with inertia, s; infinite if the model has no inner
+    /// steps.
     fn inner_step_s(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// A copy to go back to, which does not hold what the model can have for itself alone.
+    /// A copy for rollback, without the resources that the model does not share.
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
         self.boxed_clone()
     }
 
-    /// Gives away what it has for itself alone and what holds nothing of its state.
+    /// Lends the resources that it does not share and that hold none of its state.
     fn lend(&mut self) -> Option<OwnedResources> {
         None
     }
 
-    /// A copy that was kept goes on with what the model that it was copied from has lent, or with
-    /// its own.
+    /// Lets a copy continue with the resources that the original has lent, or with its own.
     fn borrow(&mut self, _own: Option<OwnedResources>) {}
 
     /// A copy with all its history, for reset and compare.

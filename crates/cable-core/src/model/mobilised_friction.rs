@@ -1,10 +1,12 @@
-//! Friction that is fully mobilised towards one end is refused where a model finds its own.
+//! This module refuses prescribed, fully mobilised friction for models that compute the mobilised
+//! friction themselves.
 
 use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
 
-/// Refuses friction that is fully mobilised towards one end for a model that finds its own.
+/// Refuses friction that is fully mobilised towards one end, for a model that computes the
+/// mobilised friction itself.
 ///
 /// # Errors
 /// `Unsupported`.

@@ -11,9 +11,9 @@
 //! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `arc_nodes.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
-//! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
-//! what happens next ([`Mechanics::advance`]). A model that cannot answer returns a typed error,
-//! never a guess.
+//! A model answers two kinds of question: the equilibrium of a cable ([`Mechanics::settle`]), and
+//! its motion ([`Mechanics::advance`]). A model that cannot answer returns a typed error, never a
+//! guess.
 
 mod arc_nodes;
 pub(crate) mod auto;
@@ -40,8 +40,8 @@ pub(crate) use self::settings::MIN_TOLERANCE;
 pub use self::settings::{Settings, Stepping};
 pub use crate::model_id::Model;
 
-/// Fastest motion in which masses move, m/s: supports that are faster are refused, and
-/// `mass-spring` cuts what is faster. Slower: recoils of broken ropes are cut (breaking strain
-/// times wave speed: 20 m/s for steel, 300 m/s for nylon); faster: air, which no model has, would
-/// rule, and thin obstacles cost ever shorter sub-steps.
+/// Greatest speed with inertia, m/s: faster supports are refused, and `mass-spring` cuts faster
+/// motion. Smaller: recoils of broken ropes are cut (breaking strain times wave speed: 20 m/s for
+/// steel, 300 m/s for nylon); larger: air drag, which no model has, would dominate, and thin
+/// obstacles need ever shorter sub-steps.
 pub(crate) const MAX_SPEED: f64 = 300.0;

@@ -1,5 +1,5 @@
-//! The registry has one entry for each model: its name, what it can do, and how it is built.
-//! Nothing outside this folder asks which model it has, only what that one can do.
+//! The registry has one entry for each model: its name, capabilities and constructor. Code outside
+//! this folder depends on capabilities of a model, never on its identity.
 
 use std::sync::Arc;
 
@@ -14,30 +14,30 @@ use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
 
-/// The capabilities of a model, as far as others must know them.
+/// The capabilities of a model that code outside it needs to know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent abilities, each asked for by itself")]
 pub struct Capabilities {
-    /// It divides cables into elements, whose number a user may choose.
+    /// The model divides cables into elements, whose number a user may choose.
     pub mesh: bool,
     /// Its masses can accelerate.
     pub inertia: bool,
-    /// It meets obstacles.
+    /// It handles contact with obstacles.
     pub contact: bool,
-    /// It meets the outline of the robot; another model is given the cable without it.
+    /// It handles contact with the outline of the robot; other models get the cable without it.
     pub robot_contact: bool,
-    /// It answers friction that is fully mobilised towards one end.
+    /// It accepts friction that is prescribed as fully mobilised towards one end.
     pub mobilised_friction: bool,
-    /// Its nodes can catch on corners, so that a sudden rise of tension is to be doubted.
+    /// Its nodes can catch on corners, so a sudden rise of tension may be wrong.
     pub nodes_catch: bool,
-    /// It is asked what other histories would have left where no model knows them in closed form.
+    /// It computes the tensions of other loading histories if no model knows them in closed form.
     pub explores_histories: bool,
-    /// Its rests can take long: an editor may show a draft on a coarse mesh meanwhile.
+    /// Its equilibria can take long: an editor may show a draft on a coarse mesh meanwhile.
     pub long_rests: bool,
     /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh
     /// instead.
     pub long_steps: bool,
-    /// It is a second opinion on a coarse mesh: a solution that breaks a law is reported with its
+    /// It is a second opinion on a coarse mesh: a solution that violates a law is reported with the
     /// findings and not refused.
     pub findings_are_told: bool,
 }
@@ -72,13 +72,13 @@ pub struct ModelInfo {
     pub help: &'static str,
     /// Its capabilities.
     pub capabilities: Capabilities,
-    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
-    /// iteration stops: what the conformance suite of the models asks of it.
+    /// Relative accuracy of its shape (limited by the mesh) and of its equilibrium (limited by the
+    /// stopping criterion), which the conformance suite requires.
     pub accuracy: [f64; 2],
     construct: fn(Arc<Problem>, Settings) -> Built,
 }
 
-/// The models that solve by themselves, in the order of how much they take on.
+/// The models that solve by themselves, from the least to the most capable.
 const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::Catenary,
@@ -135,7 +135,7 @@ const SOLVERS: [ModelInfo; 4] = [
     },
 ];
 
-/// The chooser: one of the others, or two that take turns.
+/// The automatic choice: one of the other models, or two that take turns.
 const AUTO: ModelInfo = ModelInfo {
     model: Model::Auto,
     label: "Automatic",
@@ -171,7 +171,7 @@ const EXTERNAL: ModelInfo = ModelInfo {
 };
 
 impl Model {
-    /// The model that takes on what all others refuse.
+    /// The most capable model, which accepts what all others refuse.
     pub const MOST_CAPABLE: Self = Self::Fem;
 
     /// Its entry in the registry.
@@ -196,7 +196,7 @@ impl Model {
         self == Self::Auto
     }
 
-    /// Returns how much it takes on: its place in the registry.
+    /// Returns its rank by capability: its place in the registry.
     #[must_use]
     pub fn rank(self) -> usize {
         SOLVERS.iter().position(|info| info.model == self).unwrap_or(0)
@@ -230,8 +230,7 @@ impl ModelSource {
 
     /// Builds the mechanics of one cable.
     ///
-    /// # Errors
-    /// As [`build`], or what the program's own constructor says.
+    /// # Errors As [`build`], or those of the program's own constructor.
     pub fn build(&self, problem: Arc<Problem>, settings: Settings) -> Built {
         match self {
             Self::Registered(model) => build(*model, problem, settings),

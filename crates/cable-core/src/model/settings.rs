@@ -1,4 +1,4 @@
-//! The settings say how finely and how exactly a model works; they are checked before it is built.
+//! The settings are the mesh and accuracy of a model; they are checked before it is built.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +9,8 @@ use crate::units::Quantity;
 /// The mesh and the accuracy of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does
-    /// not.
+    /// Wanted relative accuracy of the tension; models choose their mesh by it if the scene gives
+    /// none.
     pub tolerance: f64,
     /// Elements per cable; overrides the scene's `segments`.
     pub segments: Option<usize>,
@@ -21,7 +21,7 @@ pub struct Settings {
     /// it is solved; None = 1/240 s.
     #[serde(default)]
     pub inner_step_s: Option<f64>,
-    /// Fastest a support follows the hand that drags it while masses move, m/s.
+    /// Greatest speed at which a support follows the hand that drags it in steps with inertia, m/s.
     #[serde(default = "hand_speed")]
     pub hand_speed_m_per_s: f64,
     /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that
@@ -38,8 +38,8 @@ pub struct Settings {
     /// inner step. No other figure depends on it.
     #[serde(default = "yes")]
     pub energy_account: bool,
-    /// True if a cable breaks where its tension reaches its breaking tension; a whole one is only
-    /// warned of else.
+    /// True if a cable breaks where its tension reaches its breaking tension; otherwise there is
+    /// only a warning.
     #[serde(default = "yes")]
     pub breaks: bool,
 }
@@ -73,21 +73,21 @@ impl Default for Settings {
 /// reference scenes by less than 1e-6). Larger: sliding that starts and reverses inside a step is
 /// missed.
 pub(crate) const MAX_MOVE_FRACTION: f64 = 0.01;
-/// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing
-/// is asked, which a test of one mesh may want.
+/// Least meaningful tolerance: below it round-off is larger. From 1 on nothing is required, which a
+/// test of one mesh may want.
 pub(crate) const MIN_TOLERANCE: f64 = 1e-14;
-/// Slowest hand, m/s: slower is none that means to move anything.
+/// Least speed limit of a hand, m/s: a slower hand would move nothing in practice.
 const MIN_HAND_SPEED: f64 = 0.01;
 /// Segments, as a scene's own.
 const SEGMENT_RANGE: (usize, usize) = (1, 100_000);
-/// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that
-/// moves is seen.
+/// Range of inner steps, s. Smaller: a second of motion takes too long; larger: motion is not
+/// resolved.
 const INNER_STEP_RANGE_S: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
-/// Coarser runs beside one take inner steps up to so many times as long, which nobody is shown.
+/// Factor of the longest inner step of the hidden coarser runs that accompany a run.
 const COARSEST_STEP_FACTOR: f64 = 3.0;
 
 impl Settings {
-    /// Refuses what no model can work by.
+    /// Refuses settings with which no model can work.
     ///
     /// # Errors
     /// `Setting`, with the value and what is allowed.
@@ -98,7 +98,7 @@ impl Settings {
         self.validate_for_coarse_runs()
     }
 
-    /// The same, of a run that may be one of the coarser ones beside another.
+    /// As [`Self::validate`], for a run that may be one of the hidden coarser ones.
     pub(crate) fn validate_for_coarse_runs(&self) -> Result<(), SolveError> {
         if !(self.tolerance >= MIN_TOLERANCE && self.tolerance.is_finite()) {
             let allowed = [MIN_TOLERANCE, f64::INFINITY];
@@ -139,7 +139,7 @@ fn ends(range: &std::ops::RangeInclusive<f64>) -> [f64; 2] {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stepping {
-    /// Explicit, or a preview where that would take more than 1000 sub-steps in 1/60 s.
+    /// Explicit, or a preview if explicit steps would take more than 1000 sub-steps in 1/60 s.
     #[default]
     Auto,
     /// Always explicit.
@@ -149,7 +149,7 @@ pub enum Stepping {
 }
 
 impl Stepping {
-    /// The ways of a name on the command line.
+    /// The stepping with this name on the command line.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         match name {

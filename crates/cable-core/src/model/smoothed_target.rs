@@ -1,10 +1,10 @@
 //! A dragged support follows a smoothed target: a point of limited speed behind three lags.
 //!
-//! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it:
-//! piecewise linear input costs 52–330 % of tension error where a C² curve of the same input costs
-//! 1e-4. So the target is followed by a point of limited speed and that through three equal lags,
-//! p = (τ d/dt + 1)⁻³ q: position, velocity and acceleration are then continuous whatever the
-//! target does. A robot leads its hitch exactly.
+//! The target comes 60 times a second and jumps. Applied directly to a stiff cable it would shake
+//! it: piecewise linear input costs 52–330 % of tension error where a C² curve of the same input
+//! costs 1e-4. So the target is followed by a point of limited speed and that through three equal
+//! lags, p = (τ d/dt + 1)⁻³ q: position, velocity and acceleration are then continuous whatever the
+//! target does. A robot moves its hitch exactly.
 
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -18,19 +18,19 @@ const LAG_S: f64 = 0.015;
 /// Time by which a support trails a target that moves evenly, s.
 #[cfg(test)]
 const TRAILING_S: f64 = 3.0 * LAG_S;
-/// The fastest a hand may be asked to be, and a support catches up with its motion after something
-/// held it, m/s. Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
+/// Greatest speed limit of a hand, and speed at which a support catches up with its motion after it
+/// was held back, m/s. Without it a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED_M: f64 = 1e-9;
 
-/// Returns whether a support is a robot's: it is where the robot is, and does not follow it.
+/// Returns whether a support is on the robot: it has the robot's position exactly, without lag.
 #[must_use]
 pub(crate) fn is_led(problem: &Problem, support: usize) -> bool {
     problem.supports.get(support).is_some_and(|s| s.kind == SupportKind::Robot)
 }
 
-/// Says that a support is behind the hand that draws it.
+/// A warning of a support that lags behind the hand that drags it.
 #[must_use]
 pub(crate) fn held_warning(
     problem: &Problem,
@@ -49,18 +49,18 @@ pub(crate) fn held_warning(
 pub struct SmoothedTarget {
     stages: [Vec2; 4],
     velocity: Vec2,
-    /// Distance to its target at which it was left because it may be no faster, m.
+    /// Distance to its target that remains because of its speed limit, m.
     behind_m: f64,
 }
 
 impl SmoothedTarget {
-    /// At rest at a point, m.
+    /// A follower at rest at a point, m.
     #[must_use]
     pub fn at_rest(at: Vec2) -> Self {
         Self { stages: [at; 4], velocity: Vec2::zeros(), behind_m: 0.0 }
     }
 
-    /// At a point (m), moving evenly (m/s): it goes on, and slows down.
+    /// A follower at a point (m) with a velocity (m/s), from which it slows down.
     #[must_use]
     pub fn moving(at: Vec2, velocity: Vec2) -> Self {
         let stages = [3.0, 2.0, 1.0, 0.0].map(|lags| at + velocity * (lags * LAG_S));
@@ -79,8 +79,8 @@ impl SmoothedTarget {
         self.velocity
     }
 
-    /// Returns how far from its target the last step left it because it may be no faster, m; 0
-    /// where it was fast enough.
+    /// Returns the distance to its target after the last step that remains because of its speed
+    /// limit, m; 0 if it was fast enough.
     #[must_use]
     pub(crate) fn behind_m(&self) -> f64 {
         self.behind_m
@@ -105,14 +105,14 @@ impl SmoothedTarget {
         self.behind_m = if capped { (target - self.position()).norm() } else { 0.0 };
     }
 
-    /// Goes this part of the way to `target` (m) in `dt_s`: led, it does not trail.
+    /// Moves by this fraction of the way to `target` (m) in `dt_s`, without lag.
     pub fn lead(&mut self, target: Vec2, part: f64, dt_s: f64) {
         let before = self.position();
         let to = if part < 1.0 { before + (target - before) * part } else { target };
         *self = Self { stages: [to; 4], velocity: (to - before) / dt_s, behind_m: 0.0 };
     }
 
-    /// Takes the point where it was stopped instead (m): it starts again from there, at rest.
+    /// Restarts it at rest from the point (m) where it was stopped.
     pub(crate) fn stop_at(&mut self, at: Vec2) {
         *self = Self::at_rest(at);
     }

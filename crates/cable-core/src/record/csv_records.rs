@@ -1,4 +1,4 @@
-//! Whole records are what is left of a table that was cut off somewhere.
+//! This reader keeps the whole records of a table that was cut off somewhere.
 
 use std::io::{self, Read};
 

@@ -22,8 +22,8 @@ impl History {
         Self { entries: Vec::new(), bytes: 0, budget_bytes }
     }
 
-    /// Appends a solution. Entries at its time or later are dropped first: a run that was wound
-    /// back goes on from there.
+    /// Appends a solution. Entries at its time or later are dropped first, so that a run that was
+    /// wound back continues from there.
     pub fn push(&mut self, solution: Solution) {
         self.truncate_from(solution.time_s);
         self.bytes += size_of_solution(&solution);

@@ -103,7 +103,7 @@ impl From<NodeChoice> for NodeSummary {
     }
 }
 
-/// A file of a run, as it was when the run let go of it.
+/// A file of a run, as it was when the run closed it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileRecord {
     /// Its name.
@@ -143,7 +143,7 @@ pub struct Manifest {
     /// Wall time that its answers took, s; None where it does not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall_time_s: Option<f64>,
-    /// The folder in this one that holds what is being put in its place.
+    /// The folder in this one that holds the new files until they replace the old ones.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub successor: Option<String>,
     /// The request.
@@ -187,14 +187,14 @@ impl Manifest {
         format!("{MANIFEST_HEAD}{}", toml::to_string(self).unwrap_or_default())
     }
 
-    /// From text; None where it is no such text.
+    /// Reads a manifest from text; `None` if the text is no manifest.
     #[must_use]
     pub fn from_toml(text: &str) -> Option<Self> {
         let manifest: Self = toml::from_str(text.strip_prefix(MANIFEST_HEAD)?).ok()?;
         (manifest.version == VERSION).then_some(manifest)
     }
 
-    /// The model that answered all instants; None where several did, or it does not say.
+    /// The model that answered all instants; `None` if several did or the manifest does not say.
     #[must_use]
     pub fn model(&self) -> Option<Model> {
         let [only] = self.solved_by.as_slice() else { return None };

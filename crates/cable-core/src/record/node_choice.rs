@@ -115,7 +115,7 @@ pub enum NodeInterval {
     Never,
 }
 
-/// The content of `nodes.csv`; all of it unless something else is chosen.
+/// The content of `nodes.csv`; by default all nodes at all outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeChoice {
     /// Its columns.

@@ -24,8 +24,9 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// The rows as they are to be written next, in parts of which each is written at once. A row
-    /// longer than a page, and one after a header that fills a page nearly, lies on two still.
+    /// The rows to be written next, in parts that are written with one call each. A row that is
+    /// longer than a page still lies on two pages, and so does a row after a header that nearly
+    /// fills a page.
     pub(crate) fn lay_out(&mut self, rows: &[u8]) -> Vec<Vec<u8>> {
         let mut parts = vec![Vec::new()];
         let (mut from, mut row_start) = (0, 0);

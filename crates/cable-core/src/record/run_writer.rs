@@ -65,8 +65,8 @@ impl<W: Write> RunWriter<W> {
         Ok(())
     }
 
-    /// As [`Self::push`], for the last time of a run: its nodes are written whatever the interval,
-    /// unless they never are.
+    /// Does the same as [`Self::push`] for the last time of a run: its nodes are written whatever
+    /// the interval, unless nodes are never written.
     ///
     /// # Errors
     /// As [`Self::push`].

@@ -169,8 +169,8 @@ impl Write for Journalled {
     }
 }
 
-/// Whatever byte is the last that reaches the disk, the tables read back, up to the last instant
-/// that is whole in all of them.
+/// Whichever byte is the last that reaches the disk, the tables can be read, up to the last instant
+/// that is complete in all of them.
 #[test]
 fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let journal = Journal::default();
@@ -207,7 +207,7 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
         assert_eq!(run.nodes.len(), 3 * instants, "cut at {cut}");
         assert_eq!(run.events.len(), instants / 2, "cut at {cut}");
         assert!(run.history.time_s.iter().zip(&solutions).all(|(t, s)| *t == s.time_s));
-        // Nothing is left out without a word.
+        // Nothing is left out without a message.
         let kept = write(&solutions[..instants]);
         let all_kept = instants > 0 && [h, n, e].into_iter().zip(&kept).all(|(now, then)| now == then);
         assert!(all_kept == run.left_out.is_empty() || instants == 0, "cut at {cut}: {:?}", run.left_out);

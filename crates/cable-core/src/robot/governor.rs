@@ -69,7 +69,7 @@ impl PlannedMotion {
     pub fn next(self, order: SpeedOrder, h: f64) -> Self {
         let acceleration = self.next_acceleration(order, h);
         let end = self.then(acceleration, h);
-        // What rounding leaves of a speed is none: the vehicle stands or goes evenly.
+        // A speed at the level of rounding counts as zero: the vehicle stands or moves uniformly.
         let [off, change] = [end.speed - order.speed, end.acceleration * h].map(f64::abs);
         if off < ROUNDING_M_PER_S && change < ROUNDING_M_PER_S {
             return Self { speed: order.speed, acceleration: 0.0 };
@@ -77,8 +77,8 @@ impl PlannedMotion {
         end
     }
 
-    /// Returns the motion from which the governor goes on after a step of `h` (s) that led from one
-    /// speed to another, m/s. What slows the vehicle down but the governor is no planned
+    /// Returns the motion from which the governor continues after a step of `h` (s) that led from
+    /// one speed (m/s) to another. A deceleration that the governor did not ask for is no planned
     /// acceleration.
     pub fn held_up(self, h: f64, [from, to]: [f64; 2]) -> Self {
         let planned = self.acceleration;

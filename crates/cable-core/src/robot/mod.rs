@@ -31,9 +31,9 @@
 //! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
 //! does to the outline is that of the end of the step.
 //!
-//! The work of the ground where it tips the vehicle over a corner takes nothing from its speed: on
-//! such ground its weight and the hitch do work that is not along the way, and
-//! `RobotWork::ground_j` is that.
+//! The work of the ground where it tips the vehicle over a corner does not change its speed: on
+//! such ground its weight and the force on the hitch do work that is not along the way, and
+//! `RobotWork::ground_j` holds that work.
 //!
 //! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
 //! and jerk; `speed_balance.rs` solves for the speed that drive, tracks and cable leave of it.
@@ -66,9 +66,10 @@ const MAX_SLOPE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 /// A leg of its path is driven when it is this near to its end, m.
 const ARRIVAL_DISTANCE_M: f64 = 1e-3;
 
-/// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's
-/// breadth takes a fifth of a second. Faster: its hitch draws the cable along where the ground has
-/// a corner; slower: it hangs in the air behind its middle.
+/// Largest rate at which the vehicle tips over an edge, rad/s: a machine of one metre that falls by
+/// a hand's breadth takes a fifth of a second. If it were faster, the hitch would pull the cable
+/// along at a corner of the ground; if it were slower, the part behind the middle would hang in the
+/// air.
 const MAX_TIP_RAD_PER_S: f64 = 1.0;
 
 /// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely.
@@ -111,7 +112,7 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// That of a scene, standing; None where there is none, in a plan view, and where there is no
+    /// The robot of a scene, at rest; `None` if the scene has no robot, is a plan view, or has no
     /// ground.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
@@ -183,8 +184,8 @@ impl Vehicle {
         }
     }
 
-    /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where
-    /// it cannot stand.
+    /// Puts the robot at rest with the middle of its tracks at `x_m` (m), and returns the position
+    /// of its hitch, m; `None` if it cannot stand there.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         (self.speed, self.tipping_speed, self.rate) = (0.0, 0.0, Vec2::zeros());
@@ -219,7 +220,7 @@ impl Vehicle {
         vec2(pose.hitch_m(self.preset))
     }
 
-    /// It came only there in its last step: the cable was in its way.
+    /// The robot came only this far in its last step, because the cable was in its way.
     pub(crate) fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
@@ -236,23 +237,23 @@ impl Vehicle {
         0.5 * self.preset.mass_kg.value * self.speed * self.speed
     }
 
-    /// Begins a step of `h` (s): its path goes on.
+    /// Begins a step of `h` (s).
     pub fn begin(&mut self, h: f64, pulls: Pulls) -> Drive {
         self.pulls = pulls;
         let order = self.order(h);
         Drive { wanted: order.speed, asked: self.governed_motion().next(order, h), step_s: h }
     }
 
-    /// The speed that it would have at the end of a step if the pull on its hitch went on changing
-    /// as it did, m/s.
+    /// The speed (m/s) that the robot would have at the end of a step if the force on its hitch
+    /// continued to change at the same rate.
     #[must_use]
     pub fn foreseen(&self, drive: Drive) -> f64 {
         let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.step_s, ..self.pulls };
         self.balance(drive, pulls).speed
     }
 
-    /// Returns its pose at the end of a step in which it comes to this speed (m/s); None where it
-    /// cannot stand there.
+    /// Returns the pose of the robot at the end of a step in which it reaches this speed (m/s);
+    /// `None` if it cannot stand there.
     #[must_use]
     pub(crate) fn pose_at_speed(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.step_s * (self.speed + speed);
@@ -264,7 +265,8 @@ impl Vehicle {
         if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped_pose(x_m, drive.step_s) } else { None }
     }
 
-    /// Its pose at a place, tipped towards the ground as far as it can in a step of `h` (s).
+    /// The pose of the robot at a place, tipped towards the ground as far as is possible in a step
+    /// of `h` (s).
     fn tipped_pose(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         let left = pose.pitch - self.pose.pitch;
@@ -330,7 +332,7 @@ impl Vehicle {
         self.update_report(pulls, forces, drive.wanted, balance.going);
     }
 
-    /// Ends a step in which it cannot go on: it stays where it is.
+    /// Ends a step in which the robot cannot advance: it stays in its place.
     pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: Going) {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
@@ -360,8 +362,8 @@ impl Vehicle {
         self.preset.mass_kg.value
     }
 
-    /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
-    /// asked to go.
+    /// Returns the forces that tracks and rolling resistance can exert in a step, in the commanded
+    /// direction `sense`.
     fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
         let goes = larger(self.speed * sense, 0.0);
         let (most, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
@@ -375,8 +377,8 @@ impl Vehicle {
         }
     }
 
-    /// Returns the motion from which the governor goes on: the one that it has given. A vehicle
-    /// that its cable drags has none of it.
+    /// Returns the motion from which the governor continues, which is the one that it has
+    /// commanded. The commanded motion of a vehicle that its cable drags is zero.
     fn governed_motion(&self) -> PlannedMotion {
         let v = self.speed;
         if self.set.speed * v > 0.0 {

@@ -24,12 +24,12 @@ pub struct SpeedBalance {
     pub(super) normal: f64,
     /// True if the tracks slip.
     pub(super) slips: bool,
-    /// What it does, and why it goes no faster.
+    /// The state of the drive, and the reason why the vehicle is not faster.
     pub(super) going: Going,
 }
 
-/// The forces on a vehicle in a step beside those of its tracks, in the sense in which it is asked
-/// to go.
+/// The forces on a vehicle in a step other than those of its tracks, positive in the commanded
+/// direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepForces {
     /// Mass, kg.
@@ -63,7 +63,7 @@ enum Traction {
 pub(super) struct TrackGrip {
     /// Speed that the governor asks for at the end, m/s.
     pub(super) asked: f64,
-    /// True if it is to go; else it comes to a stand.
+    /// True if the vehicle is commanded to move; otherwise it stops.
     pub(super) drives: bool,
     /// Most that the tracks can transmit, N.
     pub(super) hold: f64,
@@ -180,7 +180,7 @@ impl TrackGrip {
             (_, Traction::Slips) => Going::Slipping,
             (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
             (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
-            // While it gains speed with its full drive it is on its way.
+            // A vehicle that still accelerates with its full drive counts as driving.
             (true, _) if to < self.asked && to - from < STANDSTILL_M_PER_S => Going::Slowed,
             _ => Going::Driving,
         }

@@ -96,7 +96,7 @@ fn it_slips_where_the_pull_exceeds_what_its_tracks_hold() {
     let slippery = |r: &mut Robot| r.track_friction = Some(mu);
     let v = on_slope(0.0, slippery);
     let [m, _, top, c] = figures(&v);
-    // To move at all: μN ≥ H + cN.
+    // The vehicle can only move if μN ≥ H + cN.
     let most = (mu - c) * m * G;
     for (pull, seconds, expected) in [
         (0.98 * most, 60.0, Going::Slowed),
@@ -151,7 +151,7 @@ fn a_path_is_driven_leg_by_leg_and_again() {
     assert_eq!(waits.report.leg, Some(1));
     run(&mut waits, 1.0, Vec2::zeros());
     assert_eq!(waits.report.leg, None);
-    // Nothing but legs that are done: it stands, and comes back.
+    // All legs are done: the vehicle stands, and comes back.
     let mut idle = on_slope(0.0, |r| (r.path, r.repeat) = (vec![drive(0.0, 1.0)], true));
     run(&mut idle, 1.0, Vec2::zeros());
     assert_eq!(idle.speed, 0.0);
@@ -224,7 +224,7 @@ fn a_swinging_pull_draws_it_on_only_while_it_is_less_than_the_drive() {
         }
         assert_eq!(v.pose.at_m[0] > x, goes, "{:?}", v.report);
         assert!((v.report.work.total_j() - v.kinetic_j()).abs() <= 1e-9 * v.report.work.drive_j, "{:?}", v.report);
-        // Let go for good, it goes on.
+        // Once the pull is removed for good, it drives on.
         run(&mut v, 2.0, Vec2::new(-0.5 * most, 0.0));
         assert!(v.pose.at_m[0] > x + 0.2, "{:?}", v.report);
     }

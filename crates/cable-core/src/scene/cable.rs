@@ -67,8 +67,8 @@ pub struct Cable {
     /// True if the cable is an obstacle to itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_contact: bool,
-    /// The way it is first laid, m; empty = straight from support to support, lifted over what is
-    /// in the way.
+    /// The route along which the cable is first laid, m; if it is empty, the cable is laid straight
+    /// from support to support and lifted over obstacles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub route_m: Vec<Point>,
     /// Supports in order along the cable; the first is its start, the last its end.
@@ -90,7 +90,7 @@ fn default_breaking_time_s() -> f64 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionMobilised {
-    /// The friction that the cable laid along its way needs.
+    /// The friction that the cable needs when laid along its route.
     #[default]
     LeastSliding,
     /// All of it, against a cable that is drawn towards its start.

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use crate::scene::Scene;
 
-/// A key of which two scenes have different values.
+/// A key that has different values in two scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Change {
     /// The key, without the path to it: `length_m`.
@@ -30,7 +30,7 @@ pub enum FieldValue {
 
 impl Scene {
     /// Returns the keys in which another scene differs from this one, as their files hold them, in
-    /// the order of the first. Of a thing that only one of them has, each key is one.
+    /// the order of the first. If only one of them has an item, each key of the item counts.
     #[must_use]
     pub fn changes_to(&self, other: &Self) -> Vec<Change> {
         let mut out = Vec::new();
@@ -53,8 +53,8 @@ fn of_tables(was: &Table, is: &Table, out: &mut Vec<Change>) {
     }
 }
 
-/// Things in a list: those that both begin and end with are the same. The rest is compared one by
-/// one where there are as many of them, and else one list has what the other has not.
+/// Items that both lists begin with or end with are equal. The rest is compared one by one if there
+/// are equally many of them; otherwise each list has items that the other does not have.
 fn of_things(was: &[Value], is: &[Value], out: &mut Vec<Change>) {
     let alike = |pairs: &mut dyn Iterator<Item = (&Value, &Value)>| pairs.take_while(|(a, b)| a == b).count();
     let first = alike(&mut was.iter().zip(is));
@@ -74,7 +74,7 @@ fn of_things(was: &[Value], is: &[Value], out: &mut Vec<Change>) {
     is.iter().filter_map(Value::as_table).for_each(|thing| of_tables(&nothing, thing, out));
 }
 
-/// A value that is there, or differs, in one of them; of a thing each key is one.
+/// A value that exists in only one of the scenes, or differs; each key of an item counts.
 fn of_value(key: &str, was: Option<&Value>, is: Option<&Value>, out: &mut Vec<Change>) {
     let nothing = Table::new();
     let table = |side: Option<&Value>| side.and_then(Value::as_table).cloned();

@@ -38,14 +38,14 @@ pub struct Scene {
     /// Point loads on cables.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<Load>,
-    /// The tracked vehicle, if there is one.
+    /// The tracked vehicle (robot), if the scene has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot: Option<Robot>,
 }
 
 impl Scene {
-    /// Returns how the robot stands at the start: on the ground in a side view, as it was put where
-    /// there is none and in a plan view.
+    /// Returns the pose of the robot at the start: on the ground in a side view, and as given in a
+    /// plan view or if there is no ground.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {
         let robot = self.robot.as_ref()?;

@@ -115,7 +115,7 @@ impl Ground {
         Self { columns: Columns::of(&stretches), stretches }
     }
 
-    /// The highest terrain at `x` (m), m; None where there is none.
+    /// The height of the highest terrain at `x` (m), m; `None` if there is no terrain at `x`.
     #[must_use]
     pub fn height(&self, x: f64) -> Option<f64> {
         let near = self.columns.over(x, x).iter().filter_map(|k| self.stretches.get(*k));
@@ -131,9 +131,9 @@ impl Ground {
     /// Returns how a rigid track with its middle at `x` that reaches `half` to both sides (both m,
     /// measured level) rests.
     ///
-    /// A rod on bumps touches two of them, one on each side of its centre of mass, and nothing is
-    /// above it: it lies on the edge of the upper convex hull of the ground below it that spans its
-    /// middle. None where the ground ends below it.
+    /// A rod on bumps touches two of them, one on each side of its centre of mass, and no ground is
+    /// above it: it lies on that edge of the upper convex hull of the ground below it which spans
+    /// its middle. `None` if the ground ends below the rod.
     #[must_use]
     pub fn stand(&self, x: f64, half: f64) -> Option<Stand> {
         let (low, high) = (x - half, x + half);

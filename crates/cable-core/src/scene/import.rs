@@ -99,8 +99,7 @@ pub enum ImportFault {
 
 /// Reads a table or an SVG; `metres_per_unit` is the length of its unit.
 ///
-/// # Errors
-/// What cannot be read, with its line.
+/// # Errors An error names the part that cannot be read, with its line.
 pub fn read(text: &str, metres_per_unit: f64) -> Result<Import, ImportFault> {
     if !(metres_per_unit > 0.0 && metres_per_unit.is_finite()) {
         return Err(ImportFault::Unit);

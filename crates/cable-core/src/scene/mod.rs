@@ -9,7 +9,7 @@
 //! | `robot_contact_outline.rs` | the robot's outline as a cable meets it |
 //! | `read/` | files in and out, and the refusal of what cannot be solved |
 //! | `library/` | named scenes and presets |
-//! | `nearest.rs` | the known name that a mistyped one means |
+//! | `nearest_name.rs` | the known name that a mistyped one means |
 //! | `import.rs`, `similarity.rs` | lines from tables and drawings; a similar copy at another scale |
 //! | `comparison.rs` | in which keys do two scenes differ? |
 //!
@@ -26,7 +26,7 @@ pub mod import;
 pub(crate) mod library;
 pub(crate) mod load;
 pub(crate) mod motion;
-mod nearest;
+mod nearest_name;
 pub(crate) mod obstacle;
 pub(crate) mod read;
 pub(crate) mod robot;

@@ -75,7 +75,7 @@ impl Motion {
         most
     }
 
-    /// The same way, begun elsewhere: every knot moved by `offset` (m).
+    /// The same motion with every knot moved by `offset` (m).
     pub fn shift(&mut self, offset: Vec2) {
         for p in &mut self.points_m {
             *p = [p[0] + offset.x, p[1] + offset.y];

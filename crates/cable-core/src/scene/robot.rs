@@ -94,15 +94,16 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Returns where the cable hangs on it on level ground, m; None for an unknown preset. See
-    /// [`Scene::robot_pose`](crate::scene::Scene::robot_pose) for the ground of a scene.
+    /// Returns the position of the hitch on level ground, m; `None` for an unknown preset.
+    /// [`Scene::robot_pose`](crate::scene::Scene::robot_pose) takes the ground of a scene into
+    /// account.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
     }
 
-    /// Returns how it stands with its tracks' middle at `x_m`: None where the ground ends below its
-    /// tracks.
+    /// Returns the pose of the robot with the middle of its tracks at `x_m` (m); `None` if the
+    /// ground ends below its tracks.
     #[must_use]
     pub(crate) fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
         let stand = ground.stand(x_m, preset.track_half_length_m())?;
@@ -132,7 +133,7 @@ impl Pose {
         [self.at_m[0] + x * cos - p[1] * sin, self.at_m[1] + x * sin + p[1] * cos]
     }
 
-    /// Returns where the cable hangs on it, m.
+    /// Returns the position of the hitch, m.
     #[must_use]
     pub fn hitch_m(&self, preset: &RobotPreset) -> Point {
         self.place([-preset.hitch_back_m.value, preset.hitch_up_m.value])

@@ -6,7 +6,7 @@
 //! ```text
 //! v' = V(S(v'))
 //! ```
-//! There is one such speed, which `speed_search.rs` seeks.
+//! There is exactly one such speed, and `speed_search.rs` finds it.
 //!
 //! The step is that of the cable where that is shorter: then both see each other at every instant
 //! that either of them knows.
@@ -124,7 +124,7 @@ impl Simulation {
         self.lead(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
         if self.for_each_cable(|c| c.advance(step.step_s, step.inertia)).is_err() {
-            // The cable cannot get out of its way.
+            // The cable cannot move out of the robot's way.
             return TrialOutcome::Stuck(Going::Jammed);
         }
         let pulls = self.pulls(step.hitches);

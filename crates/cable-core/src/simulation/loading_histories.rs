@@ -21,19 +21,20 @@ const END_TRAVEL_FRACTIONS: [f64; 3] = [0.01, 0.02, 0.04];
 /// with their square (540 elements on a slope took 38 s); fewer: a rest that may be another.
 const MAX_ELEMENTS: usize = 100;
 
-/// Most work for an end in one direction, and of a step, in iterations times elements: a few tenths
-/// of a second. What was found until then stands.
+/// Largest work for an end in one direction, and for a step, in iterations times elements: a few
+/// tenths of a second. The results found until then are kept.
 const MAX_WORK: usize = 200_000;
 
-/// Most work of the search for the equilibrium of the copy that is moved, in the same unit: some
-/// seconds. More: what other histories leave is told of a few scenes more, after a longer wait.
+/// Largest work of the search for the equilibrium of the copy that is moved, in the same unit: some
+/// seconds. A larger value would report the range of other histories for a few scenes more, after a
+/// longer wait.
 const MAX_SEARCH_WORK: usize = 1_000_000;
 
-/// Change of the greatest tension, of itself, below which a longer way of an end made no
-/// difference: less than an engineer would act on.
+/// Relative change of the greatest tension below which a longer displacement of an end counts as
+/// making no difference: less than an engineer would act on.
 const SAME_TENSION: f64 = 0.01;
 
-/// Time in which an end moves, s: none that counts for what else moves.
+/// Time in which an end moves, s: too short for any other motion to matter.
 const MOVE_TIME_S: f64 = 1e-6;
 
 /// The same cable at rest as the most capable model has it, on a mesh of few elements, to be

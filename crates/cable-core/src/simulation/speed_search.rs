@@ -51,8 +51,8 @@ impl SpeedSearch {
         Self { left: MAX_TRIALS, last: None, low: None, high: None, widths: [f64::INFINITY; 2] }
     }
 
-    /// The next speed to try after a trial, m/s; None where forces jump between the speeds that are
-    /// left, or no trial is.
+    /// The next speed to try after a trial, m/s; `None` if the force jumps between the remaining
+    /// speeds, or no trial is left.
     pub fn next(&mut self, now: Trial) -> Option<f64> {
         self.left = self.left.checked_sub(1)?;
         let before = self.last.replace(now);
@@ -109,9 +109,9 @@ mod tests {
         assert!(count <= 3 && (speed - 0.1).abs() < 1e-3, "{count}: {speed}");
     }
 
-    /// A cable that is squeezed presses as the logarithm of a gap that closes at a speed, and not
-    /// at all at less: with twelve trials and the secant wherever it lay between, such steps ended
-    /// with forces of kilonewtons left.
+    /// A squeezed cable presses with the logarithm of a gap that closes from a certain speed on,
+    /// and not at all below that speed. With twelve trials and the secant wherever it lay between
+    /// the last two, such steps ended with unbalanced forces of kilonewtons.
     #[test]
     fn a_cable_that_is_squeezed_is_balanced() {
         for closes_at in [0.3, 0.011, 2.3e-3] {

@@ -10,8 +10,8 @@ use crate::math::{Vec2, larger, perp};
 /// than is said; more: nothing is gained.
 const READING_FACTOR: f64 = 1.01;
 
-/// Estimated errors of an answer for one cable; None = not known, or there is nothing of which it
-/// could be.
+/// Estimated errors of an answer for one cable; `None` if an error is not known or the quantity
+/// does not exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimates {
     /// Of the greatest tension, N.
@@ -80,7 +80,7 @@ impl ErrorEstimates {
 
     pub(crate) fn with(&self, other: &Self, join: impl Fn(f64, f64) -> f64) -> Self {
         let both = |a: Option<f64>, b: Option<f64>| Some(join(a?, b?));
-        // Where only one of two answers touches anything, the other's force is none.
+        // If only one of two answers has a contact, the contact force of the other is zero.
         let contact_force_n = match (self.contact_force_n, other.contact_force_n) {
             (Some(a), Some(b)) => Some(join(a, b)),
             (a, b) => a.or(b),

@@ -34,7 +34,7 @@ pub struct InertiaEffect {
 
 impl InertiaEffect {
     /// Returns whether forces without inertia differ by more than the tolerance, or are not known;
-    /// None where no run without inertia goes beside this one, or where it is not clear.
+    /// `None` if no run without inertia accompanies this one, or if the difference is not clear.
     #[must_use]
     pub fn matters(&self) -> Option<bool> {
         let Some(apart) = self.without?.force_error else { return Some(true) };

@@ -63,7 +63,8 @@ pub struct Solution {
     /// Energy of all cables.
     #[serde(default)]
     pub energy: Energy,
-    /// Its verification; None where nobody asked (a model's own answer, a run read from files).
+    /// The verification of the answer; `None` if it was not verified (the answer of a single model,
+    /// a run read from files).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
     /// The robot, where the scene has one that can move.
@@ -94,8 +95,8 @@ pub struct CableSolution {
     /// Its sharpest bend where nothing leads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_bend: Option<Bend>,
-    /// Its sharpest bend where something leads it, at a sharp corner as its bending stiffness lets
-    /// it: what is warned of.
+    /// The sharpest bend where a support or obstacle guides the cable, at a sharp corner as the
+    /// bending stiffness allows; warnings refer to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged_bend: Option<JudgedBend>,
     /// The place at which it is pressed hardest against what leads it.
@@ -361,7 +362,7 @@ pub struct SupportReaction {
     /// Pulley: tension on the side of greater arc length, N.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tension_after_n: Option<f64>,
-    /// The hand that holds it by a spring, if one does.
+    /// The hand that holds the support by a spring, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hand: Option<HandReport>,
 }
@@ -389,7 +390,7 @@ impl HandReport {
     }
 }
 
-/// State of a contact: it holds or slides.
+/// State of a contact: it sticks or slides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactState {
@@ -419,9 +420,9 @@ pub struct ContactReport {
     pub friction_n: f64,
     /// Holds or slides.
     pub state: ContactState,
-    /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise
-    /// (to the left), negative clockwise, whole turns counted. A cable that goes over a post to the
-    /// right and down on its far side has about −180.
+    /// Wrap angle: the turn of the cable along growing arc length, °, positive anticlockwise (to
+    /// the left) and negative clockwise, with whole turns counted. A cable that runs to the right
+    /// over a post and down on its far side has about −180.
     pub turn_deg: f64,
     /// Tension before the contact (smaller arc length), N.
     pub tension_before_n: f64,
@@ -433,8 +434,9 @@ pub struct ContactReport {
     /// Arc length where it ends, m; its middle for a point.
     #[serde(default)]
     pub ends_m: f64,
-    /// Its stretches where one holds while another has slid, in order: slip fronts are where they
-    /// meet. Empty where all of it does what `state` says, and where the model does not know.
+    /// The stretches of a contact of which some stick while others have slid, in order; slip fronts
+    /// are where they meet. The list is empty if the whole contact is in the state `state`, and if
+    /// the model does not know.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<ContactPart>,
     /// Whole force of the obstacle on the cable, N: normal force and friction. Of a contact of the
@@ -463,7 +465,7 @@ impl ContactSample {
     }
 }
 
-/// A stretch of a contact that holds or has slid.
+/// A stretch of a contact that sticks or has slid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactPart {
     /// Arc length where it begins, m.

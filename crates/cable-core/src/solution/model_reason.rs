@@ -70,7 +70,7 @@ pub enum LikelyBending {
     NoAnswer(Box<SolveError>),
 }
 
-/// The bending stiffness that was taken for a cable.
+/// The bending stiffness that was assumed for a cable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakenStiffness {
     /// Name of the cable.

@@ -30,9 +30,10 @@ pub struct NextCheaper {
     pub model: Model,
     /// The effect that it neglects.
     pub neglects: NeglectedEffect,
-    /// Greatest difference of a support's force and of the greatest tension, in parts of the
-    /// greatest tension; None where it has no answer.
+    /// Greatest difference of a support's force and of the greatest tension, as a fraction of the
+    /// greatest tension; `None` if the cheaper model has no answer.
     pub force_error: Option<f64>,
-    /// Greatest distance of a point of the cable from where it is, m; None where it has no answer.
+    /// Greatest distance between the two places of a point of the cable, m; `None` if the cheaper
+    /// model has no answer.
     pub position_error_m: Option<f64>,
 }

@@ -1,5 +1,5 @@
-//! The robot report describes the tracked vehicle in an answer: where it is, what pulls at it, and
-//! why it is as fast as it is.
+//! The robot report describes the tracked vehicle in an answer: its place, the forces on it, and
+//! what determines its speed.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Going {
-    /// Nothing is asked of it and it stands.
+    /// The robot has no command and stands.
     #[default]
     Standing,
-    /// As fast as commanded, or on the way there.
+    /// The robot has the commanded speed, or accelerates towards it.
     Driving,
     /// Slower than commanded: what it pulls costs it speed.
     Slowed,
@@ -22,7 +22,7 @@ pub enum Going {
     Dragged,
     /// The ground ends or is too steep.
     Blocked,
-    /// Its own cable is in its way and cannot get out of it.
+    /// The robot's own cable is in its way and cannot move out of it.
     Jammed,
 }
 
@@ -43,7 +43,7 @@ impl Going {
     }
 }
 
-/// Work of each force on the vehicle, force times way, J.
+/// Work of each force on the vehicle (force times displacement), J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RobotWork {
@@ -82,11 +82,11 @@ pub struct RobotReport {
     pub pitch_deg: f64,
     /// Speed along the ground, positive to the right, m/s.
     pub speed_m_per_s: f64,
-    /// Acceleration that its governor gave it, positive to the right, m/s²; 0 where something else
-    /// held it up.
+    /// Acceleration that the governor commanded, positive to the right, m/s²; 0 if something else
+    /// held the robot up.
     #[serde(default)]
     pub governor_m_per_s2: f64,
-    /// Speed it is asked for, m/s.
+    /// Commanded speed, m/s.
     pub commanded_m_per_s: f64,
     /// Force of its tracks along the ground, N.
     pub thrust_n: f64,
@@ -107,7 +107,7 @@ pub struct RobotReport {
     /// Work of the forces on it since it began.
     #[serde(default)]
     pub work: RobotWork,
-    /// The reason why it is as fast as it is.
+    /// The reason for the present speed.
     pub going: Going,
     /// The leg of its path it is on; None by hand or at the end.
     pub leg: Option<usize>,

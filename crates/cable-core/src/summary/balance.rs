@@ -58,8 +58,8 @@ pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time
     })
 }
 
-/// Returns whether a point load hangs where a dead load or nothing is: the force of that support is
-/// of all that hangs there.
+/// Returns whether a point load acts where a support is a dead load or free: the force of that
+/// support includes all loads there.
 fn hangs_at_a_support(cable: &Cable, arc_length_m: f64) -> bool {
     let last = cable.supports.len().saturating_sub(1);
     cable.supports.iter().enumerate().any(|(k, s)| {

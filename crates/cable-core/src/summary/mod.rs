@@ -1,6 +1,6 @@
-//! A summary holds what an engineer reads first of an answer: forces and angles at the ends, lying
-//! and hanging lengths, sag, the range of tensions, the share of each limit that is used, and the
-//! balance of all forces.
+//! A summary holds the figures of an answer that an engineer reads first: forces and angles at the
+//! ends, lying and hanging lengths, sag, the range of tensions, the share of each limit that is
+//! used, and the balance of all forces.
 //!
 //! | room | content |
 //! |---|---|
@@ -46,12 +46,12 @@ pub struct CableSummary {
     pub stretched_length_m: f64,
     /// Unstretched length that lies on ground and other obstacles, m; all of it in a plan view.
     pub lying_m: f64,
-    /// The rest of it, m: what hangs, stands or runs over wheels.
+    /// The rest of the cable, m, which hangs, stands or runs over wheels.
     pub suspended_m: f64,
     /// Places at which it comes down on something or leaves it, in order of arc length.
     pub touchdowns: Vec<Touchdown>,
     /// Greatest depth below the straight line between neighbouring supports (in a plan view:
-    /// distance from it); None where no two supports stand apart.
+    /// distance from the line), m; `None` if no two supports are apart.
     pub sag: Option<Sag>,
     /// Its lowest point.
     pub lowest: CablePlace,
@@ -59,17 +59,17 @@ pub struct CableSummary {
     pub highest: CablePlace,
     /// The sharpest bend of its line; None = nearly straight.
     pub tightest_bend: Option<Bend>,
-    /// The sharpest bend where something leads it, as its bending stiffness lets it; None = nothing
-    /// leads it round anything.
+    /// The sharpest bend where a support or obstacle guides the cable, as its bending stiffness
+    /// allows; `None` if the cable is not guided.
     pub judged_bend: Option<JudgedBend>,
     /// Place at which it is pressed hardest against what leads it round.
     pub sidewall_pressure: Option<Pressure>,
     /// Used part of each limit.
     pub utilisation: Utilisation,
-    /// Mobilised part of the friction of its contacts; None where nothing rubs.
+    /// Mobilised fraction of the friction of the contacts; `None` if no contact has friction.
     pub friction: Option<FrictionUse>,
-    /// Sum of all forces on it; None in a plan view with a floor that rubs, whose force no answer
-    /// holds.
+    /// Sum of all forces on the cable; `None` in a plan view with a floor that has friction, as no
+    /// answer holds the force of the floor.
     pub balance: Option<ForceBalance>,
 }
 
@@ -84,10 +84,11 @@ pub struct EndForce {
     pub horizontal_n: f64,
     /// Vertical part, N: positive upwards.
     pub vertical_n: f64,
-    /// The direction in which the cable leaves the end, °: anticlockwise from the right. None where
-    /// nothing says it.
+    /// The direction in which the cable leaves the end, °, anticlockwise from the right; `None` if
+    /// it is not known.
     pub angle_deg: Option<f64>,
-    /// The same above the horizontal, °: from −90, straight down, to 90, straight up.
+    /// The angle of that direction above the horizontal, °, from −90 (straight down) to 90
+    /// (straight up).
     pub elevation_deg: Option<f64>,
 }
 
@@ -101,7 +102,7 @@ pub struct Utilisation {
     /// Smallest allowed bend radius over that of the sharpest judged bend, or of the sharpest free
     /// one if that is sharper; None where none is stated.
     pub bend_radius_ratio: Option<f64>,
-    /// Sidewall pressure over its limit; None where none is stated.
+    /// Ratio of the sidewall pressure to its limit; `None` if no limit is stated.
     pub sidewall_pressure_ratio: Option<f64>,
 }
 

@@ -76,7 +76,7 @@ pub(super) fn heights(answer: &CableSolution) -> (CablePlace, CablePlace) {
     })
 }
 
-/// Returns whether a contact is with something else than the cable itself.
+/// Returns whether a contact is with an obstacle, not with the cable itself.
 pub(super) fn lies_on_something(cable: &Cable, c: &&ContactReport) -> bool {
     c.obstacle != cable.name
 }

@@ -22,7 +22,8 @@ struct Catenary {
 }
 
 impl Catenary {
-    /// The pull at which a length hangs in a span: 2 (H/w) sinh(w d/2H) = L, by bisection.
+    /// The horizontal force H (N) at which a length L hangs in a span d: 2 (H/w) sinh(w d/2H) = L,
+    /// by bisection.
     fn of(length: f64, span: f64, weight: f64) -> Self {
         let long = |h: f64| 2.0 * h / weight * (0.5 * weight * span / h).sinh();
         let (mut low, mut high) = (1e-2 * weight * span, 1e6 * weight * span);

@@ -36,10 +36,10 @@ const WINDOW_S: f64 = 0.05;
 /// covered and 80 are between half and ten times the error; with 2 they are 91 and 84, with 4 they
 /// are 97 and 71.
 const ERROR_FACTOR: f64 = 3.0;
-/// Where the finest is so much nearer to the second than to the third they converge, and
-/// what it differs by from the second counts alone. Steps of the second order have 0.375. With
-/// less, free swings are said to be up to 20 times as wrong as they are; with more, fewer figures
-/// are covered.
+/// The runs count as converging if the difference between the finest and the second run is at most
+/// this fraction of that between the finest and the third; then the first difference alone gives
+/// the error. Steps of the second order have 0.375. With a smaller value, the errors of free swings
+/// are estimated up to 20 times too high; with a larger value, fewer figures are covered.
 const CONVERGENCE_RATIO: f64 = 0.6;
 /// The logarithm of the greatest tension of a window may be so many times as far down and up on
 /// finer meshes as it is apart in the three runs. With [2, 2] 9 in 100 runs on four times as many
@@ -123,13 +123,13 @@ impl CoarseRuns {
         Some(Self { runs, inertia, count: 0, window_began_s: fine.time_s(), own, before })
     }
 
-    /// The same is done to each of them as to the run they are beside.
+    /// Each coarser run gets the same treatment as the run that it accompanies.
     pub fn steer(&mut self, mut how: impl FnMut(&mut Simulation)) {
         self.runs.iter_mut().for_each(|run| how(&mut run.simulation));
     }
 
-    /// Goes on to the run they are beside, which has made one more step; None where one of them
-    /// cannot.
+    /// Advances the coarser runs to the time of the run that they accompany, which has made one
+    /// more step; `None` if one of them fails.
     pub fn follow(mut self, fine: &Simulation) -> Option<Self> {
         self.count += 1;
         self.own.iter_mut().zip(max_tensions(fine)).for_each(|(own, max_tensions)| own.note(max_tensions));

@@ -5,7 +5,7 @@ use crate::error::SolveError;
 use crate::model::Inertia;
 use crate::simulation::Simulation;
 
-/// The accuracy that is asked of a run, and the effort that it may take.
+/// The accuracy that a run is to reach, and the largest effort that it may take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refinement {
     /// Length of the run, s.

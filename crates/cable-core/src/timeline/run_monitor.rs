@@ -17,13 +17,13 @@ pub struct RunMonitor {
     without_inertia: Option<RunWithoutInertia>,
     /// One a cable.
     peaks: Vec<RunPeaks>,
-    /// Greatest error of a force so far, N; None where one was not known.
+    /// Greatest error of a force so far, N; `None` if one of the errors was not known.
     worst_n: Option<f64>,
     motion_numbers: MotionNumbers,
 }
 
 impl RunMonitor {
-    /// Of a run that begins with a simulation as it is.
+    /// Returns the monitor of a run that begins with the present state of a simulation.
     #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
         let so_far = |answer: &CableSolution| RunPeaks { peaks: answer.peaks_at(simulation.time_s()), ranges: None };

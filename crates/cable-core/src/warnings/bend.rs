@@ -1,9 +1,10 @@
-//! A bend is judged by how sharp it is, where, and what leads the cable there.
+//! A bend is judged by its radius, its place and the obstacle or support that guides the cable
+//! there.
 //!
-//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led.
-//! Where the cable is led round a wheel or a post its line has the radius of that, round a sharp
-//! corner its own radius (the corner's turn per element says only how fine a mesh is). Pressure on
-//! the round is q = T/R per metre.
+//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or guided. A
+//! cable round a wheel or a post has the radius of its centre line there, round a sharp corner its
+//! own radius (the turn of the corner per element would only tell how fine the mesh is). Pressure
+//! on the round is q = T/R per metre.
 //!
 //! The bend of a cable at a sharp corner is judged by its bending stiffness EI, known or estimated,
 //! also where the answer is that of a flexible line. Weightless beside the corner, with φ the angle

@@ -70,7 +70,7 @@ struct EnergyMinimum {
 /// Observation of a support at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SupportState {
-    /// It holds the cable.
+    /// The support holds the cable.
     Holds {
         /// Position, m.
         at: Vec2,

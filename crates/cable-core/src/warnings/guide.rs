@@ -14,7 +14,7 @@ const CONTACT_GAP: f64 = 3e-3;
 /// The body that leads the cable at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guide {
-    /// Nothing.
+    /// No guide.
     Free,
     /// Something round: radius of the centre line, m.
     Round(f64),
@@ -51,7 +51,7 @@ pub(super) fn guide_at_node(problem: &Problem, answer: &CableSolution, node: usi
     if problem.world.is_empty() {
         return Guide::Free;
     }
-    // A flat edge leads nobody round: only corners and circles do.
+    // A flat edge does not bend the cable: only corners and circles do.
     let chain = [node.checked_sub(1), Some(node), Some(node + 1)].map(|k| k.and_then(at));
     let chain = chain.map(|p| p.unwrap_or(here));
     nearest_wrap_body(problem.world.geometry(), &chain, CONTACT_GAP)

@@ -131,7 +131,7 @@ impl WarningMonitor {
     }
 }
 
-/// Returns what one answer shows by itself.
+/// Returns the warnings that one answer justifies on its own.
 pub(super) fn instantaneous(observed: &Observed<'_>) -> Vec<Warning> {
     let Observed { problem, answer, bends, breaks, .. } = *observed;
     let mut out = Vec::new();

@@ -1,4 +1,4 @@
-//! A snag is an obstacle that holds the cable fast while it is pulled harder and harder.
+//! A snag is an obstacle that holds the cable fast while the pull on it grows.
 
 use super::Observed;
 use crate::solution::{ContactReport, ContactState, Warning, WarningCause};

@@ -119,7 +119,7 @@ fn a_curl_is_a_free_turn_of_270_degrees_in_a_tight_space() {
     assert!(kinds(&p, &turned(0.5, 1.7 * PI)).contains(&WarningKind::Curl));
     assert!(!kinds(&p, &turned(0.5, 1.4 * PI)).contains(&WarningKind::Curl), "not far enough");
     assert!(!kinds(&p, &turned(3.0, 1.7 * PI)).contains(&WarningKind::Curl), "a wide bow");
-    // The same turn round a post is the post's.
+    // The same turn round a post is due to the post.
     let mut with_post = scene();
     // It reaches everything.
     with_post.cables[0].breaking_tension_n = 1e12;
@@ -166,7 +166,7 @@ fn free_bends_are_kinks_and_led_ones_are_too_tight_rounds() {
     let bow = |radius: f64| along(&arc([3.0, 2.0], radius, 0.0, PI, 40), 700.0);
     assert_eq!(kinds(&problem(&s), &bow(0.16)), []);
     assert_eq!(kinds(&problem(&s), &bow(0.12)), [WarningKind::Kink]);
-    // Where no smallest radius is stated it is the cable's own width.
+    // If no smallest radius is stated, the diameter of the cable takes its place.
     let mut unstated = s.clone();
     unstated.cables[0].min_bend_radius_m = 0.0;
     for (radius, kinked) in [(0.12, false), (0.03, false), (0.025, true)] {
@@ -380,7 +380,7 @@ fn tension_warnings_do_not_flicker() {
                 }
             }
         }
-        // Just below its limit a tension holds a warning that stands, and begins none.
+        // A tension just below its limit keeps a present warning, and does not begin a new one.
         let hovers = |t: f64| {
             level
                 * if t < 0.1 {
@@ -458,7 +458,7 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
 }
 
 proptest! {
-    /// The tree finds what looking at all pairs finds.
+    /// The tree finds the same crossings as a test of all pairs.
     #[test]
     fn crossings_are_those_of_brute_force(
         steps in prop::collection::vec((-1.0..1.0f64, -1.0..1.0f64), 2..120), drift in 0.0..1.0f64, gap in 0usize..120,

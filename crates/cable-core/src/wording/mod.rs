@@ -25,7 +25,7 @@ mod warning;
 
 use crate::units::{FOOT_M, Quantity, UnitSystem};
 
-/// Data that can be told in a sentence.
+/// Data that can be expressed as a sentence.
 pub trait Sentence {
     /// The sentence in a system of units, without a full stop.
     fn sentence(&self, units: UnitSystem) -> String;
@@ -79,12 +79,12 @@ fn shortened(power: String) -> String {
 }
 
 impl Figures {
-    /// With so many decimals.
+    /// The number with this many decimals.
     fn fixed(self, quantity: Quantity, value: f64, decimals: usize) -> String {
         self.with_unit(quantity, rounded(quantity.convert(value, self.0), decimals))
     }
 
-    /// As a power of ten with so many decimals.
+    /// The number in scientific notation with this many decimals.
     fn power(self, quantity: Quantity, value: f64, decimals: usize) -> String {
         self.with_unit(quantity, self.bare_power(quantity, value, decimals))
     }
@@ -123,7 +123,7 @@ impl Figures {
         }
     }
 
-    /// A length (m) with so many decimals.
+    /// A length (m) with this many decimals.
     fn length(self, length_m: f64, decimals: usize) -> String {
         self.fixed(Quantity::Length, length_m, decimals)
     }
@@ -147,7 +147,7 @@ impl Figures {
         }
     }
 
-    /// A point (m) with so many decimals.
+    /// A point (m) with this many decimals.
     fn point(self, at_m: [f64; 2], decimals: usize) -> String {
         format!("({}, {})", self.length(at_m[0], decimals), self.length(at_m[1], decimals))
     }
@@ -157,7 +157,7 @@ impl Figures {
         format!("[{}, {}]", self.bare(Quantity::Length, at_m[0]), self.bare(Quantity::Length, at_m[1]))
     }
 
-    /// A force (N) with so many decimals.
+    /// A force (N) with this many decimals.
     fn force(self, force_n: f64, decimals: usize) -> String {
         self.fixed(Quantity::Force, force_n, decimals)
     }

@@ -1,5 +1,5 @@
-//! These sentences say why a model has no answer. Every one says where, in lengths and names, and
-//! what can be done; none holds a number that is not finite.
+//! These sentences say why a model has no answer. Every sentence names the place, by lengths and
+//! names, and a remedy; none holds a number that is not finite.
 
 use super::{Figures, Sentence, display_in_si, six_digits};
 use crate::error::{
@@ -162,8 +162,8 @@ impl Sentence for NoEquilibrium {
     }
 }
 
-/// Returns how much more friction holds a cable: three digits, the last one rounded up, so that it
-/// does.
+/// Returns the friction that would hold a cable: three digits, the last one rounded up, so that it
+/// is enough.
 fn missing_friction(friction_ratio: f64) -> String {
     let more = 100.0 * (friction_ratio - 1.0);
     let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);

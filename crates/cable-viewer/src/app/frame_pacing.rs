@@ -16,7 +16,7 @@ pub(super) struct FramePacing {
 }
 
 impl FramePacing {
-    /// At least so long from frame to frame while time runs.
+    /// Least time between two frames while the simulation runs.
     pub fn every(&mut self, interval: Duration) {
         self.interval = interval;
     }

@@ -75,8 +75,8 @@ impl Section {
 enum Column {
     /// The outline of the scene, and in a small window the form of the selected thing.
     Edit,
-    /// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on
-    /// the cable is marked its tension stands above the readouts, else at the end.
+    /// Draws all warnings except the worst, the form of the selected item, then the readouts. If a
+    /// place on the cable is marked, its tension stands above the readouts, otherwise at the end.
     Results,
 }
 
@@ -113,9 +113,10 @@ const MIN_TWO_PANELS_WIDTH: f32 = 1000.0;
 /// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
 /// canvas above them.
 const MIN_GRAPHS_WINDOW_HEIGHT: f32 = 520.0;
-/// Width of the outline as a part of the window's, and the least and greatest, points: what is in
-/// the panels never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower:
-/// the kind of a thing does not fit beside its name.
+/// Width of the outline as a fraction of the window's width, and its least and greatest width,
+/// points: the content of the panels never moves the canvas. If it were wider, the canvas would
+/// have less than 60 % of 1280×800; if it were narrower, the kind of an item would not fit beside
+/// its name.
 const OUTLINE_WIDTH: WindowShare = WindowShare { fraction: 0.142, least: 164.0, most: 250.0 };
 /// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
 /// fit in a line.
@@ -290,7 +291,7 @@ fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
     let selected =
         is_new(ui, Id::unique((id, "selected")), state.selection.selected) && state.selection.selected.is_some();
     let holds = |section: Section| column.sections().contains(&section);
-    // A thing that is changed within the panel stays under the pointer.
+    // An item that is changed within the panel stays under the pointer.
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
     if marked && from_elsewhere && holds(Section::MarkedPlace) {
         return Some(Section::MarkedPlace);

@@ -55,8 +55,8 @@ use crate::worker::engine::Report;
 /// Most unanswered edits whose delay is measured; of more, those in between are not.
 const MAX_PENDING_EDITS: usize = 64;
 
-/// Between two frames while an answer is sought. Longer: the seconds jump, and a solve that nobody
-/// waits for is given up late.
+/// Time between two frames during a solve. With a longer time the displayed seconds would jump, and
+/// a superseded solve would be given up late.
 const SOLVING_REPAINT: Duration = Duration::from_millis(30);
 
 /// The eframe application.

@@ -1,4 +1,4 @@
-//! The command palette finds everything that can be done by part of its name.
+//! The command palette finds every command by a part of its name.
 
 use cable_core::Model;
 use cable_core::scene::catalog;
@@ -54,7 +54,7 @@ fn open_scene(id: &str) -> Command {
     Command::File(FileCommand::OpenCatalogue(id.to_owned()))
 }
 
-/// Everything, with the name it is shown and found by.
+/// All commands, each with the name under which it is shown and found.
 fn entries(state: &AppState) -> Vec<(String, Command)> {
     let panels = state.ui.panels;
     let show = |panels| Command::View(ViewCommand::ShowPanels(panels));

@@ -19,9 +19,9 @@ const MIN_DIALOG_TIME: Duration = Duration::from_millis(300);
 /// The purpose of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Something that exists is read.
+    /// An existing file or folder is chosen for reading.
     Open,
-    /// Something is written: its typed name stays when another folder is entered.
+    /// A file is chosen for writing: its typed name stays when another folder is entered.
     Save,
 }
 

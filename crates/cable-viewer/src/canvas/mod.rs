@@ -68,7 +68,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
 /// scene once the cable is whole again.
 fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::TornCable>) {
-    // A thing that the pointer holds would go with the view.
+    // An item that the pointer holds would move with the view.
     if state.selection.grab.is_some() {
         return;
     }
@@ -82,7 +82,7 @@ fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_
     }
 }
 
-/// Returns whether nothing of a rectangle (m) is in the canvas.
+/// Returns whether a rectangle (m) is completely outside the canvas.
 fn is_out_of_view(state: &AppState, [low, high]: [Point; 2]) -> bool {
     let [left, right] = state.view.visible_m;
     (0..2).any(|k| high[k] < left[k] || low[k] > right[k])

@@ -1,4 +1,5 @@
-//! Ways that a cable was to be laid along and that now lead through something.
+//! A route of a cable can come to lead through an obstacle when the obstacle or the route is
+//! edited.
 
 use cable_core::Scene;
 use cable_core::contact::World;
@@ -10,9 +11,9 @@ const SAMPLES_PER_LEG: usize = 64;
 /// How far round a point obstacles are asked for, m.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
-/// Forgets ways that lead through an obstacle: from then on the cable is laid straight, lifted over
-/// what is in the way. What was drawn round other obstacles is worth nothing among these, and no
-/// model finds a rest from inside the ground.
+/// Removes routes that lead through an obstacle: from then on the cable is laid straight and lifted
+/// over obstacles. A route that was drawn round other obstacles has no meaning among these, and no
+/// model finds an equilibrium from inside the ground.
 pub fn remove_penetrating_routes(scene: &mut Scene) {
     let Scene { cables, obstacles, .. } = scene;
     for cable in cables.iter_mut().filter(|c| c.route_m.len() >= 2) {

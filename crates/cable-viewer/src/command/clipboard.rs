@@ -17,9 +17,9 @@ use crate::geometry::supports::support_position;
 use crate::state::clipboard::{Clipboard, Thing};
 use crate::state::{AppState, Item};
 
-/// A thing that is pasted with no pointer over the canvas goes this far from
-/// where it was, m. Less: it hides what it was copied from; more: it is out of view in a small
-/// scene.
+/// Offset of a pasted item from its original if the pointer is not over the canvas, m. With a
+/// smaller offset the copy would hide the original; with a larger one it would be out of view in a
+/// small scene.
 const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
 /// Keeps what is picked; as text it is a table of points.
@@ -43,7 +43,7 @@ pub fn copy(state: &mut AppState, effects: &mut Effects) {
     state.selection.clipboard = Clipboard { things, middle_m, text };
 }
 
-/// A copy of a thing, and the points that say where it is.
+/// A copy of an item, and the points that determine its position.
 fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
     let scene = &state.document.scene;
     Some(match item {

@@ -41,7 +41,7 @@ pub fn submit_undone(state: &mut AppState, effects: &mut Effects) {
     submit(state, EditStart::Route, effects);
 }
 
-/// Sends another scene to the worker: nothing of the present simulation is carried over.
+/// Sends another scene to the worker, which discards the present simulation.
 pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
     submit(state, EditStart::NewScene, effects);
 }

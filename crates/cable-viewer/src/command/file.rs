@@ -69,7 +69,7 @@ pub enum FileCommand {
     },
     /// Adds what the user thinks to a table.
     SaveFeedback(PathBuf, Answers),
-    /// Writes everything recorded as a run folder.
+    /// Writes the whole recording as a run folder.
     SaveRun(PathBuf),
     /// Opens the folder of a run: its scene, and all it recorded.
     OpenRun(PathBuf),
@@ -103,7 +103,7 @@ fn written(state: &mut AppState, path: PathBuf) {
     (state.ui.dialog, state.ui.written) = (None, Some(path));
 }
 
-/// Says whether something was written to a file.
+/// Shows a message that a file was written, or why it was not.
 pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>) {
     match result {
         Ok(()) => written(state, path),

@@ -1,4 +1,4 @@
-//! Any thing of the scene can be moved to a point, whatever it is.
+//! Every kind of item of the scene can be moved to a point.
 
 use cable_core::math::Point;
 use cable_core::scene::{Ground, RobotTask, Shape};
@@ -6,7 +6,7 @@ use cable_core::scene::{Ground, RobotTask, Shape};
 use crate::command::surface_projection::clear_of_obstacles;
 use crate::state::{AppState, Item};
 
-/// Puts a thing at a point, m.
+/// Moves an item to a point, m.
 pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
     if !to_m.iter().all(|v| v.is_finite()) {
         return;

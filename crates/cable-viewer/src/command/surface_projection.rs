@@ -1,5 +1,4 @@
-//! A support that is moved into something solid is projected back to its surface, the cable's
-//! radius off it.
+//! A support that is moved into a solid obstacle is projected to one cable radius off the surface.
 
 use cable_core::Scene;
 use cable_core::contact::World;

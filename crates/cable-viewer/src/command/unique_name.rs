@@ -1,4 +1,4 @@
-//! Every thing of the scene has a name of its own.
+//! Every item of the scene has a unique name.
 
 /// The name, with the first free number appended if it is taken.
 pub fn unique(name: &str, taken: impl Fn(&str) -> bool) -> String {

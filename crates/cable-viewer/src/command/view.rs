@@ -19,9 +19,9 @@ use crate::units::system::System;
 /// Changes what is shown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ViewCommand {
-    /// Picks a thing, or nothing.
+    /// Selects an item, or clears the selection.
     Select(Option<Item>),
-    /// Picks a thing besides what is picked, or not any more.
+    /// Adds an item to the selection, or removes it.
     ToggleSelected(Item),
     /// Picks several things.
     SelectAll(Vec<Item>),
@@ -29,9 +29,9 @@ pub enum ViewCommand {
     SetTensionMarker(Option<TensionMarker>),
     /// Draws a frame round things to pick, between two corners, m.
     SetMarquee(Option<[Point; 2]>),
-    /// The pointer is over a thing, or over nothing, at a point of the world (m).
+    /// The pointer is over an item or over none, at a point of the world (m).
     Hover(Option<Item>, Option<Point>),
-    /// Picks a thing up, or lets it go.
+    /// Begins or ends the drag of an item.
     Grab(Option<Grab>),
     /// Moves the world with the pointer, points.
     Pan(egui::Vec2),
@@ -93,8 +93,8 @@ pub enum ViewCommand {
     RemoveReferences(Option<usize>),
 }
 
-/// Part of the scene that is shown round a place. More: the place is not found in it; less: nobody
-/// sees where it is.
+/// Fraction of the scene that is shown round a place. With a larger fraction the place is hard to
+/// find in the view; with a smaller one its position in the scene is not visible.
 const PLACE_FRACTION: f64 = 0.25;
 
 /// Does one of them.

@@ -1,4 +1,4 @@
-//! A handle is the point by which a thing of the scene is dragged.
+//! A handle is the point by which an item of the scene is dragged.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -8,7 +8,7 @@ use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
-/// Returns where a thing that can be dragged is, m; None for one that cannot.
+/// Returns the position of an item that can be dragged, m; `None` for one that cannot.
 #[must_use]
 pub fn of(state: &AppState, item: Item) -> Option<Point> {
     match item {
@@ -39,8 +39,8 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
     }
 }
 
-/// Returns what moves when a thing is moved by a vector (m): it, or all that is picked if it is;
-/// each with where it goes to, m.
+/// Returns the items that move when one item is moved by a vector (m), each with its new position,
+/// m: the item alone, or the whole selection if the item is selected.
 #[must_use]
 pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
     let items = if state.selection.contains(item) { state.selection.selected_items() } else { vec![item] };
@@ -51,7 +51,7 @@ pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
     moves.filter_map(|i| of(state, i).map(|at| (i, [at[0] + by_m[0], at[1] + by_m[1]]))).collect()
 }
 
-/// Everything that lies in a frame between two corners, m.
+/// All items that lie in a frame between two corners, m.
 #[must_use]
 pub fn within(state: &AppState, [a, b]: [Point; 2]) -> Vec<Item> {
     let inside = |p: Point| (0..2).all(|k| p[k] >= a[k].min(b[k]) && p[k] <= a[k].max(b[k]));
@@ -78,7 +78,7 @@ pub fn within(state: &AppState, [a, b]: [Point; 2]) -> Vec<Item> {
     out
 }
 
-/// Everything that can be picked, in the order of the scene panel.
+/// All items that can be selected, in the order of the scene panel.
 #[must_use]
 pub fn all(state: &AppState) -> Vec<Item> {
     let scene = &state.document.scene;

@@ -14,7 +14,7 @@ const SUPPORT_HIT_RADIUS: f32 = 13.0;
 const CORNER_HIT_RADIUS: f32 = 8.0;
 const LINE_HIT_RADIUS: f32 = 7.0;
 
-/// The thing under a screen point: supports before loads, corners, cables, obstacles.
+/// The item under a screen point: supports before loads, corners, cables and obstacles.
 #[must_use]
 pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     let near = |at: Point, reach: f32| {

@@ -1,5 +1,5 @@
-//! Unsaved changes kept on disk, for the case that the window dies: a display server that goes
-//! takes every program with it, without a word, so nothing can be saved at that moment.
+//! Unsaved changes are kept on disk in case the program is killed: a display server that ends takes
+//! every program with it, without notice, so that nothing can be saved at that moment.
 
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
@@ -63,7 +63,7 @@ impl Autosave {
         self.fault.as_deref()
     }
 
-    /// Returns what a window that died has left: nothing, a scene, or what is wrong with the file.
+    /// Returns what a killed program has left: nothing, a scene, or the fault of the file.
     #[must_use]
     pub fn found(&self) -> Option<Result<Scene, String>> {
         match files::load_scene(&self.path) {

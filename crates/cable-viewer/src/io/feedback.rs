@@ -1,4 +1,4 @@
-//! Feedback is written as a row of a table in a file of the user's: nothing is sent anywhere.
+//! Feedback is written as a row of a table in a file of the user. Nothing is sent anywhere.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A job computes something long beside the window, on a thread of its own, and ends on request.
+//! A job runs a long computation on its own thread, beside the window, and ends on request.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -41,7 +41,7 @@ impl<T> Shared<T> {
 }
 
 impl<T: Clone + Send + 'static> Job<T> {
-    /// Starts it on a thread of this name; `shown` is called whenever there is something new to
+    /// Starts the job on a thread of this name; `shown` is called whenever there is a new result to
     /// show.
     #[must_use]
     pub fn start(

@@ -44,7 +44,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Starts one; `shown` is called whenever there is something new to show.
+    /// Starts a job; `shown` is called whenever there is a new result to show.
     #[must_use]
     pub fn start(query: FrictionQuery, shown: impl Fn() + Send + 'static) -> Self {
         let query = Arc::new(query);
@@ -72,8 +72,8 @@ impl Job {
 /// Least move of a support between two answers that is a hand's, m: less is rounding.
 const MIN_MOVE_M: f64 = 1e-9;
 
-/// Returns what hands did in a run: where supports that move by nothing else went, and what the
-/// robot was told.
+/// Returns the manual inputs of a run: the paths of supports that only a hand moved, and the
+/// commands to the robot.
 #[must_use]
 pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {

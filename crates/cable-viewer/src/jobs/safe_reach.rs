@@ -72,8 +72,8 @@ pub struct SafeReachState {
     pub stopped: Option<f64>,
 }
 
-/// The share from which the time left is estimated. Less: the first places, which are laid from
-/// nothing, say little of the others.
+/// Least completed fraction from which the remaining time is estimated. At a smaller fraction, the
+/// first places, which are solved without a neighbour, are not representative.
 const FIRST_ESTIMATE: f64 = 0.04;
 
 /// Returns how much longer a search takes that took some time for a share, s; None where that says
@@ -155,7 +155,7 @@ impl SafeReachState {
     }
 }
 
-/// Starts one; `shown` is called whenever there is something new to show.
+/// Starts a job; `shown` is called whenever there is a new result to show.
 #[must_use]
 pub fn start(query: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
     Job::start("safe reach", move |listen| find(query, listen), shown)

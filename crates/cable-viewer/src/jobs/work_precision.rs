@@ -11,8 +11,8 @@ use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 use crate::jobs::background;
 use crate::units::sentence::sentence;
 
-/// Time within which short solves are repeated, s: the shortest counts. Less: the first solve,
-/// which finds cold memory, counts; more: nobody waits for it.
+/// Time within which short solves are repeated, s; the shortest one counts. With less time the
+/// first solve, which runs with cold caches, would count; more time would try the user's patience.
 const REPEATED_WITHIN_S: f64 = 0.05;
 /// Most times that a solve is repeated.
 const MAX_REPEATS: usize = 5;

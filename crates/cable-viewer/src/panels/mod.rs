@@ -1,5 +1,4 @@
-//! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing
-//! else.
+//! The panels are the forms beside the canvas. A panel only reads the state and pushes commands.
 //!
 //! - `scene`: the outline on the left, and the forms of what stands in it
 //! - `selected_item`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on

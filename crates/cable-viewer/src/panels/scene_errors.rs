@@ -45,7 +45,7 @@ pub fn sentence(fault: &SceneFault) -> String {
     }
 }
 
-/// Returns what is wrong with the scene, if anything: which property of what, and why.
+/// Returns the fault of the scene, if any: the item, the property and the reason.
 #[must_use]
 pub fn summary(state: &AppState) -> Option<String> {
     let found = state.document.fault.as_ref()?;

@@ -2,18 +2,18 @@
 //!
 //! - `along_cable`, `over_time`: what each graph shows
 //! - `axes`: ranges, and the numbers along them
-//! - `corners`: the pieces that a line is drawn in
+//! - `line_corners`: the pieces that a line is drawn in
 //! - `cursors`, `keys`: reading values off it, and steering it without a pointer
 
 pub mod along_cable;
 mod axes;
-mod corners;
 mod cursors;
 mod keys;
+mod line_corners;
 pub mod over_time;
 
 use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
-use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
+use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotTransform, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
@@ -145,19 +145,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let (symbol, si) = graph.measure.unit(high);
     let (across, unit) = graph.across;
     let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.display(), unit.symbol);
-    let read = |x: f64| {
-        let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
-        for line in lines {
-            if let Some(value) = value_at(&line.points, x * x_si) {
-                text += &format!("\n{}: {}", line.name, quantity(value / si, DIGITS, symbol));
-            }
-            if let Some([low, high]) = line.range_at(x * x_si) {
-                let [low, high] = [low, high].map(|v| significant(v / si, DIGITS));
-                text += &format!(" (mean; {low} to {high})");
-            }
-        }
-        text
-    };
+    let read = |x: f64| values_at(lines, x, [(across_symbol, x_si), (symbol, si)]);
     let follow = graph.follow;
     let top = ui.cursor().top();
     let (title, export) = legend(ui, graph, lines);
@@ -208,24 +196,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
             }
         }
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
-        for (k, line) in lines.iter().enumerate() {
-            let (colour, style, width) = line_appearance(line, k);
-            draw_band(plot, line, colour, [x_si, si]);
-            let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
-            if graph.hint.is_none() && points.len() == 1 {
-                let mark = egui_plot::Points::new(line.name.clone(), points).color(colour).radius(PEAK_RADIUS);
-                plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
-                continue;
-            }
-            let transform = *plot.transform();
-            let to_screen = |p: [f64; 2]| transform.position_from_point(&p.into());
-            let pieces =
-                if style == LineStyle::Solid { corners::pieces(&points, to_screen) } else { vec![&points[..]] };
-            for piece in pieces {
-                let piece = egui_plot::Line::new(line.name.clone(), piece.to_vec());
-                plot.line(piece.color(colour).width(width).style(style));
-            }
-        }
+        draw_lines(plot, graph, lines, [x_si, si]);
         draw_limits(plot, graph, high, si);
         if let Some(hint) = graph.hint {
             let words = RichText::new(hint).color(plot.ctx().global_style().visuals.weak_text_color());
@@ -238,16 +209,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     name_limits(ui, graph, &response.transform, high, si);
-    let in_view = response.transform.bounds();
-    let in_view = in_view.min()[0]..=in_view.max()[0];
-    let frame = *response.transform.frame();
-    let ends = [(frame.left_bottom(), Align2::LEFT_TOP), (frame.right_bottom(), Align2::RIGHT_TOP)];
-    for ((at, align), number) in ends.into_iter().zip(ends_across(in_view, columns, across_symbol, width)) {
-        let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
-        if let Some(number) = number {
-            ui.painter().text(at, align, number, font, colour);
-        }
-    }
+    write_ends_across(ui, &response.transform, columns, across_symbol, width);
     let asked = response.inner;
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
@@ -285,6 +247,59 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let at = figure.interact_pointer_pos().filter(|_| dragged);
     let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
     GraphResponse { zoomed: asked.zoomed, scrubbed_s, export: (export || graph.export).then(|| Box::new(sheet())) }
+}
+
+/// The values of all lines at `x` as text; `units` are symbol and SI value of the unit across and
+/// up.
+fn values_at(lines: &[Series], x: f64, units: [(&str, f64); 2]) -> String {
+    let [(across_symbol, x_si), (symbol, si)] = units;
+    let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
+    for line in lines {
+        if let Some(value) = value_at(&line.points, x * x_si) {
+            text += &format!("\n{}: {}", line.name, quantity(value / si, DIGITS, symbol));
+        }
+        if let Some([low, high]) = line.range_at(x * x_si) {
+            let [low, high] = [low, high].map(|v| significant(v / si, DIGITS));
+            text += &format!(" (mean; {low} to {high})");
+        }
+    }
+    text
+}
+
+/// Draws the lines with their bands; `scale` are the SI values of the units across and up.
+fn draw_lines(plot: &mut PlotUi<'_>, graph: &Graph<'_>, lines: &[Series], [x_si, si]: [f64; 2]) {
+    for (k, line) in lines.iter().enumerate() {
+        let (colour, style, width) = line_appearance(line, k);
+        draw_band(plot, line, colour, [x_si, si]);
+        let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
+        if graph.hint.is_none() && points.len() == 1 {
+            let mark = egui_plot::Points::new(line.name.clone(), points).color(colour).radius(PEAK_RADIUS);
+            plot.points(mark.shape(egui_plot::MarkerShape::Diamond));
+            continue;
+        }
+        let transform = *plot.transform();
+        let to_screen = |p: [f64; 2]| transform.position_from_point(&p.into());
+        let pieces =
+            if style == LineStyle::Solid { line_corners::pieces(&points, to_screen) } else { vec![&points[..]] };
+        for piece in pieces {
+            let piece = egui_plot::Line::new(line.name.clone(), piece.to_vec());
+            plot.line(piece.color(colour).width(width).style(style));
+        }
+    }
+}
+
+/// Writes the numbers at both ends of the axis across.
+fn write_ends_across(ui: &Ui, transform: &PlotTransform, columns: f64, across_symbol: &str, width: f32) {
+    let in_view = transform.bounds();
+    let in_view = in_view.min()[0]..=in_view.max()[0];
+    let frame = *transform.frame();
+    let ends = [(frame.left_bottom(), Align2::LEFT_TOP), (frame.right_bottom(), Align2::RIGHT_TOP)];
+    for ((at, align), number) in ends.into_iter().zip(ends_across(in_view, columns, across_symbol, width)) {
+        let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+        if let Some(number) = number {
+            ui.painter().text(at, align, number, font, colour);
+        }
+    }
 }
 
 /// The time to mark, if it is another than in the frame before: a graph that was zoomed goes to it.
@@ -473,7 +488,7 @@ fn draw_limits(plot: &mut PlotUi<'_>, graph: &Graph<'_>, high: f64, si: f64) {
 
 /// Names each limit at the right end of its line, on a plate: above the line where there is room,
 /// and the lower one to the left of the other where both would lie over each other.
-fn name_limits(ui: &Ui, graph: &Graph<'_>, shown: &egui_plot::PlotTransform, high: f64, si: f64) {
+fn name_limits(ui: &Ui, graph: &Graph<'_>, shown: &PlotTransform, high: f64, si: f64) {
     let (frame, visuals) = (*shown.frame(), ui.visuals());
     let painter = ui.painter().with_clip_rect(frame);
     let font = TextStyle::Small.resolve(ui.style());

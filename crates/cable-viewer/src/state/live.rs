@@ -7,9 +7,9 @@ use cable_core::timeline::RunPeaks;
 use cable_core::wording::Sentence;
 use cable_core::{Error, Scene, Solution, UnitSystem};
 
-use crate::record::history::History;
 use crate::record::recording::Recording;
 use crate::record::sample::Sample;
+use crate::record::sample_history::History;
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding
 /// counts as moving.

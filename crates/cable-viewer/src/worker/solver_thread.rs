@@ -34,37 +34,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let mut refine_at = next_tick;
     let mut edited_at: Option<Instant> = None;
     loop {
-        let request = {
-            let mut slots = shared.lock();
-            if slots.thread == thread {
-                slots.busy = engine.draft();
-            }
-            loop {
-                if slots.stop || slots.thread != thread {
-                    return;
-                }
-                let now = Instant::now();
-                let due = match (engine.playing(), engine.draft(), engine.settling()) {
-                    (true, _, _) => Some(next_tick),
-                    (false, true, true) => Some(next_tick.min(refine_at)),
-                    (false, true, false) => Some(refine_at),
-                    (false, false, _) => engine.seeks_histories().then_some(refine_at),
-                };
-                if slots.request.is_some() || due.is_some_and(|at| now >= at) {
-                    break;
-                }
-                slots = match due {
-                    Some(at) => {
-                        let wait = shared.wake.wait_timeout(slots, at.saturating_duration_since(now));
-                        wait.unwrap_or_else(PoisonError::into_inner).0
-                    }
-                    None => shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner),
-                };
-            }
-            slots.busy = slots.request.is_some() || engine.draft();
-            slots.asked_at = None;
-            slots.request.take()
-        };
+        let Ok(request) = wait_for_work(shared, &engine, thread, [next_tick, refine_at]) else { return };
         let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
         if refines || request.as_ref().is_some_and(Request::solves) {
             let seeks_histories = request.is_none() && engine.seeks_histories();
@@ -124,6 +94,48 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
         drop(slots);
         shown();
     }
+}
+
+/// The thread has to end: the window closes, or another thread has taken its place.
+struct Stopped;
+
+/// Waits until there is a request, or until work of the engine is due: a frame, or the answer that
+/// replaces a draft. Returns the request, if there is one.
+fn wait_for_work(
+    shared: &Shared,
+    engine: &Engine,
+    thread: u64,
+    [next_tick, refine_at]: [Instant; 2],
+) -> Result<Option<Request>, Stopped> {
+    let mut slots = shared.lock();
+    if slots.thread == thread {
+        slots.busy = engine.draft();
+    }
+    loop {
+        if slots.stop || slots.thread != thread {
+            return Err(Stopped);
+        }
+        let now = Instant::now();
+        let due = match (engine.playing(), engine.draft(), engine.settling()) {
+            (true, _, _) => Some(next_tick),
+            (false, true, true) => Some(next_tick.min(refine_at)),
+            (false, true, false) => Some(refine_at),
+            (false, false, _) => engine.seeks_histories().then_some(refine_at),
+        };
+        if slots.request.is_some() || due.is_some_and(|at| now >= at) {
+            break;
+        }
+        slots = match due {
+            Some(at) => {
+                let wait = shared.wake.wait_timeout(slots, at.saturating_duration_since(now));
+                wait.unwrap_or_else(PoisonError::into_inner).0
+            }
+            None => shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner),
+        };
+    }
+    slots.busy = slots.request.is_some() || engine.draft();
+    slots.asked_at = None;
+    Ok(slots.request.take())
 }
 
 /// Runs a job; a panic inside becomes a report with its words.

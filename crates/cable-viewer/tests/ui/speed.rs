@@ -281,9 +281,9 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 /// printed and not asserted: a 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
-    use cable_viewer::record::history::History;
     use cable_viewer::record::kept_run::Run;
     use cable_viewer::record::sample::Sample;
+    use cable_viewer::record::sample_history::History;
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
         let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();

@@ -1,9 +1,10 @@
-//! This analysis finds where a hand or a crane can take an end of a cable in the free plane.
+//! This analysis finds the places to which a hand or a crane can take an end of a cable in the free
+//! plane.
 //!
-//! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`),
-//! each on the shortest way that passes no obstacle, a coarse grid first and finer ones from its
-//! places. Each place goes on from the cable as it was at the one before: with the friction and the
-//! wraps of the way there. The way back is the same way.
+//! The end is moved outwards from its present position from place to place of a grid
+//! (`exploration.rs`), each on the shortest way that passes no obstacle, first on a coarse grid and
+//! then on finer ones. Each place continues from the cable at the place before, with the friction
+//! and the wraps of that way. The way back is the same way.
 
 mod exploration;
 mod map;
@@ -23,27 +24,27 @@ use crate::model::{Inertia, Model, Settings};
 use crate::scene::{Scene, Support, SupportKind};
 use crate::simulation::Simulation;
 
-/// Length of a bar where the cable hangs slack and finite elements answer, m. Longer: nodes catch
-/// on rough ground and pull by thousands of newtons that no cable feels (0.6 m over ground of 0.23
-/// m: 800 kN), and the cable is laid anew more often; shorter: each step of a heap of slack takes
-/// longer (0.2 m on the tank: 2.5 times as long).
+/// Length of a bar of slack cable in finite elements, m. Larger: nodes catch on rough ground and
+/// cause thousands of newtons that no real cable has (0.6 m over ground of 0.23 m: 800 kN), and the
+/// cable is laid anew more often; smaller: each step of a heap of slack takes longer (0.2 m on the
+/// tank: 2.5 times as long).
 const SLACK_ELEMENT_M: f64 = 0.4;
 
-/// Most places that are looked at: more is a slip of the unit.
+/// Maximum number of places: more would be a mistake of the unit.
 const MAX_PLACES: usize = 100_000;
 
-/// Greatest distance at which a cable is tried, of its length: more than any cable stretches before
-/// it breaks.
+/// Greatest distance that is tried, as a fraction of the cable's length: more than any cable
+/// stretches before it breaks.
 const REACH_FACTOR: f64 = 1.1;
 
-/// Looks at all places; `progress` hears what is known so far and the share done (0 to 1), and can
-/// end it.
+/// Answers all places; `progress` receives the map so far and the completed fraction (0 to 1), and
+/// can end the analysis.
 ///
-/// # Errors
-/// The scene is wrong, the support is none that has a place, or its start has no answer.
+/// # Errors An error if the scene is invalid, the support has no position, or the start has no
+/// answer.
 pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
     let (mut exploration, laid) = begin(query)?;
-    // Ended early, what is known so far is the answer.
+    // If it is ended early, the map so far is the answer.
     exploration.spread(laid, &mut progress);
     Ok(exploration.found)
 }
@@ -98,7 +99,7 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     Ok((exploration, laid))
 }
 
-/// Without its robot: where its cable hangs on it, it is held.
+/// The scene without its robot: the end that hangs on the robot is held instead.
 fn without_robot(scene: &Scene) -> Result<Scene, Error> {
     let mut scene = scene.clone();
     let hitch = scene.hitch_m();

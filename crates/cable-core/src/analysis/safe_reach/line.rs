@@ -1,8 +1,8 @@
-//! This analysis finds where a robot can go along its ground.
+//! This analysis finds the places that a robot can reach along its ground.
 //!
-//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable.
-//! No drive, slope or traction limits it here: `robot::Vehicle` answers whether the robot
-//! could pull so hard.
+//! The robot is placed on its tracks, place after place; its outline is an obstacle for its cable.
+//! Drive, slope and traction do not limit it here: `robot::Vehicle` answers whether the robot could
+//! pull so hard.
 
 use std::ops::ControlFlow;
 
@@ -20,29 +20,30 @@ use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen;
-/// shorter: more answers.
+/// Longest way between two answers, m. Larger: an edge that the cable slips over is missed;
+/// smaller: more answers.
 const STEP_M: f64 = 0.05;
 
-/// Distance that the cable may leave of a step, m: a robot that it holds back by a hair has not
-/// been stopped.
+/// Distance (m) by which the robot may fall short of a step without being stopped by the cable.
 const MAX_SHORTFALL_M: f64 = 1e-3;
 
-/// Speed of a step that is taken with inertia because a heap of slack cable has no rest to be
-/// pushed to and is thrown over, m/s. Faster: its swing shows in the tension; slower: longer.
+/// Speed (m/s) of a step with inertia, which is taken if a pushed heap of slack cable has no
+/// equilibrium and topples. Larger: its swing shows in the tension; smaller: more time.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
 
-/// Time for which a robot that is held back goes on pushing before it counts as jammed, s. Less:
-/// cable that still falls out of its way counts as jamming it; more: longer. What does not move in
-/// this time has no rest either: relaxing it took 60 s in the opening scene, in vain.
+/// Time for which a stopped robot goes on pushing before it counts as jammed, s. Smaller: cable
+/// that is still falling out of its way counts as jamming it; larger: more time. Cable that does
+/// not move in this time has no equilibrium either: in the opening scene relaxing it took 60 s
+/// without success.
 const PUSH_TIME_S: f64 = 1.0;
 
-/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
-/// first picture; with more: of no use.
+/// Strides (in places) with which ways back are computed, one after the other. A smaller first one:
+/// longer until the first map; a larger one: no benefit.
 const RETURN_STRIDES: [usize; 4] = [8, 4, 2, 1];
 
-/// Two places whose tensions lie closer than this part of the service tension agree: between them
-/// the larger counts. More: a snag between them is not seen; less: more ways back.
+/// Difference of tensions within which two places agree, as a fraction of the service tension;
+/// between them the larger one counts. Larger: a snag between them is missed; smaller: more ways
+/// back.
 const AGREEMENT_FRACTION: f64 = 0.02;
 
 /// A place of the map.
@@ -50,14 +51,14 @@ const AGREEMENT_FRACTION: f64 = 0.02;
 pub struct ReachPlace {
     /// Position of the tracks' middle, m.
     pub at_m: Point,
-    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a
-    /// number where no answer was found.
+    /// Largest tension with the robot there, N; infinite if the cable does not reach, NaN if no
+    /// answer was found.
     pub there_n: f64,
-    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a
-    /// number where no answer was found or none is known yet. Between neighbours that agree it is
-    /// the larger of theirs.
+    /// Largest tension on the way there and back, N; infinite if the cable does not reach, NaN if
+    /// no answer was found or none is known yet. Between neighbours that agree it is the larger of
+    /// theirs.
     pub there_and_back_n: f64,
-    /// The cable lies in the robot's way there or back and cannot get out of it.
+    /// True if the cable lies in the robot's way there or back and cannot get out of it.
     pub jammed: bool,
 }
 
@@ -95,8 +96,8 @@ impl ReachPlace {
 }
 
 impl ReachMap {
-    /// From where to where the robot can make a trip without passing a tension (N); None if not
-    /// even at its start.
+    /// The range (m) in which the robot can make a trip without exceeding a tension (N); None if
+    /// the start exceeds it.
     #[must_use]
     pub fn safe_m(&self, tension_n: f64, trip: Trip) -> Option<[f64; 2]> {
         let fits = |p: &ReachPlace| p.tension_n(trip) <= tension_n;
@@ -108,13 +109,11 @@ impl ReachMap {
     }
 }
 
-/// Looks at so many places between two, m, from where an answer of the scene has robot and cable
-/// now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end
-/// it.
+/// Answers so many places between two, m, starting from the state of `now` if given; `progress`
+/// receives the map so far and the completed fraction (0 to 1), and can end the analysis.
 ///
-/// # Errors
-/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no
-/// answer.
+/// # Errors An error if the scene is invalid, or has no robot with a cable on ground in a side
+/// view, or if its start has no answer.
 pub fn robot_reach(
     scene: &Scene,
     now: Option<&Solution>,
@@ -148,7 +147,7 @@ pub fn robot_reach(
     let xs: Vec<f64> = (0..count).map(|k| from_m + step * k as f64).collect();
     let right: Vec<f64> = xs.iter().copied().filter(|x| *x >= start_x_m).collect();
     let left: Vec<f64> = xs.iter().rev().copied().filter(|x| *x < start_x_m).collect();
-    // The way there is gone once; the ways back are as long for every place.
+    // The way there is computed once; every place has its own way back.
     let out_m = right.last().map_or(0.0, |x| x - start_x_m) + left.last().map_or(0.0, |x| start_x_m - x);
     let back_m: f64 = xs.iter().map(|x| (x - start_x_m).abs()).sum();
     let mut gone_m = 0.0;
@@ -164,7 +163,7 @@ pub fn robot_reach(
             ControlFlow::Break(()) => return Ok(map),
         }
     }
-    // Coarsely first.
+    // Coarse strides come first.
     for stride in RETURN_STRIDES {
         for side in &mut sides {
             if walk.back(side, stride, &mut map, &mut progress).is_break() {
@@ -175,10 +174,10 @@ pub fn robot_reach(
     Ok(map)
 }
 
-/// The reason why it got no farther.
+/// The reason why the robot got no farther.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Obstruction {
-    /// The cable cannot bear it.
+    /// The cable is taut.
     Taut,
     /// The cable lies in its way.
     Jammed,
@@ -186,17 +185,17 @@ enum Obstruction {
     NoAnswer,
 }
 
-/// A place on one side of the start, and robot and cable there.
+/// A place on one side of the start, with robot and cable there.
 struct VisitedPlace {
     /// Position of its tracks' middle, m.
     at_m: Point,
-    /// Place to which it was led, m.
+    /// Target of the robot, m.
     x_m: f64,
-    /// There, if it got there.
+    /// The simulation at that place, if the robot got there.
     simulation: Option<Simulation>,
     /// Largest tension on the way there.
     most: Result<f64, Obstruction>,
-    /// The way back from it is known.
+    /// True if the way back from it is known.
     known: bool,
 }
 
@@ -214,11 +213,12 @@ struct Traverse<'a> {
     limit_n: f64,
 }
 
-/// A function that receives the progress of a map, and how much farther it went, m.
+/// A function that receives the progress of a map, and the additional distance, m.
 type LineProgress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
 
 impl Traverse<'_> {
-    /// Goes from place to place away from the start; stays ready at each for the way back.
+    /// Moves from place to place away from the start, and stores the simulation at each for the way
+    /// back.
     fn out(
         &self,
         start: &Simulation,
@@ -249,8 +249,8 @@ impl Traverse<'_> {
         ControlFlow::Continue(side)
     }
 
-    /// Goes back from every so manieth place that is not known yet; one between two that agree is
-    /// not gone back from.
+    /// Computes the way back from every place of a stride that is not known yet, except between two
+    /// places that agree.
     fn back(
         &self,
         side: &mut [VisitedPlace],
@@ -259,7 +259,7 @@ impl Traverse<'_> {
         progress: LineProgress<'_>,
     ) -> ControlFlow<()> {
         let place = |map: &ReachMap, s: &VisitedPlace| map.places.iter().position(|p| p.at_m == s.at_m);
-        // Counted from the farthest one: its way back leads past all others.
+        // The stride is counted from the farthest place, whose way back leads past all others.
         for k in (0..side.len()).rev().step_by(stride) {
             if side[k].known {
                 continue;
@@ -294,13 +294,13 @@ impl Traverse<'_> {
         ControlFlow::Continue(())
     }
 
-    /// Moves the robot from one place to another; the largest tension on the way.
+    /// Moves the robot from one place to another; returns the largest tension on the way.
     fn go(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<f64, Obstruction> {
         let steps = ((to - from).abs() / STEP_M).ceil();
         let mut most = simulation.largest_n(self.cables.iter().copied());
         for k in 1..=steps as usize {
             let x = from + (to - from) * (k as f64 / steps);
-            // Where it cannot stand the cable is led past.
+            // At places where it cannot stand the cable is moved past.
             let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             if is_held_back(left_m) {
@@ -314,8 +314,8 @@ impl Traverse<'_> {
         Ok(most)
     }
 
-    /// A step with inertia, against the heap of cable before the robot. What swings on the way is
-    /// not looked at: with what speed a robot does this is not asked.
+    /// Takes a step with inertia, against the heap of cable before the robot. Tensions of swings
+    /// during the step are ignored, because the speed is arbitrary.
     fn push_with_inertia(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
         let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
         let pushes = (PUSH_TIME_S / robot::STEP_S).ceil();
@@ -329,19 +329,19 @@ impl Traverse<'_> {
                 return Err(Obstruction::Jammed);
             }
         }
-        // The cable that was thrown over has come down.
+        // The cable that toppled has come down.
         let rests = simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
         if is_held_back(rests) { Err(Obstruction::Jammed) } else { Ok(()) }
     }
 }
 
-/// Returns whether the cable holds a robot back that is so far from where it was led, m.
+/// Returns whether the cable stops a robot that is so far from its target, m.
 fn is_held_back(left_m: Option<f64>) -> bool {
     left_m.is_some_and(|m| m > MAX_SHORTFALL_M)
 }
 
-/// Returns why a push has no answer: cable that is squeezed between the robot and what stands jams
-/// it.
+/// Returns the reason why a push has no answer: cable squeezed between the robot and a fixed
+/// obstacle jams it.
 fn why_stuck(error: &SolveError) -> Obstruction {
     match error {
         SolveError::StepFailed { place, .. } if place.near.as_ref().is_some_and(|n| n.name == OUTLINE_NAME) => {

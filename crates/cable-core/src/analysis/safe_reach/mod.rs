@@ -1,15 +1,15 @@
-//! This analysis finds where the end of a cable can be taken: the tension there, and on the way
-//! there and back.
+//! This analysis finds the places to which the end of a cable can be taken, with the tension there
+//! and on the way there and back.
 //!
 //! | room | content |
 //! |---|---|
-//! | `line.rs` | a robot is led along its ground |
+//! | `line.rs` | a robot is moved along its ground |
 //! | `area.rs` | an end is taken through the free plane; `area/exploration.rs` visits the places |
 //!
-//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end
-//! that a hand or a crane moves through the free plane ([`mod@area`]). From each place it goes back
-//! to where it started: a cable that was drawn round an edge on the way out may hold there on the
-//! way back. Nothing limits what moves it: the question is what the cable would have to bear.
+//! The motions are quasi-static, with friction: a robot moves along its ground ([`mod@line`]), or a
+//! hand or a crane moves an end through the free plane ([`mod@area`]). From each place it returns
+//! to the start, because a cable that was drawn round an edge on the way out may be held there on
+//! the way back. The drive is not limited: the question is what the cable would have to bear.
 
 pub mod area;
 pub mod line;
@@ -21,15 +21,16 @@ use crate::scene::{Cable, Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it.
-/// Less: by a part of the step, and a taut cable shows a tenth of a millimetre; more: nothing.
+/// Time of a step, s. Without inertia it only determines the lag of a support behind its target.
+/// Smaller: the lag is a fraction of the step, and a taut cable shows a tenth of a millimetre;
+/// larger: no effect.
 const STEP_S: f64 = 0.5;
 
-/// A cable that would have to bear this many times its breaking tension will not get any farther.
+/// Multiple of its breaking tension beyond which a cable gets no farther.
 const UNREACHABLE_FACTOR: f64 = 2.0;
 
-/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports
-/// and robot stand where an answer has them, if there is one.
+/// The scene frozen at its start: nothing moves by itself, releases the cable or breaks. Supports
+/// and robot are at the places of an answer, if there is one.
 fn frozen_scene(scene: &Scene, now: Option<&Solution>) -> Scene {
     let mut still = scene.clone();
     let environment = &mut still.environment;
@@ -71,7 +72,7 @@ fn frozen_scene(scene: &Scene, now: Option<&Solution>) -> Scene {
     still
 }
 
-/// Lays the cables: at rest as an answer has them, else as the scene does.
+/// Lays the cables: at rest in the shape of an answer, or else as in the scene.
 fn lay(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
     if let Some(now) = now {
         if now.cables.iter().any(|c| !c.breaks.is_empty()) {

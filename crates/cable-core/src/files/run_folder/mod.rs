@@ -121,8 +121,8 @@ impl RunFolder {
 
     /// Appends an instant to the tables, whole or not at all.
     ///
-    /// # Errors
-    /// When a number is not finite or the disk refuses; the tables are then as before.
+    /// # Errors An error is returned if a number is not finite or the disk refuses; the tables are
+    /// then unchanged.
     pub fn push(&mut self, solution: &Solution) -> Result<(), WriteError> {
         self.append(solution, RunWriter::push)
     }
@@ -187,9 +187,9 @@ impl RunFolder {
     /// Ends the run. One that is complete takes the place of an earlier one in its folder, and of
     /// those that were not finished there. Where the run lies then.
     ///
-    /// # Errors
-    /// What could not be written, or why an earlier run was not replaced; what was written stays
-    /// readable, and is partial where the end of a complete run could not be noted.
+    /// # Errors An error names the part that could not be written, or the reason why an earlier run
+    /// was not replaced. The written part stays readable, and is marked as partial if the end of a
+    /// complete run could not be noted.
     pub fn finish(mut self, end: RunEnd) -> Result<PathBuf, FileError> {
         if let Some(writer) = &mut self.writer {
             for (table, name) in writer.places().into_iter().zip(TABLE_NAMES) {

@@ -60,7 +60,7 @@ impl TableFile {
     /// Takes back what was written since.
     pub(super) fn rewind(&mut self, mark: Mark) {
         let Mark { bytes, hash, pages } = mark;
-        // Where even that fails the table ends within a line, which readers leave out.
+        // If even that fails, the table ends within a line, and readers ignore that line.
         let _ = match &self.file {
             Some(file) if bytes > 0 => file.set_len(bytes),
             Some(_) => {

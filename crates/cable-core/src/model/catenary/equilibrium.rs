@@ -1,8 +1,8 @@
-//! This module solves for the equilibrium: which pulleys slip, where the material lies, where
-//! wheels are touched.
+//! This module solves for the equilibrium: the slipping pulleys, the material at pulleys, and the
+//! tangent points on wheels.
 
 use super::layout::AnchorLayout;
-use super::slide::{Mode, SlidingProblem, SpanSolutions, WheelArc};
+use super::sliding_problem::{Mode, SlidingProblem, SpanSolutions, WheelArc};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::larger;
 use crate::model::Model;
@@ -20,13 +20,13 @@ pub(super) struct Equilibrium {
     pub iterations: usize,
     /// Largest unbalanced tension at a pulley, N.
     pub residual: f64,
-    /// True if the least push ends it, and nothing was found to which it leads.
+    /// True if it is unstable, and no stable equilibrium was found from it.
     pub runs_away: bool,
 }
 
 /// Initial unknowns of a solve and the slip that friction remembers.
 pub(super) struct Start<'a> {
-    /// Material points friction holds, m.
+    /// Material points that friction holds, m.
     pub held: &'a [f64],
     /// First guess of the material points, m.
     pub sigma: Vec<f64>,
@@ -47,8 +47,8 @@ const ENERGY_NOISE: f64 = 1e-9;
 /// Lengths of an iteration's step that are tried. 2⁻⁴⁰ of a step changes energy and residual by
 /// less than their rounding: no shorter one could be told from none.
 const STEP_HALVINGS: usize = 40;
-/// Way by which a balance that runs away is left at first, of the length. Smaller: the energy is
-/// less by no more than rounding; larger: a rest that is near is passed.
+/// First displacement that leaves an unstable equilibrium, as a fraction of the length. Smaller:
+/// the energy falls by no more than round-off; larger: a nearby equilibrium is missed.
 const LEAVING_FRACTION: f64 = 1e-2;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
@@ -79,10 +79,10 @@ pub(super) fn solve(p: &Problem, layout: &AnchorLayout, start: Start<'_>) -> Res
     }
 }
 
-/// The friction a pulley uses, as m: on a wheel that holds, the m of the whole arc that leads from
-/// one tension to the other, the weight on it included. With the m of a point, ln(T₂/T₁)/turn, the
-/// material on the wheel would jump where it begins to slip: by 0.1 mm in one of 300 random wheels,
-/// of which neither state was then a balance.
+/// The mobilised friction m of a pulley: on a sticking wheel the single m of the whole arc that
+/// connects both tensions, with the weight on the arc. With the m of a point, ln(T₂/T₁)/turn, the
+/// material on the wheel would jump when it begins to slip, by 0.1 mm in one of 300 random wheels,
+/// for which neither state was then an equilibrium.
 pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k: usize, mode: Mode) -> f64 {
     let (Some(b), Some(a)) = SlidingProblem::forces(s, k) else { return 0.0 };
     if let Mode::Slip(m) = mode {
@@ -115,7 +115,8 @@ fn not_converged(p: &Problem, layout: &AnchorLayout, anchor: usize, iterations: 
     SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, place }
 }
 
-/// Balance with friction: pulleys hold or slip, each as its cone and its direction demand.
+/// Finds the equilibrium with friction: each pulley sticks or slips as its friction cone and its
+/// slip direction require.
 fn contact(
     slide: &SlidingProblem<'_>,
     held: &[f64],
@@ -128,8 +129,8 @@ fn contact(
     for round in 0..4 * joint + 4 * layout.anchors.len() {
         let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
-            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the
-            // first error if not.
+            // Another branch of the slip law attracted the iteration: start from the frictionless
+            // equilibrium, and report the first error if that fails.
             Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
         };
         iterations += found.iterations;
@@ -143,8 +144,8 @@ fn contact(
             let next = match modes[k] {
                 Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
                 Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
-                // Friction +μ holds material back from going on to the side after: σ must have
-                // fallen.
+                // Friction +μ acts against material that moves to the side after the pulley, so σ
+                // must have fallen.
                 Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
                     sigma[k] = held[k];
                     Mode::Stick
@@ -162,8 +163,8 @@ fn contact(
     Err(not_converged(slide.problem, layout, 0, iterations, f64::NAN))
 }
 
-/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down
-/// in, so any start will do) and friction growing from there to what it is.
+/// Finds the equilibrium with the given modes, starting without friction at slipping pulleys (an
+/// energy is minimised, so any start converges) and raising friction to its value.
 fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
@@ -250,9 +251,9 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
-/// A direction of σ in which the balance runs away; None where it is stable: σ pushed one way is
-/// drawn back (all pivots of J positive). With more slack than any tension asks for a fold pulls
-/// the harder the longer it is: a balance too, but one that runs away.
+/// A direction of σ in which the equilibrium is unstable; None if it is stable: a disturbance of σ
+/// is drawn back (all pivots of J positive). With much slack a fold pulls harder the longer it is:
+/// that is an equilibrium, too, but an unstable one.
 ///
 /// The direction v solves J v = 0 in the rows before the first pivot p that is not positive, where
 /// v is 1 and beyond which it is 0: vᵀJv = p for a symmetric J.
@@ -275,8 +276,8 @@ fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
     None
 }
 
-/// Leaves a balance that runs away to where its energy is less, along its way (1) or back (−1)
-/// first; None where it is less at neither.
+/// Leaves an unstable equilibrium for a state of lower energy, first forward (1) or backward (−1)
+/// along its direction; None if neither has lower energy.
 fn leave_unstable(
     slide: &SlidingProblem<'_>,
     sigma: &[f64],
@@ -296,7 +297,7 @@ fn leave_unstable(
     })
 }
 
-/// Largest part of a step that keeps some of every stretch.
+/// Greatest fraction of a step that keeps some material in every stretch.
 fn max_feasible_step(slide: &SlidingProblem<'_>, s: &SpanSolutions, p: &[f64]) -> f64 {
     let (mut alpha, kept) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
     for (i, stretch) in s.all.iter().enumerate() {
@@ -311,13 +312,13 @@ fn max_feasible_step(slide: &SlidingProblem<'_>, s: &SpanSolutions, p: &[f64]) -
     alpha
 }
 
-/// True if nothing that slides rubs.
+/// True if no slipping pulley has friction.
 fn is_smooth(modes: &[Mode]) -> bool {
     modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)))
 }
 
-/// Newton for σ with the modes given, from a σ and the stretches near it where they are known. A
-/// balance that runs away is the answer where leaving it leads to none.
+/// Newton's method for σ with the given modes, from a first σ and the stretches near it if known.
+/// An unstable equilibrium is returned only if leaving it leads to no other.
 fn newton(
     slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
@@ -330,8 +331,8 @@ fn newton(
     found.or_else(|why| left.ok_or(why))
 }
 
-/// The same; `left` is the balance that was left last as it runs away, `first` the direction in
-/// which that is tried first.
+/// As [`newton`]; `left` is the unstable equilibrium that was left last, `first` the direction in
+/// which leaving is tried first.
 fn descend(
     slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
@@ -388,9 +389,9 @@ fn descend(
     Err(lost(iterations))
 }
 
-/// The material at the pulleys and the stretches after the longest part of a step `p` that gains:
-/// energy where nothing rubs, else or where rounding hides that, a smaller residual. Also the
-/// iterations of the stretches that it took.
+/// The material at the pulleys and the stretches after the longest fraction of a step `p` that
+/// lowers the energy (without friction) or, with friction or near round-off, the residual; and the
+/// number of iterations of the stretches.
 fn search(
     slide: &SlidingProblem<'_>,
     sigma: &[f64],

@@ -1,8 +1,8 @@
-//! The first guess has straight ways from wheel to wheel, and the material spread evenly along
-//! them.
+//! This module makes the first guess: straight lines from wheel to wheel, with the material spread
+//! evenly along them.
 
 use super::layout::{Anchor, AnchorLayout, angle_of};
-use super::slide::WheelArc;
+use super::sliding_problem::WheelArc;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
@@ -42,8 +42,7 @@ fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
     (apart > 0.0).then(|| angle_of(d) + aside.clamp(-1.0, 1.0).asin())
 }
 
-/// Returns where each anchor sits on the cable when the material is spread evenly along the
-/// way: m of arc length.
+/// Returns the arc length (m) of each anchor with the material spread evenly along the way.
 ///
 /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
 /// end takes what a taut cable leaves over.
@@ -92,7 +91,7 @@ pub(super) fn spread(layout: &AnchorLayout, p: &Problem) -> Vec<f64> {
         .collect()
 }
 
-/// Returns how far along the way each anchor lies, and the length of the whole way, m.
+/// Returns the distance of each anchor along the way, and the length of the whole way, m.
 fn way(layout: &AnchorLayout, p: &Problem) -> (Vec<f64>, f64) {
     if p.route.len() > 1 {
         let (mut from, mut total) = (0.0, 0.0);
@@ -111,8 +110,8 @@ fn way(layout: &AnchorLayout, p: &Problem) -> (Vec<f64>, f64) {
     (out, total)
 }
 
-/// Returns how far along a taut cable each anchor lies: from tangent point to tangent point,
-/// and round the wheels to their marks, m.
+/// Returns the distance (m) of each anchor along a taut cable: from tangent point to tangent point,
+/// and round the wheels to their marks.
 pub(super) fn taut_arc_lengths(layout: &AnchorLayout) -> Vec<f64> {
     let arcs = first_arcs(layout);
     let mut out = Vec::with_capacity(layout.anchors.len());

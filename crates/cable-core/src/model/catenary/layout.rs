@@ -1,4 +1,4 @@
-//! A layout lists what holds the cable at an instant, and what pulls on it.
+//! A layout lists the supports and loads of the cable at an instant.
 
 use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
@@ -10,7 +10,7 @@ use crate::problem::wheel_passage::facing;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
-/// A point the cable cannot leave: held there, or sliding through.
+/// A point where the cable is held or slides through.
 #[derive(Clone, Debug)]
 pub(super) struct Anchor {
     /// Index of the support.
@@ -36,8 +36,8 @@ pub(super) struct AnchorLayout {
     pub loads: Vec<PointForce>,
     /// Load per metre of unstretched length, N/m.
     pub weight: Vec2,
-    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
-    /// that has weight.
+    /// Force (N) up to which forces come from the auxiliary weight of a weightless cable; 0 for a
+    /// cable with weight.
     pub hint: f64,
     /// True for an end (start, end) that is free.
     pub free: [bool; 2],
@@ -46,7 +46,8 @@ pub(super) struct AnchorLayout {
     pub settings: CatenarySettings,
 }
 
-/// Returns where a support is now: by hand, by its motion, or not at all.
+/// Returns the present position of a support: where it is dragged, or else by its motion; None for
+/// a free one.
 fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
     let p = s.position_at(time_s).map(|(p, _)| p)?;
     Some(dragged.unwrap_or(p))
@@ -105,8 +106,8 @@ impl AnchorLayout {
         Ok(layout)
     }
 
-    /// Gives a weightless cable so little weight that no force shows it: where it is slack any
-    /// shape is at rest, and this one is that of a very light cable.
+    /// Gives a weightless cable an auxiliary weight that no force shows: where it is slack any
+    /// shape is at rest, and this selects that of a very light cable.
     fn hint_weight(&mut self, p: &Problem) {
         if self.weight.norm() > 0.0 {
             return;
@@ -148,13 +149,14 @@ pub(super) fn angle_of(v: Vec2) -> f64 {
 }
 
 impl Anchor {
-    /// Returns where the centre line touches the wheel when it runs at `angle`, m.
+    /// Returns the point (m) at which the centre line touches the wheel if its direction is `angle`
+    /// (rad).
     pub fn touch(&self, angle: f64) -> Vec2 {
         self.at + perp(direction(angle)) * (self.facing * self.radius)
     }
 }
 
-/// The model's refusal.
+/// The error for a feature that the model lacks.
 pub(super) fn unsupported(feature: Unsupported) -> SolveError {
     SolveError::Unsupported { model: Model::Catenary, feature }
 }

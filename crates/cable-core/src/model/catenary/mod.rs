@@ -1,29 +1,29 @@
-//! `catenary` joins exact elastic catenaries between supports, loads and pulleys. It does statics
-//! and slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
+//! `catenary` joins exact elastic catenaries between supports, loads and pulleys. It solves statics
+//! and slow motion with friction memory, without obstacles within reach, bending or inertia.
 //!
 //! | room | content |
 //! |---|---|
 //! | `layout.rs` | supports, wheels and loads at an instant |
 //! | `first_guess.rs` | straight ways from wheel to wheel, material spread evenly along them |
-//! | `slide.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
+//! | `sliding_problem.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
 //! | `wheel.rs` | tension and material round a wheel, with weight and friction on the arc |
 //! | `equilibrium.rs` | Newton's method for σ: pulleys that hold or slip, stable balances only |
 //! | `multiple_equilibria.rs` | other equilibria of a slack cable over frictionless pulleys |
-//! | `report.rs` | the answer: nodes dense enough for straight lines, support reactions |
+//! | `results.rs` | the answer: nodes dense enough for straight lines, support reactions |
 //! | `settings.rs` | the tuned constants of the model |
 //!
-//! The only unknowns are the arc lengths of the material at the pulleys (`slide`); everything
-//! between is a convex problem of two forces ([`crate::catenary`]). With friction the resting place
-//! depends on how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way
-//! and lets it slip only where friction cannot hold it.
+//! The only unknowns are the arc lengths of the material at the pulleys (`sliding_problem`);
+//! everything between is a convex problem of two forces ([`crate::catenary`]). With friction the
+//! equilibrium depends on how the cable was laid: [`Mechanics::settle`] starts with the material
+//! spread evenly along its way and lets it slip only where friction cannot hold it.
 
 mod equilibrium;
 mod first_guess;
 mod layout;
 mod multiple_equilibria;
-pub(super) mod report;
+pub(super) mod results;
 mod settings;
-mod slide;
+mod sliding_problem;
 mod wheel;
 
 use crate::numerics::{HalvedSteps, MAX_HALVINGS};
@@ -33,9 +33,9 @@ use self::equilibrium::{Equilibrium, Start, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
 use self::layout::{AnchorLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
-use self::report::{report, straight};
+use self::results::{report, straight};
 pub use self::settings::CatenarySettings;
-use self::slide::Mode;
+use self::sliding_problem::Mode;
 use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
@@ -51,20 +51,20 @@ use crate::state::State;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
-/// Part of a slow step that is taken with the step before it: rounding of the time.
+/// Fraction of a slow step that is joined to the step before it (round-off of the time).
 const JOINED_FRACTION: f64 = 1e-6;
 
-/// The model's mechanics of one cable.
+/// The `catenary` model of one cable.
 #[derive(Clone, Debug)]
 pub struct CatenaryModel {
     problem: Arc<Problem>,
     tuned: CatenarySettings,
     time_s: f64,
     dragged: Vec<Option<Vec2>>,
-    /// Supports of the anchors the balance is for (a released one drops out).
+    /// Supports of the anchors of the present equilibrium (a released one drops out).
     anchored: Vec<usize>,
     balance: Option<Equilibrium>,
-    /// Material points a state from elsewhere gave, by support.
+    /// Material points of an adopted state, by support.
     adopted: Vec<Option<f64>>,
     nodes: SharedNodes,
     reactions: Vec<SupportReaction>,
@@ -89,7 +89,7 @@ enum StepStage {
 }
 
 impl CatenaryModel {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
@@ -176,9 +176,9 @@ impl CatenaryModel {
         solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
     }
 
-    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more
-    /// than the balance, so those of a hidden instant are made only where
-    /// they may meet an obstacle.
+    /// Accepts an equilibrium as the state at a time; on an error nothing has changed. Nodes cost
+    /// more than the equilibrium, so those of an intermediate instant are made only if they may
+    /// meet an obstacle.
     fn accept(
         &mut self,
         layout: &AnchorLayout,
@@ -206,8 +206,8 @@ impl CatenaryModel {
         Ok(StepReport { cost, warnings: Vec::new() })
     }
 
-    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from
-    /// the way it is laid without meeting any.
+    /// Refuses obstacles, unless the cable hangs clear of them and gets there from its first shape
+    /// without meeting any.
     fn refuse_contact(&self, layout: &AnchorLayout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
@@ -237,14 +237,14 @@ impl CatenaryModel {
         Ok(())
     }
 
-    /// One slow step to a time, at once; on an error nothing has changed.
+    /// Takes one slow step to a time; on an error nothing has changed.
     fn slow_step(&mut self, time_s: f64, instant: StepStage) -> Result<StepReport, SolveError> {
         let layout = self.layout(time_s)?;
         let e = self.balance(&layout, InitialMaterial::AsBefore)?;
         self.accept(&layout, e, time_s, instant)
     }
 
-    /// Nodes of the present balance, after steps that did not make them.
+    /// Makes the nodes of the present equilibrium, after steps that did not make them.
     fn show(&mut self) {
         if let (Ok(layout), Some(e)) = (self.layout(self.time_s), &self.balance) {
             let (nodes, reactions) = report(&self.problem, &layout, e);
@@ -252,7 +252,7 @@ impl CatenaryModel {
         }
     }
 
-    /// Returns how far any support moves between two times, m.
+    /// Returns the greatest displacement of a support between two times, m.
     fn support_travel(&self, from_s: f64, to_s: f64) -> f64 {
         let mut most = 0.0f64;
         for s in &self.problem.supports {

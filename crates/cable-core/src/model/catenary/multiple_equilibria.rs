@@ -1,4 +1,4 @@
-//! This file finds the other equilibria of a slack cable that slides over pulleys without friction.
+//! This module finds the other equilibria of a slack cable over frictionless pulleys.
 //!
 //! A loop between two pulleys pulls the harder the longer it is, so that the slack may
 //! rest in one span as well as in another: the energy has more than one minimum in the material at
@@ -10,23 +10,24 @@ use super::CatenaryModel;
 use super::equilibrium::{Equilibrium, Start, solve};
 use super::first_guess::{first_arcs, taut_arc_lengths};
 use super::layout::{Anchor, AnchorLayout};
-use super::report::report;
-use super::slide::Mode;
+use super::results::report;
+use super::sliding_problem::Mode;
 use crate::math::{larger, smaller};
 use crate::model::Settings;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Histories, Node};
 
-/// Material that a taut span has to spare at the start, of its length. Smaller: it pulls so hard
+/// First excess material of a taut span, as a fraction of its length. Smaller: it pulls so hard
 /// that it draws the slack over at once; larger: the slack begins in more than one span.
 const SPARE_FRACTION: f64 = 1e-3;
-/// Most of the slack that is spared so.
+/// Greatest fraction of the slack that is used for that.
 const SPARE_OF_SLACK: f64 = 0.1;
-/// Slack below this part of the length is none.
+/// Slack below which there is none, as a fraction of the length.
 const LEAST_SLACK_FRACTION: f64 = 1e-6;
-/// Part of the length by which the material at a pulley differs in another balance. Smaller: two
-/// answers of one search are two balances; larger: balances near each other are one.
+/// Difference of the material at a pulley from which two equilibria are different, as a fraction of
+/// the length. Smaller: two answers of one search count as two; larger: nearby equilibria count as
+/// one.
 const OTHER_FRACTION: f64 = 1e-5;
 /// Most starts. Smaller: balances of cables over many pulleys are missed; larger: they take long.
 const MAX_STARTS: usize = 24;
@@ -68,9 +69,9 @@ fn starts(problem: &Problem, layout: &AnchorLayout, sigma: &[f64]) -> Vec<Vec<f6
     out
 }
 
-/// The tensions of the other balances of a cable that slides over pulleys without friction beside
-/// those of an answer at a time (s); None where none was found, or where obstacles, bending
-/// stiffness or friction leave it to other models.
+/// The tensions of the other equilibria of a cable over frictionless pulleys, with those of an
+/// answer at a time (s). None if none was found, or if obstacles, bending stiffness or friction
+/// require other models.
 pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s: f64) -> Option<Histories> {
     let slides = problem.supports.iter().any(|s| s.kind == SupportKind::Pulley);
     if !slides || problem.supports.iter().any(|s| s.friction > 0.0) {

@@ -182,7 +182,7 @@ fn nodes_are_close_enough_to_draw_straight_lines_between() {
     m.settle().expect("rest");
     let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
-    let slide = slide::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
+    let slide = sliding_problem::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let s = e.stretches.all[1].expect("a stretch");
     let (_, at, c) = slide.chain(s.from, s.to).spans(s.start, layout.anchors[0].at).next().expect("a span");
     for w in m.nodes.windows(2) {
@@ -234,7 +234,7 @@ fn rests_by_the_heavy_capstan([mu, r, axial_stiffness, pull]: [f64; 4], a: [f64;
     let (tb, ta) = (r.tension_before_n.expect("a pulley"), r.tension_after_n.expect("a pulley"));
     let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
-    let slide = slide::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
+    let slide = sliding_problem::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let (from, turn) = (e.arcs[1].arrive, e.arcs[1].turn);
     let by = |mu: f64| wheel::traverse_wheel(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
     assert!(ta > by(-mu) * (1.0 - 1e-6) && ta < by(mu) * (1.0 + 1e-6), "{ta} {} {}", by(-mu), by(mu));

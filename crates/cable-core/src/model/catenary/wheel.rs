@@ -1,5 +1,4 @@
-//! The cable lies on a wheel: this module says how tension changes round it, and how much material
-//! lies on it.
+//! This module integrates the tension round a wheel, and the material on it.
 //!
 //! The centre line runs on a circle of radius R, ψ the angle turned since it arrived, t its
 //! direction, n the outward normal, b the load per unstretched metre, λ = (1 + αΔT)(1 + T/EA) the
@@ -10,10 +9,10 @@
 //! dT/dψ = −(R/λ) b·t + m (T − (R/λ) b·n),      −μ ≤ m ≤ μ
 //! ```
 //!
-//! with m the friction called upon: 0 on a smooth wheel, ±μ where all of it slides. While it holds,
-//! the state in between is taken as one m along the whole arc. That is exact at both ends of the
-//! range and for points, and in between misplaces material by no more than (ΔT/EA)·(arc length),
-//! since nobody knows how the friction is shared along an arc that has not slid yet.
+//! with m the mobilised friction: 0 on a frictionless wheel, ±μ if all of the arc slides. For a
+//! sticking wheel one m along the whole arc is assumed. That is exact at both ends of the range and
+//! for points; in between it misplaces material by at most (ΔT/EA)·(arc length), because the
+//! distribution of friction along an arc that has not slid is unknown.
 
 use super::layout::{Anchor, direction};
 use crate::catenary::Chain;

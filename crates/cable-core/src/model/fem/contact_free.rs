@@ -1,5 +1,5 @@
-//! A cable that can touch nothing but its supports is answered without contact, and with mass that
-//! is spread over its bars.
+//! This module recognises a cable that can touch nothing but its supports: it is solved without
+//! contact, and its mass is spread over its bars.
 
 use crate::problem::Problem;
 use crate::scene::SupportKind;

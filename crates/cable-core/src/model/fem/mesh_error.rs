@@ -1,18 +1,18 @@
-//! Two meshes are compared to estimate how wrong the figures of a cable in contact are.
+//! This module compares meshes to estimate the errors of an answer in contact.
 //!
 //! If `spans` has a solution, that has no mesh error, and the bars came to rest from it: the two
 //! differ by the effect of mesh, barrier and stick-slip states. That difference is the error
-//! estimate of each figure. In quasi-static steps `spans` continues beside the bars: it costs a
-//! small part of what they cost, and has the same friction memory.
+//! estimate of each figure. In quasi-static steps `spans` is advanced beside the bars: its cost is
+//! small compared with theirs, and it has the same friction memory.
 //!
 //! If it has no solution (slack, stiff, in plan view, in self-contact), the same cable is solved on
-//! bars twice and four times as long. Straight bars between contacts are of the second order,
-//! where the cable touches down or meets a corner of the first: what is left of an error on the
-//! finest of three meshes is a third of what the finer two differ by, or all of it. All of it is
-//! said, and no less than half of what the coarser two differ by: one difference may pass through
-//! nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and J.
-//! A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the
-//! extrapolation: its order is not known here.)
+//! bars twice and four times as long. Straight bars between contacts are of second order, and of
+//! first order where the cable touches down or meets a corner: the error on the finest of three
+//! meshes is a third of the difference of the finer two, or all of it. The estimate is all of it,
+//! and at least half of the difference of the coarser two, because a single difference may vanish
+//! by chance, as when a node comes to lie at a corner. (L. F. Richardson and J. A. Gaunt, *The
+//! deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation:
+//! its order is not known here.)
 
 use std::sync::Arc;
 
@@ -26,36 +26,36 @@ use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::solution::ErrorEstimates;
 
-/// Least number of bars that is halved: half of fewer shows no shape.
+/// Least number of bars that is halved: half of fewer would not represent the shape.
 const LEAST_BARS: usize = 8;
-/// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
-/// that of the first order.
+/// Lower bound of the error on the finest of three meshes, as a fraction of the difference of the
+/// coarser two: that of first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
-/// Estimates that may take as much work together as one search for the equilibrium: each begins at
-/// the answer.
+/// Number of estimates that together may take as much work as one search for the equilibrium,
+/// because each begins at the answer.
 const ESTIMATES_PER_SEARCH: usize = 4;
 
-/// The model beside which the errors of the cable are estimated, and the estimate.
+/// The comparison model and the error estimate of a cable.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TwoMeshes {
     exact: Option<Box<SpansModel>>,
     coarse: Option<Box<Stepper>>,
-    /// The errors as far as they are known now.
+    /// The present error estimates.
     pub errors: ErrorEstimates,
 }
 
-/// The permission of the comparison to change the mesh.
+/// Tells whether the comparison may change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
-    /// The scene leaves the number of bars open.
+    /// Refinement is allowed: the scene leaves the number of bars open.
     Allowed,
-    /// The scene or the settings give it.
+    /// The scene or the settings give the number of bars.
     Forbidden,
 }
 
 impl TwoMeshes {
-    /// Estimates the errors of a cable that came to rest, beside the answer without a mesh where
-    /// there is one; refines its mesh where that is allowed and makes them smaller.
+    /// Estimates the errors of a cable at rest, against the answer without a mesh if there is one.
+    /// Refines the mesh if that is allowed and makes the errors smaller.
     pub fn compare(
         &mut self,
         problem: &Arc<Problem>,
@@ -71,8 +71,8 @@ impl TwoMeshes {
         }
         if problem.cable.self_contact {
             self.errors = match exact {
-                // A cable that touches itself nowhere rests as one that cannot; once it moves it
-                // may.
+                // At rest a cable without self-contact is like one that cannot have any; in motion
+                // it may touch itself.
                 Some(exact) if !fine.cable.touches_itself() => errors_beside(&fine.solution(), &exact.answer, problem),
                 _ => {
                     errors_by_coarser_meshes(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default()
@@ -110,7 +110,7 @@ impl TwoMeshes {
         }
     }
 
-    /// Follows a step of the cable without inertia; with inertia there is no estimate.
+    /// Follows a quasi-static step of the cable; steps with inertia have no estimate.
     pub fn follow(
         &mut self,
         problem: &Arc<Problem>,
@@ -132,7 +132,7 @@ impl TwoMeshes {
                     self.exact = Some(exact);
                     return;
                 }
-                // The cable has no answer without a mesh from here on.
+                // From here on the cable has no answer without a mesh.
                 at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)
                     .map(Box::new)
             }
@@ -140,13 +140,13 @@ impl TwoMeshes {
             (None, None) => None,
         };
         let Some(coarse) = coarse else { return };
-        // Friction is as wrong as the steps that it remembers.
+        // Friction carries the errors of the steps that it remembers.
         self.errors = before.errors.componentwise_max(&ErrorEstimates::between(&coarse.solution(), &answer));
         self.coarse = Some(coarse);
     }
 }
 
-/// The answer of `spans` a step further on, if it has one.
+/// The answer of `spans` one step later, if it has one.
 fn advance_spans(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<CableSolution> {
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
@@ -157,8 +157,8 @@ fn advance_spans(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) ->
     Some(spans.solution())
 }
 
-/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars
-/// twice as long; None where that finds no rest.
+/// Errors of a cable from the same cable on bars twice and four times as long, and the one on bars
+/// twice as long. None if that does not come to rest.
 fn errors_by_coarser_meshes(
     problem: &Arc<Problem>,
     settings: Settings,
@@ -177,7 +177,7 @@ fn errors_by_coarser_meshes(
     Some((change.map_or(errors, |change| errors.componentwise_max(&change)), coarse))
 }
 
-/// Errors of an answer beside one without a mesh.
+/// Errors of an answer against one without a mesh.
 fn errors_beside(answer: &CableSolution, exact: &CableSolution, problem: &Problem) -> ErrorEstimates {
     ErrorEstimates::between(answer, exact).plus(&ErrorEstimates::rounding(exact, problem))
 }
@@ -186,7 +186,7 @@ fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) 
     errors.relative(answer).is_some_and(|e| e > settings.tolerance)
 }
 
-/// The same cable with another number of bars, at rest next to an answer.
+/// The same cable with another number of bars, at rest near an answer.
 fn at_rest_with_bars(
     problem: &Arc<Problem>,
     settings: Settings,

@@ -16,7 +16,7 @@
 //! | `first_shape` | the first shape: along the route, clear of obstacles |
 //! | `transfer` | states and answers of other meshes and models |
 //! | `results`, `mesh_error` | the answer of a state, and its errors |
-//! | `settle`, `warm_start` | the search for an equilibrium: which solver is asked, and from which start |
+//! | `equilibrium_search`, `easier_start` | the search for an equilibrium: choice of solver and of start |
 //! | `stiff_equilibrium` | the equilibrium of a stiff cable in contact, by `elastica` |
 //! | `settings` | the tuned constants |
 //!
@@ -24,8 +24,10 @@
 //! changes.
 
 mod contact_free;
+mod easier_start;
 mod elastica;
 mod equilibrium;
+mod equilibrium_search;
 mod first_shape;
 mod free;
 mod mesh;
@@ -35,7 +37,6 @@ mod obstacle;
 mod remesh;
 mod results;
 mod settings;
-mod settle;
 mod state;
 mod stepper;
 mod stiff_equilibrium;
@@ -44,7 +45,6 @@ pub(crate) mod system;
 mod tests;
 mod time;
 mod transfer;
-mod warm_start;
 
 use std::sync::Arc;
 
@@ -70,7 +70,7 @@ enum Part {
     Stepper,
 }
 
-/// The model's mechanics of one cable.
+/// The finite element model of one cable.
 #[derive(Clone, Debug)]
 pub struct FemModel {
     problem: Arc<Problem>,
@@ -88,21 +88,20 @@ pub struct FemModel {
     robot_pose: Option<RigidPose>,
     /// The equilibrium of a stiff cable in contact as an elastica, until something moves.
     elastica_answer: Option<CableSolution>,
-    /// Error of the mesh's equilibrium of a stiff cable by the bend that it leaves out, in parts of
-    /// the greatest tension, until something moves.
+    /// Error of the mesh's equilibrium of a stiff cable by neglected bending, relative to the
+    /// greatest tension, until something moves.
     bending_error: Option<f64>,
 }
 
 impl FemModel {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
-    /// # Errors
-    /// `Unsupported` when the scene needs what the model lacks.
+    /// # Errors `Unsupported` if the scene needs a feature that the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         Self::with_tuning(problem, settings, Arc::default())
     }
 
-    /// The same with other tuned constants.
+    /// As [`Self::new`], with other tuned constants.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -125,21 +124,21 @@ impl FemModel {
         })
     }
 
-    /// The tuned constants by which it is solved.
+    /// The tuned constants with which it is solved.
     fn tuning(&self) -> &Arc<Tuning> {
         &self.stepper.cable.mesh.tuning
     }
 
-    /// The same without sliding nodes at corners and posts: every node stays with its material. For
-    /// models that take over its nodes.
+    /// Removes the sliding nodes at corners and posts, so that every node moves with its material:
+    /// for models that take over its nodes.
     #[must_use]
     pub(in crate::model) fn with_material_nodes(mut self) -> Self {
         self.stepper.cable.meshing.slides = false;
         self
     }
 
-    /// The same cable on bars half as long, laid anew, where their number is open and the mesh gave
-    /// the first answer.
+    /// The same cable on bars half as long, laid along its route, if the scene leaves their number
+    /// open and the mesh gave the first answer.
     fn on_finer_mesh(&self) -> Option<Self> {
         let bars = 2 * self.stepper.cable.meshing.even_bars;
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
@@ -159,15 +158,15 @@ impl FemModel {
         Some(finer)
     }
 
-    /// A copy to go back to. Its obstacles are those of the scene: the ones among which the outline
-    /// of the robot is moved stay with this model.
+    /// A copy for rollback. It has the obstacles of the scene; those with the robot's moving
+    /// outline stay with this model.
     pub(super) fn copy_for_rollback(&self) -> Self {
         let mut copy = self.clone();
         copy.stepper.cable.problem = self.problem.clone();
         copy
     }
 
-    /// Makes `part` the one that holds the present state.
+    /// Makes `part` the part that holds the present state.
     fn make_present(&mut self, part: Part) -> Result<(), SolveError> {
         if self.present != part {
             match part {
@@ -238,7 +237,7 @@ impl Mechanics for FemModel {
         self.meshes = TwoMeshes::default();
         self.elastica_answer = None;
         self.bending_error = None;
-        // Statics has no velocities: what moves is taken over by the part that can move.
+        // Statics has no velocities, so a moving state needs the part that has them.
         if self.present == Part::Statics && state.moves() {
             self.stepper.set_state(state)?;
             self.present = Part::Stepper;

@@ -2,15 +2,16 @@
 //! that the program uses; a measurement (`cargo run --release -p cable-benches --bin
 //! tuned-settings`) tries others.
 //!
-//! Constants that rounding or an error bound fixes stand beside their code, and so do those of the
-//! equilibria without contact (`free`) and of the elastica, whose iterations end at rounding.
+//! Constants that round-off or an error bound fixes are defined beside their code, and so are those
+//! of the equilibria without contact (`free`) and of the elastica, whose iterations end at
+//! round-off.
 
 use serde::{Deserialize, Serialize};
 
 /// The tuned constants of the model, in groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tuning {
-    /// The barrier of contacts, and the sliding at which friction acts whole.
+    /// The barrier of contacts, and the slide at which friction is fully mobilised.
     pub contact: ContactTuning,
     /// Newton's method for a step.
     pub newton: NewtonTuning,
@@ -22,49 +23,53 @@ pub struct Tuning {
     pub outline: OutlineTuning,
     /// Changes of the mesh between steps.
     pub remesh: RemeshTuning,
-    /// The first mesh, and equilibria taken over from other models.
+    /// The first mesh, and equilibria adopted from other models.
     pub start: StartTuning,
 }
 
 /// Constants of the barrier and of friction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactTuning {
-    /// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3
-    /// adds 2 % to the tension of a soft cable of 12 m over two beams, 1e-4 nothing that shows.
-    /// Smaller takes more iterations, larger lifts the cable.
+    /// Gap at which contact begins (d̂), m. A corner lifts a taut cable by this: 1e-3 adds 2 % to
+    /// the tension of a soft cable of 12 m over two beams, 1e-4 nothing visible. Smaller takes more
+    /// iterations, larger lifts the cable.
     pub reach_m: f64,
-    /// Stiffness of the barrier, in weights of an even bar. Smaller rebounds, and costs 30 % more
-    /// at a twentieth; larger brings contacts to the edge of the reach, where they come and go.
+    /// Stiffness of the barrier, in weights of an even bar. Smaller: contacts rebound, and a
+    /// twentieth costs 30 % more; larger: contacts are at the edge of the reach, where they come
+    /// and go.
     pub stiffness_weights: f64,
-    /// The same in greatest tensions, where that is more. With a hundredth of it the gap of a node
-    /// that a taut cable turns at is still a millionth of a metre; with the weight alone a cable of
-    /// 1e6 N came as near as 1e-9 m, and no Newton step moved it. Larger lifts the cable.
+    /// Stiffness of the barrier in greatest tensions, if that is more. With a hundredth of it the
+    /// gap of a node at which a taut cable turns is still a millionth of a metre; with the weight
+    /// alone a cable of 1e6 N had a gap of 1e-9 m, and no Newton step moved it. Larger: the cable
+    /// is lifted.
     pub stiffness_tensions: f64,
-    /// Greatest factor of the stiffness from one step to the next. Smaller lags behind a snatch,
-    /// larger jolts what lies in contact.
+    /// Greatest factor of the stiffness from one step to the next. Smaller: it lags behind a
+    /// snatch; larger: it jolts cable in contact.
     pub stiffness_rise: f64,
-    /// Least such factor. Smaller jolts what lies in contact, larger stays hard after a snatch.
+    /// Least such factor. Smaller: it jolts cable in contact; larger: the barrier stays hard after
+    /// a snatch.
     pub stiffness_fall: f64,
-    /// Times the stiffness for its tension that a failed step is tried again with: the tension may
-    /// grow in it. Smaller fails where a step draws the cable taut, larger lifts it.
+    /// Factor of the stiffness with which a failed step is tried again, because the tension may
+    /// grow in it. Smaller: steps that draw the cable taut fail; larger: the cable is lifted.
     pub retry_stiffening: f64,
-    /// Sliding at which friction acts whole (ε) in motion, and the most of it at rest, m. 1e-6
-    /// costs half as many iterations again, 1e-4 creeps.
+    /// Slide ε at which friction is fully mobilised in motion, and its greatest value at rest, m.
+    /// With 1e-6 there are half as many iterations again, with 1e-4 the cable creeps.
     pub slip_m: f64,
-    /// ε at rest in parts of what the cable stretches under its weight or its greatest tension:
-    /// where holding ground gives way by as much as the cable stretches, nothing shows that it
-    /// holds. Of the tension where a pull has turned round 1e-3 loses up to 3 %, 1e-4 up to 0.9 %;
-    /// smaller costs iterations.
+    /// ε at rest, as a fraction of the stretch of the cable under its weight or its greatest
+    /// tension: if sticking contacts yield by as much as the cable stretches, they have no effect.
+    /// After a pull is reversed 1e-3 loses up to 3 % of the tension, 1e-4 up to 0.9 %; smaller
+    /// costs iterations.
     pub slip_stretch_fraction: f64,
-    /// Least ε, m. Friction of newtons is then a spring of 1e9 N/m, and the rounding of a
-    /// coordinate of 10 m still a millionth of ε. Smaller comes near to rounding, larger creeps at
+    /// Least ε, m. Friction of newtons is then a spring of 1e9 N/m, and the round-off of a
+    /// coordinate of 10 m is still a millionth of ε. Smaller: near round-off; larger: creep at
     /// rest.
     pub min_slip_m: f64,
-    /// Steps for which a contact without load is remembered. Fewer: trembling contacts creep. Many
-    /// more: a cable that was lifted and put back is held as if it had stayed.
+    /// Number of steps for which the anchor of a contact without load is kept. Smaller: trembling
+    /// contacts creep; much larger: a cable that was lifted and put back is held as if it had
+    /// stayed.
     pub remembered_steps: usize,
-    /// Steps for which lists of what is near are made. Fewer: they are made more often. More: they
-    /// are longer.
+    /// Number of steps for which neighbour lists are made. Smaller: they are made more often;
+    /// larger: they are longer.
     pub listed_steps: f64,
     /// Move of a node, m, that these lists allow beside the one expected. Smaller and larger as
     /// above.
@@ -93,66 +98,68 @@ impl Default for ContactTuning {
 /// Constants of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonTuning {
-    /// Iterations of the mixed method in contact before the minimiser is asked. Fewer: one of its
-    /// iterations costs as much as five of these. More: where it is needed after all they are lost:
-    /// of eight drops of 600 bars 250 of 960 steps come to it with 20 as with 40, in 14 600
-    /// iterations and in 20 700.
+    /// Iterations of the mixed method in contact before the minimiser takes over. Smaller: more
+    /// work for the minimiser, whose iterations cost five times as much. Larger: more iterations
+    /// are lost if the minimiser is needed after all; in eight drops of 600 bars it takes over in
+    /// 250 of 960 steps with 20 as with 40, after 14 600 and 20 700 iterations.
     pub mixed_iterations: usize,
-    /// The same where nothing is touched. Measured: 2 to 5 in a swing, up to 12 where a slack chain
-    /// snaps taut.
+    /// Iterations of the mixed method without contact. Measured: 2 to 5 in a swing, up to 12 if a
+    /// slack chain snaps taut.
     pub free_iterations: usize,
-    /// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one
-    /// after the other. Iterations of a cable of 1000 bars that drops, over 24 drops, with none of
-    /// it at once: 15 % more; with 0.5 and none: 2 % more.
+    /// Fractions of the bars' compression that are kept in the matrix, one after the other, if all
+    /// of it makes the matrix indefinite. Iterations over 24 drops of a cable of 1000 bars: 15 %
+    /// more if all of it is dropped at once; 2 % more with 0.5 and 0.
     pub push_fractions: [f64; 3],
-    /// Part of the first residual with which what was reached is handed on to the minimiser.
-    /// Smaller: it begins anew though it is near. Larger: it begins from where nothing is gained.
+    /// Residual, as a fraction of the first one, from which the last iterate is handed on to the
+    /// minimiser. Smaller: the minimiser starts anew although the iterate was near; larger: it
+    /// starts from a useless iterate.
     pub handed_on_residual_fraction: f64,
-    /// Rounds of adding contacts ahead to the active set. Fewer: a step runs into what it has not
-    /// seen. More find nothing new where a front of contact runs along the cable.
+    /// Rounds of adding predicted contacts to the active set. Smaller: a step runs into obstacles
+    /// that it has not seen; larger: nothing new is found, even if a contact front runs along the
+    /// cable.
     pub active_set_rounds: usize,
-    /// Part of a step that may be free without looking for what is in its way. Smaller: steps are
-    /// cut short. Larger: the same step is solved twice.
+    /// Free fraction of a step from which no contacts are predicted. Smaller: steps are cut short.
+    /// Larger: the same step is solved twice.
     pub free_step_fraction: f64,
-    /// Least descent of a step held by contacts ahead, of that of the free one. Smaller: steps that
-    /// only bend round corners and gain nothing. Larger: good ones are given up.
+    /// Least descent of a step with predicted contacts, as a fraction of that of the free step.
+    /// Smaller: steps that only bend round corners and gain nothing. Larger: good ones are given
+    /// up.
     pub min_descent_fraction: f64,
-    /// Gap at which contacts ahead land, of the barrier's reach: about where it holds a node.
-    /// Smaller: they land too hard. Larger: they are let down in more steps.
+    /// Gap at which predicted contacts land, as a fraction of the barrier's reach: about where the
+    /// barrier holds a node. Smaller: they land too hard. Larger: they come down in more steps.
     pub landing_gap_fraction: f64,
-    /// Part of the room that constraints and step bound leave to each other: contacts within the
-    /// reach are held to this part of the loss that the bound lets them, and wider gaps are bound
-    /// to this part of where foreseen contacts land. Smaller: more steps. Larger: rounding lets the
-    /// bound cut a step that lands.
+    /// Margin between constraints and step bound: contacts within the reach may lose this fraction
+    /// of the gap that the bound allows, and wider gaps are bound to this fraction of the landing
+    /// gap. Smaller: more steps. Larger: round-off makes the bound cut a step that lands.
     pub bound_margin: f64,
-    /// Stiffness of a constraint, in the largest stiffness at its nodes. Softer: nodes still run
-    /// into the barrier. Much harder: rounding.
+    /// Stiffness of a constraint, as a multiple of the largest stiffness at its nodes. Smaller:
+    /// nodes still run into the barrier; much larger: round-off.
     pub constraint_hardness: f64,
-    /// Change of what a constraint leaves, in gaps left, that is not followed. Smaller: rounds for
-    /// nothing. Larger: a bar that turns runs into its corner.
+    /// Change of the target of a constraint, relative to its least gap, below which it is not
+    /// updated. Smaller: useless rounds. Larger: a bar that turns runs into its corner.
     pub constraint_tolerance: f64,
-    /// Part of each gap that a step leaves. Smaller: gaps shrink faster than Newton opens them
-    /// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many
-    /// where the cable meets itself). Larger: more steps.
+    /// Fraction of each gap that a step leaves. Smaller: gaps shrink faster than Newton's method
+    /// opens them again (with 0.2 twice as many steps of ends thrown about are halved, five times
+    /// as many with self-contact). Larger: more steps.
     pub kept_gap_fraction: f64,
-    /// Least part of the cable between a sliding node and its neighbour that an iteration leaves.
-    /// Smaller: a bar shrinks to nothing in a few iterations. Larger: more iterations.
+    /// Least fraction of the cable between a sliding node and its neighbour that an iteration
+    /// leaves. Smaller: a bar shrinks to nothing in a few iterations. Larger: more iterations.
     pub kept_cable_fraction: f64,
-    /// Sufficient decrease of the line search (Armijo), of what the slope promises. Smaller: steps
-    /// that gain nothing. Larger: good steps are cut.
+    /// Sufficient decrease of the line search (Armijo), as a fraction of the decrease that the
+    /// slope predicts. Smaller: steps that gain nothing. Larger: good steps are cut.
     pub decrease: f64,
     /// Halvings of the line search before the step is given up. Fewer: steps fail. More: a failure
     /// costs more.
     pub max_halvings: usize,
-    /// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5
-    /// of the whole load. Smaller: rounding fails steps. Larger: forces are off by as much.
+    /// Unbalanced force, in tolerances, that is accepted when further iterations gain nothing: 3e-5
+    /// of the whole load. Smaller: steps fail by round-off. Larger: forces are off by as much.
     pub stalled_residual: f64,
     /// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up.
-    /// Smaller: iterations for nothing that shows. Larger: the laws, which ask this of stretches to
-    /// 1e-5 of the forces, refuse steps.
+    /// Smaller: iterations without a visible effect. Larger: the verification, which checks
+    /// stretches to 1e-5 of the forces, refuses answers.
     pub stretch_residual: f64,
-    /// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag
-    /// that could have got there. More: iterations spent on what the next step does as well.
+    /// Number of short moves of held nodes towards their targets before they are stopped. Smaller:
+    /// supports lag that could have reached them. Larger: iterations that the next step could save.
     pub max_pushes: usize,
     /// Greatest move of a node in an iteration, m: two longest inner steps at 100 m/s. Smaller:
     /// fast motion takes more iterations. Larger: a wild step goes farther before it is cut.
@@ -188,41 +195,41 @@ impl Default for NewtonTuning {
 /// Constants of steps in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepTuning {
-    /// Longest inner step, s, where none is asked for. At 1/240 the tip of a falling chain of 10 m
-    /// is within 5e-4 m of that of rigid links (`tests/dynamics`). Smaller is dearer, larger
-    /// coarser.
+    /// Longest inner step, s, if the user gives none. At 1/240 the tip of a falling chain of 10 m
+    /// is within 5e-4 m of that of rigid links (`tests/dynamics`). Smaller: more time; larger: less
+    /// accurate.
     pub longest_s: f64,
-    /// Part of a step that the first one of a motion takes, the next ones each as long as all
-    /// before. It has no history: implicit Euler carries a cable let go ½ a h² too far, and BDF2
-    /// makes ¾ a h² of that. Larger: a free fall at 1/240 s is off by ¾ of this part's square times
-    /// 1.7e-4 m. Smaller: one step more for each halving.
+    /// First step of a motion, as a fraction of a whole step; each of the next ones is as long as
+    /// all before it. The first step has no history: implicit Euler moves a released cable ½ a h²
+    /// too far, which BDF2 turns into ¾ a h². Larger: a free fall at 1/240 s is off by ¾ of this
+    /// fraction's square times 1.7e-4 m. Smaller: one step more for each halving.
     pub first_fraction: f64,
     /// The shortest step, of the longest: with 1/240 s frequencies up to 17 Hz are exact to 1e-3,
     /// those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth.
     /// Larger: only lower frequencies are exact.
     pub shortest_fraction: f64,
-    /// Amplitude, of the cable's length, below which vibrations are left as they are: what is left
-    /// over from coming to rest rings at any frequency, and 0.1 mm in 10 m is no motion that a user
-    /// sees. Smaller: short steps for nothing. Larger: vibrations are damped.
+    /// Amplitude, as a fraction of the cable's length, below which vibrations do not shorten the
+    /// step: the remainder of a relaxation rings at any frequency, and 0.1 mm in 10 m is not
+    /// visible. Smaller: useless short steps. Larger: vibrations are damped.
     pub vibration_fraction: f64,
     /// Greatest factor of the step from one frame to the next; BDF2 is stable up to 2.4. Smaller:
     /// the step lags behind the motion.
     pub max_change: f64,
-    /// Time constant of the memory of a motion, s. Half a period of a motion that needs shorter
-    /// steps passes in it. Smaller: the step is short where a vibration turns and long where it is
-    /// fastest. Larger: short steps go on after the vibration.
+    /// Time constant (s) of the moving average of a motion: about half a period of a motion that
+    /// needs shorter steps. Smaller: the step varies within a vibration, short at its turning
+    /// points and long where it is fastest. Larger: short steps go on after the vibration.
     pub memory_s: f64,
-    /// Time for which a cable must have been still to sleep, s. Smaller: a slow swing that turns
-    /// round may be caught. Larger: rest costs for longer.
+    /// Time for which a cable must have been still before it sleeps, s. Smaller: a slow swing may
+    /// fall asleep at its turning point. Larger: a cable at rest costs time for longer.
     pub sleep_delay_s: f64,
     /// Distance by which a node may have moved in that time, in reaches of the barrier: a trembling
     /// contact moves its neighbours by a few. Smaller: trembling keeps a cable awake. Larger: a
-    /// slow motion is caught.
+    /// slow motion falls asleep.
     pub sleep_distance_reaches: f64,
-    /// Most halvings of a step. Fewer: steps fail. More: a failure costs more.
+    /// Maximum number of halvings of a step. Smaller: steps fail. Larger: a failure costs more.
     pub max_halvings: usize,
-    /// Halvings of a step before the robot has to wait for the cable. Fewer: it jerks. More: it
-    /// costs.
+    /// Halvings of a step before the robot has to wait for the cable. Smaller: the robot jerks.
+    /// Larger: more time.
     pub halvings_before_robot_waits: usize,
     /// Newton iterations of a step. Fewer: steps are halved that would have converged. More: a
     /// failure costs more.
@@ -231,37 +238,37 @@ pub struct StepTuning {
     /// steps again. Of a cable of 1000 bars that drops on rubble, fewer: 7 cost 1.7 times as many
     /// iterations in all, in shorter steps. More: 40 have three times as many steps refused.
     pub easy_iterations: usize,
-    /// Rounds of finding out which sliding nodes hold in which no fewer are wrong than before,
-    /// until they are changed one at a time. Fewer: steps of a few nodes that free each other in
-    /// turn take longer, or are halved. More: a cycle costs more.
+    /// Rounds without a decrease of the number of wrong stick-slip states after which these are
+    /// changed one at a time. Smaller: steps in which a few nodes release each other in turn take
+    /// longer, or are halved. Larger: a cycle costs more.
     pub grip_rounds: usize,
-    /// Rounds beside those for each sliding node. Fewer: steps in which many begin to slip one
-    /// after the other are halved. More: what does not end costs more.
+    /// Additional rounds for each sliding node. Smaller: steps in which many nodes begin to slip
+    /// one after the other are halved. Larger: a cycle costs more.
     pub grip_rounds_each: usize,
     /// Rounds in which friction follows its normal forces. With none the greatest tension of a
     /// stiff cable (1 N m²) that drops on rubble is 537, 352 and 789 N with 84, 168 and 336 bars at
     /// 1/960 s, with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the
     /// step (a pile: 1.5 s, 0.9 with one).
     pub friction_rounds: usize,
-    /// Change of a friction force that is none, of the greatest. Smaller: sliding costs twice as
-    /// much and changes by nothing that shows. Larger: impacts rub late.
+    /// Change of a friction force that is neglected, relative to the greatest. Smaller: sliding
+    /// costs twice as much without a visible change. Larger: the friction of impacts acts late.
     pub friction_change: f64,
-    /// Part of the greatest friction of a sliding node by which its friction may differ from that
-    /// of its turn and grip after a step. Smaller: rounds for nothing that shows. Larger: friction
-    /// beyond its cone (the checker asks for 1e-3 of the normal force).
+    /// Difference, as a fraction of the greatest friction of a sliding node, between its friction
+    /// and that of its turn and stick-slip state after a step. Smaller: rounds without a visible
+    /// effect. Larger: friction beyond its cone (the verification allows 1e-3 of the normal force).
     pub grip_tolerance: f64,
-    /// Normal speed below which a contact is left alone by the plastic impulse, m/s. Smaller:
-    /// resting contacts are asked for nothing. Larger: slow impacts rebound.
+    /// Normal speed below which a contact gets no plastic impulse, m/s. Smaller: useless work on
+    /// resting contacts. Larger: slow impacts rebound.
     pub plastic_speed_m_per_s: f64,
-    /// Gap that a support keeps from what it is driven against, in reaches. The bar beside it
-    /// presses there with hardly a lever. Smaller: its normal force, 1e14 N at 1e-8 m, is all that
-    /// Newton sees. Larger: the support stops short.
+    /// Gap that a support keeps from an obstacle against which it is driven, in reaches. The bar
+    /// beside it presses there with hardly a lever. Smaller: its normal force, 1e14 N at 1e-8 m,
+    /// dominates Newton's method. Larger: the support stops short.
     pub support_gap_reaches: f64,
-    /// Part of its gap that a support keeps in one step. Smaller: it comes into the barrier with
+    /// Fraction of its gap that a support keeps in one step. Smaller: it enters the barrier with
     /// its whole speed. Larger: it lags.
     pub kept_support_gap_fraction: f64,
-    /// Halvings of the way of a support that comes too near, before it stays where it is. Fewer: it
-    /// stops early.
+    /// Halvings of the displacement of a support that comes too near, before it stays where it is.
+    /// Smaller: it stops early.
     pub stand_off_tries: usize,
 }
 
@@ -300,51 +307,52 @@ pub struct EquilibriumTuning {
     /// converge slowly are refused. Larger: a search that fails reports it after minutes. The value
     /// is 20 000 iterations of 200 nodes, and takes some 10 s.
     pub max_work: usize,
-    /// Newton iterations of a step. Fewer: relaxations that a few more would have spared. More: a
-    /// failure costs more.
+    /// Newton iterations of a step. Smaller: relaxations that a few more iterations would have
+    /// saved. Larger: a failure costs more.
     pub max_iterations: usize,
-    /// Halvings of a step before the cable is let down to its rest instead. Fewer: on the way down
-    /// corners slip, and keep that (1 to 3 % of the tension in 4 of 200 scenes). More: cables that
-    /// need it take longer.
+    /// Halvings of a step before the cable is relaxed to its equilibrium instead. Smaller: corners
+    /// slip during relaxation and keep that slip (1 to 3 % of the tension in 4 of 200 scenes).
+    /// Larger: cables that need relaxation take longer.
     pub halvings_before_relaxation: usize,
     /// Steps of relaxation before it is given up. Fewer: equilibria are missed. More: a failure
     /// costs more.
     pub max_relaxation_steps: usize,
-    /// Rounds of refreshing the normal forces of friction in a step. Fewer: steps are halved. More:
-    /// a cycle costs more.
+    /// Rounds of renewing the normal forces of friction in a step. Smaller: steps are halved.
+    /// Larger: a cycle costs more.
     pub lag_rounds: usize,
-    /// Rounds after which the limits of friction are sought between two that were tried: where a
-    /// contact that rubs more lifts its neighbour, which then rubs less, taking what the last round
-    /// allows never ends. A step of relaxation, which need not end, has no others. Fewer: what
-    /// converges by itself takes longer. More: fewer rounds are left.
+    /// Rounds after which friction limits are sought between two limits that were tried: if more
+    /// friction at one contact lifts its neighbour, which then has less friction, whole updates
+    /// never converge. A relaxation step, which need not converge, has no other rounds. Smaller:
+    /// steps that converge by themselves take longer. Larger: fewer rounds are left.
     pub whole_lag_rounds: usize,
     /// Whole load, in weights of the cable, from which dead loads set the first resistance.
-    /// Smaller: a way down with a little load is slower than it need be. Larger: loads of that many
+    /// Smaller: a relaxation with a small load is slower than necessary. Larger: loads of that many
     /// weights throw the cable about.
     pub dead_load_weights: f64,
-    /// Unbalanced force, in tolerances, that is accepted where contact forces are known no better:
-    /// 1e-3 of the whole load. Smaller: cables that a support squeezes find no rest. Larger: a node
-    /// a rounding away from a corner makes any force a rest (6e10 N were taken for one).
+    /// Unbalanced force, in tolerances, that is accepted if contact forces are known no better:
+    /// 1e-3 of the whole load. Smaller: cables squeezed by a support find no equilibrium. Larger:
+    /// with a node a rounding away from a corner any force counts as equilibrium (6e10 N did).
     pub squeezed_residual: f64,
-    /// Part of all loads on a cable that may be held by nothing. Smaller: what rests is refused for
-    /// what its nodes are let off with. Larger: what slides slowly is said to rest. Of slopes,
-    /// posts, beams and drapes at random those that held left up to 4e-5, those with 0.3 % too
-    /// little friction 3e-4 and more.
+    /// Resultant of all forces on a cable without supports that counts as equilibrium, as a
+    /// fraction of all loads. Smaller: resting cables are refused because of the unbalanced forces
+    /// of their nodes. Larger: slowly sliding cables count as resting. On random slopes, posts,
+    /// beams and drapes resting cables left up to 4e-5, those with 0.3 % too little friction 3e-4
+    /// and more.
     pub unheld_load_fraction: f64,
-    /// Unbalanced force of a polished rest, in tolerances. It is polished in three stages, whose
-    /// residuals fall evenly from one tolerance to this. Smaller: nothing but rounding is gained.
-    /// Larger: the forces left at a hundred nodes of a cable that all but slides show in the
+    /// Unbalanced force of a polished equilibrium, in tolerances. It is polished in three stages,
+    /// whose residuals fall evenly from one tolerance to this. Smaller: only round-off is gained.
+    /// Larger: for a cable that nearly slides the forces left at a hundred nodes show in the
     /// balance of the whole.
     pub polish_residual: f64,
-    /// Newton iterations of the first stage, which continues a search that came to its last
-    /// iteration. Fewer: a cable that slides as a whole on smooth ground does not come to rest.
+    /// Newton iterations of the first stage, which continues a search that used all its iterations.
+    /// Smaller: a cable that slides as a whole on smooth ground does not come to rest.
     pub polish_iterations: usize,
-    /// Times a rest is sought again because corners were met or left on the way to it. Fewer: it is
-    /// refused. More: a cycle costs more.
+    /// Maximum number of times that an equilibrium is sought again because corners were met or
+    /// left. Smaller: it is refused. Larger: a cycle costs more.
     pub corner_rounds: usize,
     /// Turn the wrong way round a corner from which a step is taken again without that corner, rad.
-    /// Smaller: more steps are taken twice. Larger: other corners slip by what it pulls (at 0.02
-    /// and 50 N by 2 %), and keep that.
+    /// Smaller: more steps are taken twice. Larger: other corners slip by the pull of this corner
+    /// (at 0.02 and 50 N by 2 %), and keep that slip.
     pub max_corner_pull_rad: f64,
 }
 
@@ -371,24 +379,24 @@ impl Default for EquilibriumTuning {
 /// Constants of the moving outline of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutlineTuning {
-    /// Longest way of the outline in a step without inertia, m. Smaller: more steps. Larger: the
-    /// cable is thrown ahead of it.
+    /// Greatest displacement of the outline in a step without inertia, m. Smaller: more steps.
+    /// Larger: the cable is thrown ahead of it.
     pub max_way_m: f64,
-    /// Distance within which bars go with the outline, m, beside four of its ways. Smaller: bars
-    /// just beyond are folded against those that go. Larger: what lies on the ground some way off
-    /// is moved for nothing.
+    /// Distance (m) within which bars move with the outline, in addition to four of its
+    /// displacements. Smaller: bars just beyond are folded against the moved ones. Larger: cable
+    /// farther off is moved without need.
     pub carried_distance_m: f64,
-    /// Parts of its way that are tried. Smaller parts: a cable squeezed against a wall is asked
-    /// again. Larger: the outline stops before it must.
+    /// Fractions of its displacement that are tried. With smaller ones a cable squeezed against a
+    /// wall is tried again; with larger ones the outline stops before it must.
     pub way_fractions: [f64; 4],
-    /// Part of a gap that is left when what stands in the way pushes back. Smaller: nodes in a
-    /// corner come into the barrier. Larger: more rounds.
+    /// Fraction of a gap that is restored. Smaller: nodes in a corner come into the barrier.
+    /// Larger: more rounds.
     pub kept_gap_fraction: f64,
-    /// Rounds of giving gaps back. Fewer: a node in a corner between outline and ground stays near.
-    /// More: a squeezed one, which never ends, costs more.
+    /// Rounds of restoring gaps. Smaller: a node in a corner between outline and ground stays near.
+    /// Larger: a squeezed node, which never gets its gaps, costs more.
     pub max_rounds: usize,
-    /// Distance by which a hitch that a wall stopped is left behind, m; then the outline waits for
-    /// it. Smaller: the robot is stopped by what it could pass. Larger: hitch and robot part.
+    /// Greatest lag (m) of a hitch that a wall stops; beyond it the outline waits. Smaller: the
+    /// robot is stopped by walls that it could pass. Larger: hitch and robot separate.
     pub max_hitch_lag_m: f64,
 }
 
@@ -408,8 +416,9 @@ impl Default for OutlineTuning {
 /// Constants of changes of the mesh between steps. Lengths of bars are in even bars.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RemeshTuning {
-    /// Turn below which corners are left to the barrier, rad: there a chain jerks by less than 1e-3
-    /// of its tension. Smaller: sliding nodes on every facet of the ground. Larger: jerks.
+    /// Turn below which a corner gets no sliding node and the barrier carries the cable, rad: there
+    /// a chain jerks by less than 1e-3 of its tension. Smaller: sliding nodes on every facet of the
+    /// ground. Larger: jerks.
     pub min_turn_rad: f64,
     /// Shortest bar beside a sliding node. Smaller: the matrix is worse. Larger: nodes come and go
     /// all the time.
@@ -420,49 +429,49 @@ pub struct RemeshTuning {
     /// Distance within which a node is in the way of a new sliding node. Smaller: short bars.
     /// Larger: nodes are lost.
     pub removed_distance: f64,
-    /// Tension, in weights of an even bar, from which a corner gets a sliding node. It loses it
-    /// below half of that: a slack cable lies on corners with its nodes, and the barrier carries it
-    /// as well. Smaller: a slack cable gets them, and loses them again. Larger: chains jerk at
-    /// corners, node by node.
+    /// Tension, in weights of an even bar, from which a corner gets a sliding node; below half of
+    /// that it loses it. A slack cable lies on corners with its nodes, and the barrier carries it
+    /// as well. Smaller: a slack cable gets sliding nodes and loses them again. Larger: chains jerk
+    /// at corners, node by node.
     pub sliding_tension_weights: f64,
     /// Turn the wrong way round a corner that a step may end with, rad; the node leaves after it.
     /// Smaller: more steps are taken twice. Larger: its tangents would lie inside the obstacle.
     pub max_reverse_turn_rad: f64,
-    /// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Smaller: chains jerk
-    /// at corners, node by node. Larger: what a corner's bend costs is left out where it need not
-    /// be.
+    /// √(EI/T), in even bars, beyond which the mesh resolves a cable's bend. Smaller: chains jerk
+    /// at corners, node by node. Larger: the bend at a corner is neglected although the mesh could
+    /// resolve it.
     pub resolved_bend: f64,
     /// Half of the turn up to which a slack cable may leave a round with one node, rad. Smaller: it
     /// hangs there. Larger: the node is far from the round.
     pub max_left_half_turn_rad: f64,
-    /// Half of the turn up to which the node that takes the place of a sliding one goes where the
+    /// Half of the turn up to which the node that replaces a sliding one is placed where the
     /// tangents meet, and up to which one mark of a round can carry the cable, rad. Smaller: a bar
-    /// cuts the corner. Larger: it is put far away.
+    /// cuts the corner. Larger: the node is placed far away.
     pub max_tangent_half_turn_rad: f64,
-    /// Turn below which a node that leaves its corner is taken out, rad; else it becomes a node of
-    /// the cable. Smaller: more nodes. Larger: the cable loses a bend.
+    /// Turn below which a node that leaves its corner is removed, rad; with more it becomes a
+    /// material node. Smaller: more nodes. Larger: the cable loses a bend.
     pub removed_turn_rad: f64,
-    /// Length of two bars together below which the node between them is taken out. Smaller: more
+    /// Length of two bars together below which the node between them is removed. Smaller: more
     /// nodes. Larger: they come and go.
     pub spare_bars: f64,
     /// Length of the sum of the directions before and after a node below which the cable counts as
     /// folded there. Smaller: folds get sliding nodes. Larger: sharp turns get none.
     pub fold_direction_sum: f64,
-    /// Tension of a taut cable in motion, in EA (v/c)^(4/3): something that it hits across at a
-    /// speed v makes 0.63 of it. Smaller: sliding nodes come and go where a falling cable strikes.
-    /// Larger: a cable drawn fast over corners jerks at them.
+    /// Tension from which a cable in motion counts as taut, in EA (v/c)^(4/3): a transverse impact
+    /// at a speed v causes 0.63 of it. Smaller: sliding nodes come and go where a falling cable
+    /// strikes. Larger: a cable drawn fast over corners jerks at them.
     pub impact_tension: f64,
-    /// Distance from a corner within which speeds count, m of arc length. Smaller: what comes is
-    /// not seen. Larger: motion elsewhere counts.
+    /// Distance from a corner within which speeds count, m of arc length. Smaller: approaching
+    /// motion is missed. Larger: motion elsewhere counts.
     pub neighbourhood_m: f64,
-    /// Part by which a change of the mesh may change tension in motion. Smaller: sliding nodes come
-    /// late. Larger: jerks.
+    /// Relative change of tension by a change of the mesh that is allowed in motion. Smaller:
+    /// sliding nodes come late. Larger: jerks.
     pub max_tension_change: f64,
-    /// Part of the cable's weight that counts as tension there. Smaller: what is nearly slack keeps
-    /// its nodes. Larger: jerks in slack.
+    /// Fraction of the cable's weight that counts as tension in that comparison. Smaller: nearly
+    /// slack cables keep their nodes. Larger: jerks in slack cables.
     pub weight_fraction: f64,
-    /// Most changes of one kind after one step. Fewer: the rest waits for the next. More: a cycle
-    /// costs more.
+    /// Maximum number of changes of one kind after one step. Smaller: the rest waits for the next
+    /// step. Larger: a cycle costs more.
     pub max_changes: usize,
     /// Arc from the tangent to the first mark beyond which another mark is put in its middle, rad.
     /// Smaller: more nodes. Larger: tension jumps along the round.
@@ -470,8 +479,8 @@ pub struct RemeshTuning {
     /// Bars on a round up to which it keeps one mark. Smaller: more nodes. Larger: their weight
     /// acts in one point.
     pub one_mark_bars: f64,
-    /// Gap that a bar must have when a node is taken out, in reaches. Smaller: the barrier throws
-    /// it. Larger: nodes stay.
+    /// Gap that a bar must have when a node is removed, in reaches. Smaller: the barrier throws it.
+    /// Larger: nodes stay.
     pub min_gap_reaches: f64,
 }
 
@@ -502,17 +511,17 @@ impl Default for RemeshTuning {
     }
 }
 
-/// Constants of the first mesh and of equilibria taken over.
+/// Constants of the first mesh and of adopted equilibria.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StartTuning {
-    /// Length of a bar, m, where neither scene nor settings give a number, there are no obstacles,
-    /// and the bounds of their number allow it. Smaller is dearer, larger coarser.
+    /// Length of a bar (m) without obstacles, if neither scene nor settings give a number of bars,
+    /// within the bounds of that number. Smaller: more time; larger: less accurate.
     pub free_bar_m: f64,
-    /// The same where there are obstacles.
+    /// Length of a bar (m) with obstacles, under the same conditions.
     pub bar_m: f64,
-    /// Least number of bars then. Fewer are visibly angular.
+    /// Least number of bars then. With fewer the shape is visibly angular.
     pub min_bars: f64,
-    /// Greatest number of bars then. More are dearer.
+    /// Greatest number of bars then. More cost more time.
     pub max_bars: f64,
     /// Least distance of a corner of the route from other nodes, in even bars, to get a node of its
     /// own. Smaller: short bars. Larger: corners of the route are cut.
@@ -522,39 +531,39 @@ pub struct StartTuning {
     /// into folds. Larger: bars that are too long for the ground, held by friction at both ends,
     /// keep a tension that nothing else requires (25 bars on a robot's ground: 220 %).
     pub max_force_change: f64,
-    /// The same for a stiff cable, whose initial shape is that of a flexible one: its bending
-    /// contributes to the support forces.
+    /// The same fraction for a stiff cable, whose initial shape is that of a flexible one: its
+    /// bending contributes to the support forces.
     pub max_stiff_force_change: f64,
-    /// Number of bars from which on the search for the initial equilibrium begins at that of a
-    /// coarser mesh. Fewer: meshes that need no help are solved twice. More: a relaxation of a
+    /// Number of bars from which the search for the initial equilibrium starts from that of a
+    /// coarser mesh. Smaller: meshes that need no help are solved twice. Larger: a relaxation of a
     /// thousand bars takes minutes.
     pub two_mesh_bars: usize,
     /// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next.
     /// Larger: the coarse solution differs from that of the fine mesh.
     pub mesh_ratio: usize,
     /// Least axial stiffness, in whole loads, of a cable whose search for the initial equilibrium
-    /// begins at that of a softer one. Smaller: cables that find theirs by themselves come to lie
-    /// otherwise. Larger: slack ones in folds find none (of 300 over posts and beams 10 did not).
+    /// starts from that of a softer one. Smaller: cables that need no help come to other
+    /// equilibria. Larger: slack ones in folds find none (of 300 over posts and beams 10 did not).
     pub eased_loads: f64,
     /// Least axial stiffness, in whole loads, of these softer ones. Smaller: they stretch by more,
-    /// and rest elsewhere. Larger: some folds find no rest yet.
+    /// and rest elsewhere. Larger: some folds do not yet come to rest.
     pub softest_loads: f64,
     /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
     /// does not come to rest from where the one before did.
     pub stiffness_ratio: f64,
-    /// Most bars to which a mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
-    /// as dear as with half as many.
+    /// Maximum number of bars of automatic refinement. Larger: more scenes reach 1e-3, each at
+    /// twice the cost for twice the bars.
     pub max_refined_bars: usize,
-    /// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps
-    /// by more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5). More: more
-    /// nodes.
+    /// Number of marks on a round of an adopted equilibrium, for each bar that would lie on it.
+    /// Smaller: tension jumps by more (by 1.2e-3 of the greatest with 1 on a post wrapped by 450°,
+    /// 7e-4 with 1.5). Larger: more nodes.
     pub marks_per_bar: f64,
-    /// Part of a bar that a new node of a state taken over keeps away from its ends. Smaller: bars
-    /// without mass. Larger: corners beside a node are still cut off.
+    /// Least distance of a new node of an adopted state from the ends of its bar, as a fraction of
+    /// the bar. Smaller: bars without mass. Larger: corners beside a node are still cut off.
     pub min_part: f64,
     /// Length of a cable with self-contact, in lengths of its way, from which it begins on an arc.
-    /// At 2.4 the first parts that may touch do, laid along a straight line. Smaller: cables that
-    /// need no arc begin there, and take longer. Larger: some begin pressed on themselves.
+    /// From 2.4 on parts of a cable laid along a straight line touch each other. Smaller: cables
+    /// that need no arc begin there, and take longer. Larger: some begin pressed on themselves.
     pub arc_length_ratio: f64,
 }
 

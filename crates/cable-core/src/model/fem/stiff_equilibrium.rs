@@ -1,5 +1,5 @@
-//! The equilibrium of a stiff cable in contact is that of an elastica, found from a flexible cable
-//! or from the mesh; where there is none, the bend that the mesh leaves out is warned of.
+//! This module finds the equilibrium of a stiff cable in contact as an elastica, from a flexible
+//! cable or from the mesh. If there is none, it warns of the bending that the mesh neglects.
 
 use crate::model::fem::elastica::{self, Elastica};
 use crate::model::fem::{FemModel, Part, results};
@@ -8,17 +8,18 @@ use crate::model::{Mechanics, StepReport};
 use crate::solution::{CableSolution, Cost, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
-/// The error estimate of a stiff cable's equilibrium must stay below this part of the tolerance.
+/// Fraction of the tolerance below which the error estimate of a stiff cable's equilibrium must
+/// stay.
 const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 
-/// A stiff cable's equilibrium may differ from that of its mesh by this part of the cable's length.
-/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken
-/// for the same.
+/// Greatest distance of a stiff cable's equilibrium from that of its mesh, as a fraction of the
+/// cable's length. Smaller: the equilibria of coarse meshes are not replaced; larger: another
+/// equilibrium passes for the same one.
 const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 impl FemModel {
-    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None
-    /// where there is none.
+    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None if
+    /// none is found.
     pub(super) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -33,7 +34,7 @@ impl FemModel {
         Some(StepReport { cost, warnings })
     }
 
-    /// The same from the equilibrium that the mesh has found.
+    /// Finds the elastica from the equilibrium of the mesh.
     pub(super) fn elastica_from_mesh(&mut self) -> Option<Cost> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -55,14 +56,14 @@ impl FemModel {
         Some(cost)
     }
 
-    /// A warning of a stiff cable's equilibrium whose error is more than was asked for.
+    /// A warning of a stiff cable's equilibrium whose error exceeds the tolerance.
     pub(super) fn elastica_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.elastica_answer.as_ref()?.error_estimate?, self.settings.tolerance);
         let cause = WarningCause::BarContacts;
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
-    /// Raises an elastica to the whole stiffness and refines it; keeps its answer.
+    /// Raises an elastica to the whole stiffness, refines it and stores its answer.
     pub(super) fn accept_elastica(&mut self, mut found: Elastica) -> Option<Cost> {
         if !found.stiffen(&self.problem) {
             return None;
@@ -75,8 +76,8 @@ impl FemModel {
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
-    /// A warning of the bend of a stiff cable that the mesh leaves out, where that is more than was
-    /// asked for.
+    /// A warning of the bending of a stiff cable that the mesh neglects, if it exceeds the
+    /// tolerance.
     pub(super) fn coarse_bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -91,8 +92,7 @@ impl FemModel {
         Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
-    /// A warning of the other equilibria of a stiff cable that is compressed: it may bow to another
-    /// side.
+    /// A warning of the other equilibria of a compressed stiff cable: it may bow to another side.
     pub(super) fn bow_warning(&self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -100,7 +100,7 @@ impl FemModel {
         let free = || {
             let mut statics = self.statics.clone();
             if self.present == Part::Stepper || self.elastica_answer.is_some() {
-                // Without an answer it has no shapes, either.
+                // Without an answer it has no buckled shapes either.
                 let _ = statics.settle(&self.dragged);
             }
             statics.buckled_shapes()

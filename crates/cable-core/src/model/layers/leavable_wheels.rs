@@ -1,9 +1,9 @@
-//! The wheels of a cable are rounds that it may leave: where a model finds that it does not press
-//! on one, the cable goes on with a post in place of that wheel ([`StandingWheels`]).
+//! This layer lets a cable leave its wheels: if a model finds that the cable does not press on a
+//! wheel, that wheel is replaced by a post ([`StandingWheels`]).
 //!
-//! A post does to the cable what a wheel with the same friction does, as long as it presses on it;
-//! what it does is reported as the reaction of the pulley. The other wheels stay: a cable that
-//! slides far over them is let run by a wheel, and would have to be followed over a post.
+//! A post acts on the cable like a wheel with the same friction, as long as it presses on it; its
+//! force is reported as the reaction of the pulley. The other wheels stay, because a cable can
+//! slide far over a wheel, but has to be followed in small steps over a post.
 
 use std::sync::Arc;
 
@@ -26,18 +26,18 @@ pub struct LeavableWheels {
     settings: Settings,
     construct: Arc<Constructor>,
     inner: Box<dyn Mechanics>,
-    /// With the wheels as posts that the cable has left, which the inner model is of; None: it has
-    /// left none.
+    /// The problem of the inner model, with the wheels that the cable has left as posts; None if it
+    /// has left none.
     left: Option<Arc<WheelsAsPosts>>,
-    /// Places to which supports were led, m, and by what.
+    /// Places to which supports were moved, m, and by what.
     led: Vec<Option<SupportTarget>>,
     robot_pose: Option<RigidPose>,
 }
 
-/// A place to which a support was led, m.
+/// A place to which a support was moved, m.
 #[derive(Clone, Copy, Debug)]
 enum SupportTarget {
-    /// It is there.
+    /// The support is there.
     Dragged(Vec2),
     /// A hand holds it there by a spring.
     Pulled(Vec2),
@@ -76,8 +76,8 @@ impl LeavableWheels {
         }
     }
 
-    /// A model with some wheels as posts, led as this one is, in the given state (None: at the
-    /// route).
+    /// A model with some wheels as posts, with supports moved as in this one, in the given state
+    /// (None: along the route).
     fn built(
         &self,
         left: Option<&Arc<WheelsAsPosts>>,
@@ -103,12 +103,12 @@ impl LeavableWheels {
         Ok(this.inner)
     }
 
-    /// The same with another inner model, led nowhere.
+    /// The same layer with another inner model, without moved supports.
     fn empty(of: &Self, inner: Box<dyn Mechanics>) -> Self {
         Self::new(of.problem.clone(), of.wheels.clone(), of.settings, of.construct.clone(), inner)
     }
 
-    /// Returns whether a wheel that is a post goes clear of the cable to a place (m).
+    /// Returns whether a post moves to a place (m) clear of the cable.
     fn goes_clear(&self, support: usize, to: Vec2) -> bool {
         let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
         let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
@@ -117,8 +117,8 @@ impl LeavableWheels {
         state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
     }
 
-    /// A support is led. A wheel that was a post stays one where its way is clear of the cable;
-    /// else it is a wheel again, since posts stand still.
+    /// Moves a support. A wheel that was replaced by a post stays so if its path is clear of the
+    /// cable; else it becomes a wheel again, because posts stand still.
     fn lead(&mut self, support: usize, lead: SupportTarget) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
@@ -137,7 +137,7 @@ impl LeavableWheels {
         }
     }
 
-    /// Goes on with posts where the wheels were led; false where it cannot.
+    /// Moves the posts to the places of the wheels; false if that is impossible.
     fn move_posts(&mut self) -> bool {
         let replaced = self.replaced();
         let Some(posts) = self.posts(&replaced) else { return false };
@@ -151,8 +151,8 @@ impl LeavableWheels {
         self.left.as_ref().map_or_else(|| vec![false; self.problem.supports.len()], |left| left.replaced.clone())
     }
 
-    /// The wheels of which an error says that the cable leaves them, beside those that are posts
-    /// already; None where that is no other wheel, or none that may be left.
+    /// The wheels that are posts already and those that the cable leaves by an error; None if the
+    /// error names no other wheel that may be left.
     fn also_left(&self, mut replaced: Vec<bool>, error: &SolveError) -> Option<Vec<bool>> {
         let names = wheels_left_by(error);
         let before = replaced.clone();
@@ -164,7 +164,7 @@ impl LeavableWheels {
         (replaced != before).then_some(replaced)
     }
 
-    /// Some wheels as posts where they were led; None where a hand holds one by a spring.
+    /// Some wheels as posts at their present places; None if a hand holds one by a spring.
     fn posts(&self, replaced: &[bool]) -> Option<Arc<WheelsAsPosts>> {
         let places = self.led.iter().zip(replaced).map(|(lead, replaced)| match lead {
             Some(SupportTarget::Pulled(_)) if *replaced => Err(()),
@@ -174,9 +174,9 @@ impl LeavableWheels {
         self.wheels.as_posts(replaced, &places.collect::<Result<Vec<_>, ()>>().ok()?)
     }
 
-    /// Goes on, from a state (None: at the route), with posts for the wheels that the cable leaves
-    /// by an error, and by what comes after it; None where that leads nowhere, and nothing has
-    /// changed.
+    /// Continues from a state (None: along the route) with posts for the wheels that the cable
+    /// leaves by this error and by following ones; returns None, with nothing changed, if that
+    /// fails.
     fn run_on_posts(
         &mut self,
         error: &SolveError,
@@ -301,7 +301,7 @@ impl Layer for LeavableWheels {
             Ok(report) => return Ok(self.told(report)),
             Err(error) => error,
         };
-        // Posts stand still: a wheel that is drawn on its way is none.
+        // Posts stand still, so a moving wheel is not replaced.
         let standing = |this: &Self, replaced: &[bool]| {
             let led = replaced.iter().zip(&this.led).any(|(replaced, led)| *replaced && led.is_some());
             if led { None } else { this.posts(replaced) }

@@ -1,5 +1,5 @@
-//! A layer is a model around another one: it changes some of what goes in or comes out, and
-//! [`Layered`] passes everything else on.
+//! A layer is a model around another one: it changes some inputs or outputs, and [`Layered`] passes
+//! everything else on.
 //!
 //! | room | content |
 //! |---|---|
@@ -23,14 +23,14 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, ModelReason};
 use crate::state::State;
 
-/// The changes that a layer makes. A method that it leaves out asks the inner model, or changes
-/// nothing. Those that act return reports and errors of the inner model; `outer_report` and
-/// `outer_error` translate them.
+/// The changes that a layer makes. A method that it does not implement calls the inner model, or
+/// changes nothing. Methods that act return reports and errors of the inner model; `outer_report`
+/// and `outer_error` translate them.
 pub(in crate::model) trait Layer: Send + Sized + 'static {
     /// The inner model.
     fn inner(&self) -> &dyn Mechanics;
 
-    /// The inner model, to act on.
+    /// The inner model, mutably.
     fn inner_mut(&mut self) -> &mut dyn Mechanics;
 
     /// The same layer around another inner model.
@@ -39,7 +39,7 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
     /// The problem that the layer solves.
     fn problem(&self) -> &Arc<Problem>;
 
-    /// Takes down what has to be kept of the inner model after it acted.
+    /// Records data of the inner model after it acted.
     fn observe(&mut self) {}
 
     fn reason(&self) -> Option<&ModelReason> {
@@ -79,32 +79,32 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
         self.inner_mut().set_robot_pose(to);
     }
 
-    /// A time of the inner model, s.
+    /// Translates a time of the inner model, s.
     fn outer_time(&self, time_s: f64) -> f64 {
         time_s
     }
 
-    /// A state for the inner model.
+    /// Translates a state for the inner model.
     fn inner_state<'a>(&self, state: &'a State) -> Cow<'a, State> {
         Cow::Borrowed(state)
     }
 
-    /// A state of the inner model.
+    /// Translates a state of the inner model.
     fn outer_state(&self, state: State) -> State {
         state
     }
 
-    /// An answer of the inner model.
+    /// Translates an answer of the inner model.
     fn outer_solution(&self, answer: CableSolution) -> CableSolution {
         answer
     }
 
-    /// A report of the inner model.
+    /// Translates a report of the inner model.
     fn outer_report(&self, report: StepReport) -> StepReport {
         report
     }
 
-    /// An error of the inner model.
+    /// Translates an error of the inner model.
     fn outer_error(&self, error: SolveError) -> SolveError {
         error
     }

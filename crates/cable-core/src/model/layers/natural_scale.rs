@@ -1,8 +1,8 @@
-//! A similar copy brings a cable to the scale that models are made for ([`Similarity`]); this
-//! wrapper scales the answers back.
+//! This layer solves a similar copy of a cable at the scale that models are made for
+//! ([`Similarity`]), and scales the answers back.
 //!
-//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1
-//! to 100 m. Instead of making each of them a part of something, the whole scene is brought there.
+//! Barrier reach, elastic slip and gaps are absolute lengths in the solvers, tuned on cables of 1
+//! to 100 m. Instead of scaling each of them, the whole scene is scaled.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -17,7 +17,7 @@ use crate::scene::similarity::Similarity;
 use crate::solution::{CableSolution, ModelReason, Warning};
 use crate::state::State;
 
-/// Longest time of the copy taken in one step, s: every model takes that.
+/// Longest time of the copy in one step, s: every model can take such a step.
 const LONGEST_STEP_S: f64 = 30.0;
 
 /// A model of the similar copy of a cable.
@@ -52,8 +52,8 @@ impl ScaledModel {
     }
 }
 
-/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what
-/// has no unit stay.
+/// An answer with its lengths multiplied by `l`, its times by `t`, and its positions mapped by
+/// `place`. Forces and dimensionless values stay.
 fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) -> CableSolution {
     let put = |x: &mut f64, y: &mut f64| {
         let at = place(Vec2::new(*x, *y));
@@ -127,7 +127,7 @@ impl Layer for ScaledModel {
         &self.problem
     }
 
-    /// Takes down why the inner model is the one it is, and why another has no answer.
+    /// Records the reason for the inner model, and the reason why another has no answer.
     fn observe(&mut self) {
         self.refusal = self.inner.refusal().cloned().map(|e| self.outer_error(e));
         self.reason = self.inner.reason().cloned().map(|reason| match reason {

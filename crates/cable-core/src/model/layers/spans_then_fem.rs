@@ -1,12 +1,12 @@
 //! The switching model is what `auto` builds where a cable can touch something: `spans` while it is
 //! taut and slow, else `fem`.
 //!
-//! `spans` goes first. Where it loses the tension, cannot lay the cable, or finds no answer, `fem`
-//! continues from the last state with the friction that acts there ([`Mechanics::warm_start`]);
-//! with inertia it is always `fem`. A cable that is an obstacle to itself is answered at rest as if
-//! it could pass itself, and by `fem` where its strands then meet and once time runs. From time to
-//! time an answer of `fem` without inertia is offered back; `spans` takes it if its own answer
-//! there cannot be distinguished from it.
+//! `spans` goes first. If it loses the tension, cannot lay the cable, or finds no answer, `fem`
+//! continues from the last state with its friction ([`Mechanics::warm_start`]); with inertia `fem`
+//! is always used. A cable with self-contact is first solved at rest as if it could pass through
+//! itself, and by `fem` if its strands then meet or once time runs. From time to time an answer of
+//! `fem` without inertia is offered back; `spans` takes over if its own answer there is practically
+//! the same.
 
 use std::sync::Arc;
 
@@ -23,36 +23,36 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, ModelReason, Node, Warning};
 use crate::state::State;
 
-/// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more:
-/// not seen.
+/// Greatest displacement of the cable when it is handed back, the larger of a length (m) and a
+/// fraction of the cable: not visible.
 const MAX_MOVE: (f64, f64) = (1e-3, 1e-4);
-/// Greatest change of tension when it is handed back, of the greatest tension.
+/// Greatest change of tension when it is handed back, relative to the greatest tension.
 const MAX_TENSION_CHANGE: f64 = 1e-2;
-/// Answers of `fem` between two offers at first; each offer doubles it …
+/// First number of answers of `fem` between two offers; each offer doubles it.
 const FIRST_INTERVAL: usize = 1;
-/// … up to this.
+/// Greatest number of answers between two offers.
 const MAX_INTERVAL: usize = 8;
 
 /// Two models of one cable, one at a time.
 #[derive(Clone, Debug)]
 pub struct SwitchingModel {
     settings: Settings,
-    /// With the outline of the robot and contact with itself, of which `spans` knows nothing.
+    /// The problem with the robot's outline and self-contact, which `spans` does not model.
     problem: Arc<Problem>,
     spans: SpansModel,
-    /// Holds the present state where it is there.
+    /// It holds the present state if it exists.
     fem: Option<FemModel>,
-    /// State in which the cable was put, until it is known to rest or to move.
+    /// Adopted state of the cable, until it is known to rest or to move.
     adopted: Option<State>,
     dragged: Vec<Option<Vec2>>,
     /// True for those that a hand holds by a spring.
     pulled: Vec<bool>,
-    /// Pose to which the outline of the robot was led.
+    /// Pose to which the outline of the robot was moved.
     robot_pose: Option<RigidPose>,
     reason: Option<ModelReason>,
-    /// The reason why `spans` has no rest, where `fem` found one.
+    /// The reason why `spans` has no equilibrium, if `fem` found one.
     refusal: Option<SolveError>,
-    /// Answers until the next offer, and after that.
+    /// Number of answers until the next offer, and until the one after that.
     interval: [usize; 2],
     /// The most work of a search for an equilibrium or an advance, where that is bounded.
     max_work: Option<usize>,
@@ -61,8 +61,7 @@ pub struct SwitchingModel {
 impl SwitchingModel {
     /// Builds it at the route.
     ///
-    /// # Errors
-    /// `Unsupported` when the scene needs what `spans` never has.
+    /// # Errors `Unsupported` if the scene needs a feature that neither model has.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let dragged = vec![None; problem.supports.len()];
         let simpler = Problem::without_self_contact(Problem::without_outline(problem.clone()));
@@ -102,12 +101,12 @@ impl SwitchingModel {
         let answer = self.spans.solution();
         let is_buried = || self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes);
         if self.meets_robot(&answer) || meets_itself(&self.problem, &answer.nodes) || is_buried() {
-            // Found without knowing of the robot or of contact with itself, or no answer: laid
+            // The answer ignores the robot or self-contact, or there is none: the cable is laid
             // anew.
         } else if let Some(state) = &self.adopted {
             fem.set_state(state)?;
         } else if self.spans.has_equilibrium() {
-            // Dragged supports are where they came to, not yet where they are drawn.
+            // Dragged supports are at their present positions, not yet at their targets.
             for (k, at) in answer.supports.iter().enumerate().filter(|(k, _)| self.is_dragged(*k)) {
                 fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
             }
@@ -119,7 +118,7 @@ impl SwitchingModel {
         Ok(fem)
     }
 
-    /// `fem` at the route, the robot where it is.
+    /// `fem` along the route, with the robot at its pose.
     fn new_fem(&self) -> Result<FemModel, SolveError> {
         refuse_mobilised(Model::Fem, &self.problem)?;
         let mut fem = FemModel::new(self.problem.clone(), self.settings)?;
@@ -133,7 +132,8 @@ impl SwitchingModel {
         Ok(fem)
     }
 
-    /// The same, supports drawn to where they are to be, and the cable put where it was adopted.
+    /// As [`Self::new_fem`], with supports moved to their targets, and the cable in the adopted
+    /// state.
     fn new_fem_with_hands(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         if let Some(state) = &self.adopted {
@@ -143,12 +143,12 @@ impl SwitchingModel {
         Ok(fem)
     }
 
-    /// Returns whether the cable is in touch with the robot, or in its place.
+    /// Returns whether the cable touches the robot, or overlaps it.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
         meets_outline(&self.problem, self.robot_pose, answer)
     }
 
-    /// Tells `fem` where supports are drawn to, and by what.
+    /// Passes the targets of dragged supports to `fem`.
     fn draw_supports(&self, fem: &mut FemModel) {
         for (k, (target, pulled)) in self.dragged.iter().zip(&self.pulled).enumerate() {
             match target {
@@ -163,7 +163,7 @@ impl SwitchingModel {
         self.dragged.get(support).is_some_and(Option::is_some)
     }
 
-    /// Offers an answer of `fem` to `spans`; returns what there is to say of it there.
+    /// Offers an answer of `fem` to `spans`; returns a warning about it.
     fn try_switch_back(&mut self) -> Option<Warning> {
         let fem = self.fem.as_ref()?;
         self.interval[0] = self.interval[0].saturating_sub(1);
@@ -190,7 +190,7 @@ impl SwitchingModel {
     }
 }
 
-/// Returns whether two answers of a cable are the same to the eye.
+/// Returns whether two answers of a cable are visibly the same.
 fn indistinguishable(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
     let greatest = a.nodes.iter().map(|n| n.tension_n).fold(0.0, |m, t| if t > m { t } else { m });
     let seen = MAX_MOVE.0.max(MAX_MOVE.1 * problem.length);
@@ -296,7 +296,7 @@ impl Mechanics for SwitchingModel {
             return self.fem(Some(ModelReason::Inertia))?.advance_gauged(dt_s, inertia, gauge);
         }
         let end_s = self.time_s() + dt_s;
-        // On its way a strand may pass another, which no instant shows.
+        // In motion a strand may pass through another between two instants.
         let mut why = self.problem.cable.self_contact.then_some(ModelReason::SelfContact);
         if self.fem.is_none() && why.is_none() {
             let before = self.robot_pose.map(|_| self.spans.clone());
@@ -395,8 +395,8 @@ impl Mechanics for SwitchingModel {
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {
-        // Refused as it is, the answer is no place to go on from: the cable is laid anew where it
-        // was, or where it was put.
+        // After a refusal the answer cannot be continued: the cable is laid anew where it was, or
+        // in the adopted state.
         if let Some(fem) = &mut self.fem {
             return fem.fall_back(why);
         }

@@ -14,19 +14,19 @@
 //! | `equilibrium` | equilibria, steps without inertia, and estimates of their errors |
 //! | `results`, `corner_error` | the answer, and a bound of the error of tension beyond a corner |
 //!
-//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of
-//! second order in the element; at equilibrium and without inertia it is estimated, in motion only
-//! for corners.
+//! In the leapfrog scheme velocities are half a sub-step behind positions. The discretisation error
+//! is of second order in the element; at equilibrium and without inertia it is estimated, in motion
+//! only for corners.
 //!
 //! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and
 //! the damping ratio ζ of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin,
 //! Physically based modeling, SIGGRAPH course notes, 1997, derive the undamped part). Equilibria
 //! are found by Newton's method on the energy of springs, contacts and friction. They start from
-//! the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough floor
-//! allows is then the same for both models; what holds there is this model's own balance of forces.
+//! the equilibrium of [`crate::model::fem`] if there is one, so both models select the same of the
+//! many equilibria that a rough floor allows; the balance of forces is this model's own.
 
-/// Declares a part of the model whose `clone_from` goes through its fields, into the memory that a
-/// copy already has: a step keeps the state before it without new memory.
+/// Declares a part of the model whose `clone_from` copies field by field into the memory of the
+/// copy, so that a step stores the state before it without allocation.
 macro_rules! part {
     ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $kind:ty,)+ }) => {
         $(#[$doc])*
@@ -82,7 +82,7 @@ use preview_choice::is_preview;
 
 pub use settings::{MeshTuning, PreviewTuning, SubStepTuning, Tuning};
 
-/// The model's mechanics of one cable.
+/// The `mass-spring` model of one cable.
 #[derive(Clone, Debug)]
 pub struct MassSpringModel {
     settings: Settings,
@@ -96,7 +96,8 @@ pub struct MassSpringModel {
 
 /// Longest step, s: a longer one is a mistake in the caller's clock.
 const MAX_STEP_S: f64 = 60.0;
-/// Nodes of which one is farther from a point by less than this, of the even length, are as near.
+/// Difference of distances up to which two nodes are equally near to a point, as a fraction of the
+/// even length.
 const NEAREST_TOLERANCE: f64 = 1e-6;
 
 fn unsupported(feature: Unsupported) -> SolveError {
@@ -144,7 +145,7 @@ impl FemEquilibrium {
 
 /// This block makes models: along the route, on a shape, and in the equilibrium of `fem`.
 impl MassSpringModel {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
     /// # Errors
     /// `Unsupported` when the scene needs a feature that the model lacks.
@@ -152,7 +153,7 @@ impl MassSpringModel {
         Self::with_tuning(problem, settings, Arc::new(Tuning::default()))
     }
 
-    /// The same with other tuned constants.
+    /// As [`Self::new`], with other tuned constants.
     ///
     /// # Errors
     /// `Unsupported` when the scene needs a feature that the model lacks.
@@ -176,8 +177,8 @@ impl MassSpringModel {
         Self { settings, chain, estimate: Estimate::default(), has_shape: false, rollback: Rollback::default() }
     }
 
-    /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has
-    /// no place for it.
+    /// The same cable along a shape, with its supports at given arc lengths (m); None if the shape
+    /// does not fit it.
     fn on_shape(&self, shape: &State, supports: &[f64]) -> Option<Self> {
         let (problem, tuning) = (self.chain.mesh.problem.clone(), self.chain.mesh.tuning.clone());
         let segments = segments(&problem, &self.settings, &tuning);
@@ -248,7 +249,7 @@ impl MassSpringModel {
         problem
     }
 
-    /// Comes to rest; on an error nothing has changed.
+    /// Finds the equilibrium without `fem`; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
         self.chain.report.account = Account::default();
         let before = self.clone();
@@ -275,7 +276,8 @@ impl MassSpringModel {
                     let at = self.chain.drives.targets[k].unwrap_or(at);
                     let off = |j: &usize| (shape.position_m[*j] - at).norm();
                     let later = (0..shape.position_m.len()).filter(|&j| shape.arc_length_m[j] * scale > least);
-                    // Of several nodes as near the middle one counts: they are those on the wheel.
+                    // Of several equally near nodes the middle one counts: they are those on the
+                    // wheel.
                     let nearest = later.clone().map(|j| off(&j)).fold(f64::INFINITY, f64::min);
                     let near: Vec<usize> =
                         later.filter(|j| off(j) <= nearest + NEAREST_TOLERANCE * self.chain.mesh.even_length).collect();
@@ -300,7 +302,7 @@ impl MassSpringModel {
     }
 }
 
-/// Elements of a cable where they are even.
+/// Number of elements of a cable with even elements.
 fn segments(problem: &Problem, settings: &Settings, tuning: &Tuning) -> usize {
     settings.segments.or(problem.cable.segments).unwrap_or(tuning.mesh.segments).max(1)
 }
@@ -336,7 +338,7 @@ impl Mechanics for MassSpringModel {
                 tension::at_node(&self.chain.mesh, i)
             });
         }
-        // The model beside this one is not copied with each part of a step.
+        // The comparison model is not copied with each part of a step.
         let estimate = std::mem::take(&mut self.estimate);
         let settings = &self.settings;
         let done = transaction(&mut self.rollback, &mut self.chain, |chain| {

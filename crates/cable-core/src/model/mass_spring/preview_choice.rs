@@ -1,4 +1,4 @@
-//! A dynamic step is explicit, or a preview.
+//! This module decides whether a dynamic step is explicit or a preview.
 
 use crate::model::mass_spring::mesh::Mesh;
 use crate::model::settings::Stepping;
@@ -14,8 +14,8 @@ pub(in crate::model::mass_spring) fn is_preview(mesh: &Mesh, stepping: Stepping)
     match stepping {
         Stepping::Explicit => false,
         Stepping::Preview => true,
-        // This is asked of even elements: a short one beside a pulley comes and goes, and a run
-        // must keep its integrator.
+        // The test uses even elements: short ones beside a pulley come and go, and a run must keep
+        // its integrator.
         Stepping::Auto => {
             let wave_speed = (mesh.problem.axial_stiffness / mesh.problem.linear_density).sqrt();
             mesh.even_length / wave_speed * mesh.tuning.sub_step.max_per_frame < FRAME_S

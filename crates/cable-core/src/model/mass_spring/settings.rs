@@ -32,13 +32,13 @@ pub struct MeshTuning {
     /// Elements where neither scene nor settings give a number. Fewer is visibly angular, more
     /// makes sub-steps shorter and dearer.
     pub segments: usize,
-    /// Least distance between nodes, of the even length, for nodes of another model to be taken
-    /// over, and of a sliding support from its neighbours at the start. Smaller makes sub-steps
-    /// short, larger resamples shapes, whose elements then cut corners.
+    /// Least distance between nodes, in even lengths, with which nodes of another model are
+    /// adopted, and first distance of a sliding support from its neighbours. Smaller: short
+    /// sub-steps; larger: shapes are resampled, and their elements cut corners.
     pub min_spacing_lengths: f64,
-    /// Greatest part of the cable that the path to the last support gets at the start when it is
-    /// longer: the rest hangs, and the first balance decides. Smaller starts farther from a taut
-    /// balance, larger leaves a hanging end no element.
+    /// Greatest first fraction of the cable on the path to the last support if the path is longer
+    /// than the cable: the rest hangs, and the first equilibrium corrects it. Smaller: a start
+    /// farther from a taut equilibrium; larger: a hanging end gets no element.
     pub max_path_fraction: f64,
     /// Least damping ratio of the fastest axial mode. Smaller lets springs that go slack and taut
     /// near the stability limit pump energy into violent motion (without any, a cable dropped into
@@ -58,15 +58,16 @@ pub struct MeshTuning {
     /// cannot be removed. Smaller shortens the stable step, larger stops a support or load farther
     /// from the pulley.
     pub blocked_straight_lengths: f64,
-    /// Greatest sag of a new node, of half of the element that it halves. Smaller puts nodes on the
-    /// chord, larger takes the sag from slack, whose tension tells nothing.
+    /// Greatest sag of a new node, as a fraction of half of the element that it divides. Smaller:
+    /// nodes on the chord; larger: the sag is computed from the meaningless tension of slack
+    /// elements.
     pub max_sag_lengths: f64,
     /// Greatest change of rest length that is spread over a stretch beside a pulley, of the rest of
     /// it. Smaller lets tension jump where nodes change, larger moves nodes along the material.
     pub max_spread_fraction: f64,
-    /// Tension over the weight of half an element, below which the direction of the force at a
-    /// pulley is taken from the element. Smaller takes the direction of slack, larger neglects
-    /// weight.
+    /// Ratio of the tension to the weight of half an element below which the direction of the force
+    /// at a pulley is that of the element. Smaller: the direction of slack cable is used; larger:
+    /// weight is neglected.
     pub direction_tension_ratio: f64,
 }
 
@@ -91,9 +92,9 @@ impl Default for MeshTuning {
 /// Constants of explicit sub-steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SubStepTuning {
-    /// Sub-steps in a display frame of 1/60 s beyond which a step is a preview, unless asked
-    /// otherwise; at 100 elements 1000 of them take some 100 ms a simulated second. Smaller
-    /// previews cables that could be computed, larger lets the window fall behind.
+    /// Number of sub-steps in a display frame of 1/60 s beyond which a step is a preview by
+    /// default; at 100 elements 1000 of them take some 100 ms a simulated second. Smaller previews
+    /// cables that could be computed, larger lets the window fall behind.
     pub max_per_frame: f64,
     /// Part of the stable sub-step that is used. Smaller is slower, larger is unstable as elements
     /// stretch.
@@ -138,11 +139,11 @@ impl Default for ImpactTuning {
 /// Limits of a motion that runs away.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunawayTuning {
-    /// Greatest kinetic energy, of that which supports, loads and stretch can have given. Smaller
-    /// damps real whips, larger shows an explosion first.
+    /// Greatest ratio of the kinetic energy to the energy that supports, loads and stretch can have
+    /// given. Smaller damps real whips, larger shows an explosion first.
     pub max_energy_ratio: f64,
-    /// Part of the velocities that a sub-step with more energy leaves: 0.7 takes a tenfold energy
-    /// back in seven of them. Smaller stops the cable at once, larger lets the energy grow on.
+    /// Factor of velocities after a sub-step with more energy: 0.7 removes a tenfold energy in
+    /// seven sub-steps. Smaller stops the cable at once, larger lets the energy grow on.
     pub brake_factor: f64,
 }
 
@@ -166,11 +167,12 @@ pub struct PreviewTuning {
     /// Times that springs and contacts are solved in turns in a sub-step. Fewer let contacts of a
     /// fine mesh stretch it, more cost where much strikes at once.
     pub max_contact_passes: usize,
-    /// Change of a contact's place, in elements, of the greatest strain, that is none. Larger lets
-    /// tensions beside contacts tremble, smaller takes more passes.
+    /// Change of a contact's position that is neglected, in elements times the greatest strain.
+    /// Larger: tensions beside contacts tremble; smaller: more passes.
     pub contact_strain_fraction: f64,
-    /// Rounds in which elements that would push are left out, and pulleys hold or slide. In most
-    /// sub-steps one suffices; the last stands as it is, with an error of one sub-step.
+    /// Rounds that leave out compressed elements and decide between stick and slip at pulleys. In
+    /// most sub-steps one suffices; the last round is accepted as it is, with an error of one
+    /// sub-step.
     pub max_rounds: usize,
 }
 
@@ -190,15 +192,15 @@ impl Default for PreviewTuning {
 /// Constants of contact and friction at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactTuning {
-    /// Gap at which a contact begins to push, m; the whole load on one contact closes it. Smaller
+    /// Gap at which the contact force begins, m; the whole load on one contact closes it. Smaller
     /// is stiffer and takes more steps, larger lifts the cable.
     pub offset_m: f64,
     /// Distance to an obstacle, m, within which the cable of the first shape lies on it: the
     /// barrier of `fem` keeps a millimetre. Smaller lets the cable slide while it falls that far,
     /// larger anchors stretches that hang beside.
     pub first_contact_m: f64,
-    /// Sliding at which friction acts whole, m. Smaller takes more steps; larger creeps, and near a
-    /// supported end, where a stiff cable moves by less, friction acts only in part.
+    /// Slide at which friction is fully mobilised, m. Smaller: more steps; larger: creep, and near
+    /// a supported end, where a stiff cable moves by less, friction is not fully mobilised.
     pub slip_m: f64,
     /// Distance along the material, in even lengths, within which a contact takes over an anchor.
     /// Smaller forgets friction where contacts move along the cable, larger takes the anchor of a
@@ -207,8 +209,8 @@ pub struct ContactTuning {
     /// Part of the greatest friction from which on a contact counts as sliding. Smaller reports
     /// sticking contacts as sliding, larger the reverse.
     pub slip_fraction: f64,
-    /// Slide through a pulley at which its friction acts whole, m. Smaller takes more steps, larger
-    /// creeps.
+    /// Slide through a pulley at which its friction is fully mobilised, m. Smaller: more steps;
+    /// larger: creep.
     pub pulley_slip_m: f64,
 }
 
@@ -231,7 +233,8 @@ pub struct NewtonTuning {
     /// Unbalanced force at equilibrium in the air, of the force scale. Smaller is hindered by
     /// round-off, larger shows in the reactions.
     pub residual: f64,
-    /// The same where the cable can touch an obstacle: contacts that come and go leave more.
+    /// The same tolerance for a cable that can touch an obstacle: contacts that come and go leave
+    /// more.
     pub touching_residual: f64,
     /// Factor by which the stiffness that elements have from their first tension fades in each
     /// step. (Bars of `fem` are shorter by their sag, which is more than a stiff spring stretches,
@@ -324,8 +327,8 @@ pub struct EstimateTuning {
     /// Least turn of an obstacle, rad: the nodes of a cable on a flat floor differ by less. Smaller
     /// finds corners on floors, larger overlooks them.
     pub min_turn_rad: f64,
-    /// Greatest angle of which the error is stated, rad (1.4 is 80°): the tangent of a larger one
-    /// tells no more than that nothing is known. Smaller states too small errors at sharp corners.
+    /// Greatest angle used in the error bound, rad (1.4 is 80°): for larger ones the bound would
+    /// grow without meaning. Smaller: too small errors at sharp corners.
     pub max_turn_rad: f64,
 }
 

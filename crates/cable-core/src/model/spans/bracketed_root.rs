@@ -1,16 +1,18 @@
-//! This method finds the root of a function of one variable that is bracketed and has a slope.
+//! This method finds the bracketed root of a function of one variable with a known derivative.
 
-/// Roots are found to this part of the interval searched: rounding.
+/// Accuracy of a root, as a fraction of the searched interval (round-off).
 const ROOT: f64 = 1e-15;
-/// Differences of tension that are rounding, of the tension. Smaller: where old and new tension run
-/// alike the search halves on through rounding. Larger: material is off by this part of the strain.
+/// Relative difference of tensions that counts as round-off. Smaller: where old and new tension
+/// nearly coincide the search bisects within round-off. Larger: the material is off by this
+/// fraction of the strain.
 pub(in crate::model::spans) const TENSION_ROUNDING: f64 = 1e-14;
-/// Rounds of such a search at most: halving alone takes 52.
+/// Maximum number of rounds of such a search: bisection alone takes 52.
 const MAX_ROUNDS: usize = 100;
 
-/// Finds the root at which f falls from above zero at `a` to zero or below at `b`: Newton's method
-/// from the secant, kept inside what brackets the root. `f`: value and slope; `floor`: a value that
-/// is rounding; the values at a and b and a place near the root where they are known.
+/// Finds the root at which f falls from above zero at `a` to zero or below at `b`, by Newton's
+/// method from the secant, kept inside the bracket. `f` returns value and derivative; `floor` is a
+/// value that counts as round-off. The values at a and b and a place near the root are given if
+/// known.
 pub(in crate::model::spans) fn crossing(
     a: f64,
     b: f64,
@@ -40,7 +42,8 @@ pub(in crate::model::spans) fn crossing(
         }
         let next = x - value / slope;
         let inside = (next - x0) * (next - x1) < 0.0;
-        // A step that does not halve the value is not near enough for Newton.
+        // If a step does not halve the value, Newton's method is not yet in its region of
+        // convergence.
         let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
         before = value.abs();
         if (step - x).abs() <= rounding {

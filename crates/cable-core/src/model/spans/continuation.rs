@@ -1,8 +1,8 @@
 //! The continuation follows an equilibrium through time, and halves load steps that fail.
 //!
-//! A step solves each section for the new supports and loads, and checks the answer. A way to an
-//! instant is made of such steps ([`CableEquilibrium::advance_load`]). Where no equilibrium near by
-//! leads on, the cable slides under a drag to the next one that holds it.
+//! A step solves each section for the new supports and loads, and checks the answer. The path to an
+//! instant consists of such steps ([`CableEquilibrium::advance_load`]). If no nearby equilibrium
+//! continues the path, the cable slides under a drag to the next one that holds it.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
@@ -15,44 +15,44 @@ use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSe
 use crate::model::spans::section_layout::{SectionLayout, place_ends};
 use crate::model::spans::slack::{self, LooseShapes};
 
-/// A force that differs by less than this part is the same.
+/// Relative difference below which two forces are the same.
 const FORCE_TOLERANCE: f64 = 1e-9;
 
-/// Factor of the drag on a cable that runs away after a step that was solved … Smaller: the next
+/// Factor of the drag on a cable that runs away, after a step that was solved. Smaller: the next
 /// step fails more often; larger: more steps until the cable rests without a drag. A choice, tuned
 /// on no campaign, as are the two below.
 const DRAG_DECREASE: f64 = 0.25;
-/// … and after one that was solved only when the drag had been raised. Smaller and larger: as
-/// above.
+/// Factor of the drag after a step that was solved only after the drag had been raised. Smaller and
+/// larger: as above.
 const DRAG_DECREASE_AFTER_RAISE: f64 = 0.5;
-/// Factor of the drag after a step that failed. Smaller: more steps fail; larger: more follow until
-/// it has faded.
+/// Factor of the drag after a step that failed. Smaller: more steps fail; larger: more steps follow
+/// until it has faded.
 const DRAG_INCREASE: f64 = 8.0;
 
-/// Part of the way at which a step goes to its end: rounding.
+/// Factor that lets a step within round-off of the end of the path go to the end.
 const END_ROUNDING: f64 = 1.000_001;
 
-/// Cost of a step, and what happened in it.
+/// Cost and events of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct StepStats {
     pub solved: Converged,
-    /// Times a step was halved.
+    /// Number of halvings.
     pub halvings: usize,
-    /// Times the cable ran away from where it was to another place that holds it.
+    /// Number of times that the cable ran away to another equilibrium.
     pub runaways: usize,
-    /// True if the equilibrium was found without friction, which held it from then on.
+    /// True if the equilibrium was found without friction, and friction holds it since then.
     pub found_without_friction: bool,
-    /// Friction that contacts would have had in the step in which they came down, in parts of the
+    /// Friction that contacts lacked in the step in which they came down, as a fraction of the
     /// force there.
     pub missing_friction: f64,
 }
 
-/// The end of a continuation that did not come to its instant.
+/// The result of a continuation that did not reach its instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct AdvanceFailure {
     /// The reason why it ended.
     pub failure: Failure,
-    /// The part of the way that was gone.
+    /// The completed fraction of the path.
     pub done: f64,
 }
 
@@ -63,7 +63,7 @@ impl From<AdvanceFailure> for Failure {
 }
 
 impl CableEquilibrium {
-    /// One step to an instant; on an error nothing has changed.
+    /// Takes one step to an instant; on an error nothing has changed.
     pub fn step(
         &mut self,
         layout: &SectionLayout,
@@ -73,7 +73,7 @@ impl CableEquilibrium {
         self.step_from(layout, to, &[], workspace)
     }
 
-    /// One step to an instant. `routes` are the shapes of the sections from which a first
+    /// Takes one step to an instant. `routes` are the shapes of the sections from which a first
     /// equilibrium is sought, else empty.
     pub(super) fn step_from(
         &mut self,
@@ -103,15 +103,15 @@ impl CableEquilibrium {
         Ok(taken)
     }
 
-    /// Goes back to where the last step began.
+    /// Restores the start of the last step.
     fn undo(&mut self, layout: &SectionLayout, workspace: &Workspace) {
         self.sections.clone_from(&workspace.before);
         self.instant.clone_from(&workspace.instants[0]);
         layout.set_context(&mut self.context, &self.instant);
     }
 
-    /// Solves one section for the present instant; on an error it is where it was. `route` is the
-    /// shape that a first equilibrium is sought from.
+    /// Solves one section for the present instant; on an error it is unchanged. `route` is the
+    /// shape from which a first equilibrium is sought.
     fn solve_section(
         &mut self,
         layout: &SectionLayout,
@@ -129,7 +129,7 @@ impl CableEquilibrium {
         found
     }
 
-    /// As [`Self::solve_section`]; on an error the section is anywhere.
+    /// As [`Self::solve_section`]; on an error the section is in an undefined state.
     fn solve_section_from(
         &mut self,
         layout: &SectionLayout,
@@ -152,7 +152,7 @@ impl CableEquilibrium {
                 c.ends.place[1] = c.ends.place[0];
             }
             c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
-            // Contacts that route down in this step rub from now on.
+            // Contacts that came down in this step have friction from now on.
             if c.smooth && route.is_none() {
                 c.smooth = false;
                 c.mode = if self.context.curves[c.curve].friction > 0.0 { Mode::Stick } else { c.mode };
@@ -166,9 +166,9 @@ impl CableEquilibrium {
         Ok(taken)
     }
 
-    /// Finds the equilibrium of one section: from its shape with the predicted slip; else from
-    /// where each span by itself would be; else with the spans of least tension empty, as they may
-    /// have lost it.
+    /// Finds the equilibrium of one section: from its shape with the predicted slip; else from the
+    /// solution of each span by itself; else with the spans of least tension turned into pockets,
+    /// because they may have lost their tension.
     fn find_section_equilibrium(
         &mut self,
         layout: &SectionLayout,
@@ -201,7 +201,8 @@ impl CableEquilibrium {
             }
         }
         if found.is_err() {
-            // Of the spans with hardly any tension left first the least, then the two least …
+            // Of the spans with hardly any tension left, first the one with the least is tried,
+            // then the two least …
             let mut loose = Vec::new();
             slack_pocket::candidates(start, &self.context, &mut loose);
             for n in 1..=loose.len().min(layout.settings.continuation.max_pockets) {
@@ -219,7 +220,7 @@ impl CableEquilibrium {
         found
     }
 
-    /// Returns an error if a section has passed through a corner since it was `start`.
+    /// Returns an error if a section has passed through a corner since the shape `start`.
     fn refuse_passing(
         &mut self,
         layout: &SectionLayout,
@@ -227,9 +228,8 @@ impl CableEquilibrium {
         start: &CableSection,
         workspace: &mut Workspace,
     ) -> Result<(), Failure> {
-        // The shape before the step is drawn with the load and the lengths of before: with those of
-        // after it spans of a cable that is let out or loaded in this step would end beside their
-        // contacts.
+        // The shape before the step is computed with the old load and lengths: with the new ones,
+        // spans of a cable that is paid out or loaded in this step would end beside their contacts.
         let was = &workspace.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
@@ -251,8 +251,8 @@ impl CableEquilibrium {
         }
     }
 
-    /// Lays a section that lies loose anew while its supports stay where they are. Supports that
-    /// move draw its folds over the ground, and the force for that is not modelled.
+    /// Lays a loose section anew while its supports stay where they are. Moving supports would drag
+    /// its folds over the ground, and the force for that is not modelled.
     fn lay_loose_again(&mut self, layout: &SectionLayout, k: usize) -> Result<StepStats, Failure> {
         let found = slack::loose_section(layout, k, &self.context, &self.instant, LooseShapes::AnyTension);
         let section = &mut self.sections[k];
@@ -263,24 +263,23 @@ impl CableEquilibrium {
         Ok(StepStats::default())
     }
 
-    /// Length of the material that lies loose and of the ground it lies on, m; None where none
-    /// does.
+    /// Length of the loose material and of the ground on which it lies, m; None if there is none.
     pub fn loose_lengths(&self) -> Option<[f64; 2]> {
         let lengths = self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.context));
         lengths.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
-    /// The most that friction can hold of loose cable, N.
+    /// Greatest friction force on loose cable, N.
     pub fn friction_of_loose(&self) -> f64 {
         self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.context)).sum()
     }
 
-    /// Goes to an instant that no balance near by leads to: the cable slides under a drag that is
-    /// taken away as it comes to rest.
+    /// Advances to an instant that no nearby equilibrium leads to: the cable slides under a drag
+    /// that is reduced as it comes to rest.
     ///
-    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered
-    /// as far as it goes (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J.
-    /// Numer. Anal. 35, 1998).
+    /// Each step is one of implicit Euler for η ds/dt = T₂ − T₁, in which the energy falls; η is
+    /// lowered as far as possible (pseudo-transient continuation: C. T. Kelley and D. E. Keyes,
+    /// SIAM J. Numer. Anal. 35, 1998).
     fn pseudo_transient_continuation(
         &mut self,
         layout: &SectionLayout,
@@ -324,8 +323,8 @@ impl CableEquilibrium {
         Err(pushed.unwrap_or(Failure::ContactCycling { s: 0.0 }))
     }
 
-    /// The failure that explains best why a step was not taken: of the step itself, or of the cable
-    /// held back by a drag, where that would have to push.
+    /// The failure that explains best why a step was not taken: that of the step itself, or that of
+    /// the cable under a drag if it would be compressed.
     fn failure_to_report(&self, step: Failure, held_back: Failure) -> Failure {
         let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::ContactCycling { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
@@ -336,9 +335,9 @@ impl CableEquilibrium {
         }
     }
 
-    /// Gives hardly any tension to a cable that lies loose when it begins to be drawn, as only a
-    /// cable in tension can be followed: with a free end along its route; held at both ends and
-    /// drawn over crests, with what is over in a kink.
+    /// Gives a loose cable a very small tension when it begins to be drawn, because only a cable in
+    /// tension can be followed: with a free end along its route; held at both ends and drawn over
+    /// crests, with the surplus in a kink.
     fn take_up_slack(&mut self, layout: &SectionLayout, to: &BoundaryConditions, workspace: &mut Workspace) {
         if self.loose_lengths().is_none() || self.instant.places == to.places {
             return;
@@ -361,8 +360,8 @@ impl CableEquilibrium {
         }
     }
 
-    /// Goes to an instant in steps, the first of which is this part of the way. One that fails is
-    /// halved.
+    /// Advances to an instant in steps; the first one is the fraction `first` of the path. A failed
+    /// step is halved.
     pub fn advance_load(
         &mut self,
         layout: &SectionLayout,
@@ -380,8 +379,8 @@ impl CableEquilibrium {
         found
     }
 
-    /// As [`Self::advance_load`], with the instants of both ends, and memory for those between
-    /// them.
+    /// As [`Self::advance_load`], with the instants of both ends, and working memory for those
+    /// between them.
     fn advance_load_from(
         &mut self,
         layout: &SectionLayout,
@@ -394,16 +393,17 @@ impl CableEquilibrium {
         let tuned = &layout.settings.continuation;
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
-        // Halvings of steps shorter than that with which a cable that runs away is followed.
+        // This counts halvings of steps shorter than those with which a cable that runs away is
+        // followed.
         let mut short_halvings: u32 = 0;
-        // A history asks for short steps where a contact comes down; the way to a first equilibrium
+        // A history needs short steps when a contact comes down; the path to a first equilibrium
         // does not. `whole` is the step that was solved before it was shortened for that.
         let (mut shortens, mut whole) = (first >= 1.0, None);
         while done < 1.0 {
             let next = if done + END_ROUNDING * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let failure = match self.step(layout, at, workspace) {
-                // A contact has no friction in the step in which it comes down, so that step has to
+                // A contact has no friction in the step in which it comes down, so that step must
                 // be short.
                 Ok(t)
                     if shortens
@@ -425,7 +425,7 @@ impl CableEquilibrium {
                     }
                     continue;
                 }
-                // The long step was solved: better that than none.
+                // The long step was solved, and it is better than none.
                 Err(_) if whole.is_some() => {
                     (shortens, step) = (false, whole.take().unwrap_or(step));
                     continue;
@@ -437,7 +437,7 @@ impl CableEquilibrium {
             step *= 0.5;
             taken.halvings += 1;
             if halvings > tuned.max_halvings || short_halvings > tuned.max_short_step_halvings {
-                // Nothing near by holds the cable: it runs away, to the next place that does.
+                // No nearby equilibrium holds the cable: it runs away to the next one that does.
                 let next =
                     if done + tuned.runaway_step_fraction < 1.0 { done + tuned.runaway_step_fraction } else { 1.0 };
                 at.between(from, to, next);
@@ -455,7 +455,7 @@ impl CableEquilibrium {
 }
 
 impl StepStats {
-    /// These and those of another step.
+    /// The sum of these statistics and those of another step.
     pub fn and(self, more: Self) -> Self {
         Self {
             solved: self.solved.and(more.solved),

@@ -2,28 +2,29 @@
 //! friction, without a mesh.
 //!
 //! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through
-//! which the material slides, and friction remembers in closed form. Each room has its derivation
-//! at its head.
+//! which the material slides, and friction remembers in closed form. Each module begins with its
+//! derivation.
 //!
 //! | room | what it holds |
 //! |---|---|
 //! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `section` | free spans and contacts in a row between two end conditions: the unknowns |
-//! | `section_layout` | how supports and loads cut a cable into sections |
+//! | `section_layout` | division of a cable into sections by supports and loads |
 //! | `newton`, `bracketed_root` | all unknowns of a section at once; the root of one variable |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
-//! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; slack elsewhere; how much friction a sliding cable lacks |
+//! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; other
+//! equilibria; the friction that a sliding cable lacks |
 //! | `continuation` | from one instant to the next, in steps that are halved |
-//! | `reversed` | the cable counted from its other end |
+//! | `reversal` | the cable counted from its other end |
 //! | `slack` | cable that lies without tension |
 //! | `acceptance` | checks of an equilibrium that do not use the solver |
 //! | `results` | the answer |
 //! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
-//! let go. A cable that loses its tension is said to have lost it, with the place.
+//! release the cable. If a cable loses its tension, the error tells the place.
 
 mod acceptance;
 mod boundary;
@@ -35,7 +36,7 @@ mod first_equilibrium;
 mod initial;
 mod newton;
 mod results;
-mod reversed;
+mod reversal;
 mod section;
 mod section_layout;
 mod settings;
@@ -50,7 +51,7 @@ use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
-use crate::model::spans::reversed::Reversal;
+use crate::model::spans::reversal::Reversal;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::tension_gauge::TensionGauge;
@@ -62,39 +63,38 @@ use crate::state::State;
 
 pub use crate::model::spans::settings::SpansSettings;
 
-/// Part of the greatest tension within which two histories left the same. Larger: a cable that is
-/// held by little friction is said to have one rest; smaller: rounding is said to be another
-/// history.
+/// Difference of tensions within which two histories agree, as a fraction of the greatest tension.
+/// Larger: a cable held by little friction is reported to have one equilibrium; smaller: round-off
+/// is reported as another history.
 const SAME_TENSION: f64 = 1e-9;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
-/// The model's mechanics of one cable.
+/// The `spans` model of one cable.
 #[derive(Clone, Debug)]
 pub struct SpansModel {
     problem: Arc<Problem>,
     /// True if other histories are searched.
     histories: bool,
-    /// True if a cable that is too long to rest in tension is laid loose at once.
+    /// True if a cable too long to rest in tension is laid loose at once.
     lays_loose: bool,
-    /// The cable as it is laid: counted from either end.
+    /// The layout of the cable, counted from either end.
     layout: SectionLayout,
     time_s: f64,
-    /// In the order of the layout.
+    /// Hand-set support positions (m) in the order of the layout.
     dragged: Vec<Option<Vec2>>,
     cable_equilibrium: Option<CableEquilibrium>,
     workspace: Workspace,
-    /// The start and the goal of a step, and a part of it.
+    /// The start and the goal of a step, and an instant between them.
     instants: [BoundaryConditions; 3],
-    /// The report shown while there is no cable equilibrium.
+    /// The report while there is no cable equilibrium.
     shown: Report,
 }
 
 impl SpansModel {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
-    /// # Errors
-    /// `Unsupported` when the scene needs what the model lacks.
+    /// # Errors `Unsupported` if the scene needs a feature that the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         Self::with_settings(problem, settings, Arc::default())
     }
@@ -108,7 +108,7 @@ impl SpansModel {
         settings: Settings,
         tuned: Arc<SpansSettings>,
     ) -> Result<Self, SolveError> {
-        let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
+        let from = if reversal::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
         let layout = counted(&problem, from, tuned)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
@@ -144,19 +144,18 @@ impl SpansModel {
         })
     }
 
-    /// Seeks a rest with tension, and slack in kinks, also where the cable is too long to rest in
-    /// tension alone: for a model that goes on from there.
+    /// Seeks an equilibrium with tension, and slack in kinks, even for a cable too long to rest in
+    /// tension alone: for a model that continues from it.
     pub(super) fn seek_tension(&mut self) {
         self.lays_loose = false;
     }
 
-    /// True if the cable that was found lies without tension.
+    /// True if cable of the equilibrium lies without tension.
     pub(super) fn lies_loose(&self) -> bool {
         self.cable_equilibrium.as_ref().is_some_and(|n| n.loose_lengths().is_some())
     }
 
-    /// Leaves an equilibrium that runs away at the least push for a stable one; a warning where it
-    /// leads to none.
+    /// Leaves an unstable equilibrium for a stable one; returns a warning if it leads to none.
     pub(super) fn leave_unstable(&mut self) -> Option<Warning> {
         let cable_equilibrium = self.cable_equilibrium.as_mut()?;
         let instant = cable_equilibrium.instant.clone();
@@ -164,7 +163,7 @@ impl SpansModel {
         left.is_err().then(|| self.warning(WarningCause::Unstable))
     }
 
-    /// True if a resting place has been found.
+    /// True if an equilibrium has been found.
     pub(super) fn has_equilibrium(&self) -> bool {
         self.cable_equilibrium.is_some()
     }
@@ -185,8 +184,8 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    /// A failure as an error: a loss of tension where the last state found, `stopped` or the
-    /// present one, shows one.
+    /// A failure as an error: a loss of tension if the last state, `stopped` or the present one,
+    /// shows one.
     fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
         if let Some(cable_equilibrium) = stopped.or(self.cable_equilibrium.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
@@ -198,19 +197,19 @@ impl SpansModel {
         self.plain_error(failure)
     }
 
-    /// A failure of the layout in the words everyone uses.
+    /// A failure of the layout as an error for the user.
     fn plain_error(&self, failure: Failure) -> SolveError {
         error_of(&self.problem, if self.layout.is_reversed() { self.turned().failure(failure) } else { failure })
     }
 
-    /// The map from the layout's direction along the cable to the scene's, where they differ.
+    /// The map from the layout's direction along the cable to that of the scene.
     fn turned(&self) -> Reversal<'_> {
         Reversal { problem: &self.problem }
     }
 
-    /// Finds the first equilibrium: loose where the cable is too long for tension; else along the
-    /// route, counted from the cable's upper end; where none is found, counted from the other end;
-    /// else in heaps as the cable comes down.
+    /// Finds the first equilibrium: loose if the cable is too long for tension; else along the
+    /// route, counted from the cable's upper end; else counted from the other end; else in heaps
+    /// where the cable comes down.
     fn find_first_equilibrium(
         &mut self,
         instant: &mut BoundaryConditions,
@@ -260,23 +259,23 @@ impl SpansModel {
         }
     }
 
-    /// Other histories of the cable, drawn towards either end or laid down loose, and what they
-    /// would have left.
+    /// The tensions that other histories of the cable would have left: drawn towards either end, or
+    /// laid down loose.
     ///
-    /// An equilibrium that was found without friction is not sought so again: the search would come
-    /// to the place from which the cable is drawn here. Where drawing it leads nowhere, the
-    /// frictionless shape that friction would hold is another one.
+    /// An equilibrium that was found without friction is not sought in this way again: the search
+    /// would come to the place from which the cable is drawn here. If drawing it leads to no
+    /// equilibrium, the frictionless shape that friction would hold is another one.
     fn histories(&self, start: SearchStart, workspace: &mut Workspace) -> Histories {
         let Some(cable_equilibrium) = &self.cable_equilibrium else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
         let tensions = |cable_equilibrium: &CableEquilibrium| self.tensions(cable_equilibrium);
         let laid = tensions(cable_equilibrium);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
-            let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
+            let drawn = if turned { reversal::mobilised(drawn) } else { drawn };
             let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.way(), workspace);
             found.or_else(|| self.along_route_mobilised(drawn, start, workspace)).map(|n| tensions(&n))
         });
-        // A cable that is longer than its way may as well lie loose.
+        // A cable that is longer than its way may also lie loose.
         let heap = CableEquilibrium::in_heaps(&self.layout, &cable_equilibrium.instant);
         let loose =
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
@@ -285,7 +284,7 @@ impl SpansModel {
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
         let greatest_n = laid[2];
-        // A range of one history says nothing about the others.
+        // A range of a single history tells nothing about others.
         if loose.is_none() && frictionless.is_none() && drawn.iter().all(Option::is_none) {
             return Histories::NotFound { greatest_n };
         }
@@ -307,7 +306,7 @@ impl SpansModel {
         if self.layout.is_reversed() { [end, start, greatest] } else { [start, end, greatest] }
     }
 
-    /// A warning of other balances of a cable that nothing rubs, where there are any.
+    /// A warning of other equilibria of a frictionless cable, if there are any.
     pub(super) fn other_equilibria(&mut self) -> Option<Warning> {
         if self.rubs() || self.lies_loose() {
             return None;
@@ -337,20 +336,20 @@ impl SpansModel {
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 
-    /// The cable as it rests without friction, held by friction from then on.
+    /// The equilibrium without friction, held by friction from then on.
     fn frictionless_held(&self, workspace: &mut Workspace) -> Option<CableEquilibrium> {
         let instant = self.cable_equilibrium.as_ref()?.instant.clone();
         let found = CableEquilibrium::along_route_from(&self.layout, &instant, SearchStart::Frictionless, workspace);
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 
-    /// True if some of the cable is held by nothing but friction.
+    /// True if some of the cable is held by friction alone.
     fn hangs_by_friction(&self) -> bool {
         self.layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none))
     }
 
-    /// True if the cable touches nothing that rubs, and drawn towards either end comes back to the
-    /// same tensions: then no history was found that leaves others.
+    /// True if the cable touches nothing with friction, and returns to the same tensions after
+    /// being drawn towards either end: then no history was found that leaves others.
     fn is_history_independent(&self, histories: &Histories) -> bool {
         let Histories::Mobilised {
             greatest_n, towards_start_n: Some(_), towards_end_n: Some(_), start_n, end_n, ..
@@ -373,11 +372,11 @@ impl SpansModel {
 fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<SectionLayout, SolveError> {
     match from {
         CableEnd::Start => SectionLayout::new(problem, from, settings),
-        CableEnd::End => SectionLayout::new(&Arc::new(reversed::problem(problem)), from, settings),
+        CableEnd::End => SectionLayout::new(&Arc::new(reversal::problem(problem)), from, settings),
     }
 }
 
-/// A failure in the words everyone uses.
+/// A failure as an error for the user.
 fn error_of(problem: &Problem, failure: Failure) -> SolveError {
     let name = |k: usize| problem.supports.get(k).map_or("", |s| s.name.as_str());
     match failure {
@@ -421,7 +420,7 @@ impl Mechanics for SpansModel {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut workspace = std::mem::take(&mut self.workspace);
-        // A cable that lies loose remembers nothing.
+        // A loose cable has no memory.
         self.cable_equilibrium = self.cable_equilibrium.take().filter(|n| n.loose_lengths().is_none());
         let found = match &mut self.cable_equilibrium {
             Some(cable_equilibrium) => cable_equilibrium
@@ -462,7 +461,7 @@ impl Mechanics for SpansModel {
         }
         let mobilised = self.layout.problem.cable.friction_mobilised;
         if let Some([material, ground]) = loose {
-            // Whatever the history, nothing but friction on what lies can hold more.
+            // For any history, only friction on the loose cable can hold more.
             let held_n = self.cable_equilibrium.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
             let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
             report.warnings.push(self.warning(cause));
@@ -512,7 +511,7 @@ impl Mechanics for SpansModel {
         for k in 1..=pieces as usize {
             let f = k as f64 / pieces;
             let time_s = if k == pieces as usize { end } else { start + dt_s * f };
-            // Where a hand drags a support it goes there straight, others follow their motion.
+            // Dragged supports move straight to their hands; others follow their motion.
             self.layout.instant(&self.dragged, time_s, &mut instant);
             for (i, dragged) in self.dragged.iter().enumerate() {
                 if dragged.is_some() {

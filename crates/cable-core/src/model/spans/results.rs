@@ -1,26 +1,26 @@
-//! This module reads the answer: nodes, forces on supports, forces on obstacles.
+//! This module makes the answer: nodes, forces on supports, forces on obstacles.
 
 use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::auxiliary_weight::remove_auxiliary_weight;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, Point};
 use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode, SegmentCursor, TensionProfile};
 use crate::model::spans::contact::{load_balance, slack_pocket};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SharedNodes, SupportReaction};
 
-/// Nodes on each stretch of an edge.
+/// Number of nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad:
-/// exact to 1e-11.
+/// accurate to 1e-11.
 const PANEL: f64 = 1.0;
-/// Longest one for which 3 points are as good, rad.
+/// Longest stretch for which 3 points are as accurate, rad.
 const THREE_POINT_ARC: f64 = 0.1;
 
-/// Everything a solution shows.
+/// All data of an answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct Report {
     pub nodes: SharedNodes,
@@ -28,7 +28,7 @@ pub(in crate::model::spans) struct Report {
     pub contacts: Vec<ContactReport>,
 }
 
-/// The answer of a cable equilibrium.
+/// Makes the report of a cable equilibrium.
 pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> Report {
     let context = &cable_equilibrium.context;
     let mut greatest = 0.0;
@@ -102,10 +102,10 @@ struct ContactStretch {
     /// Tension (N) and material (m) at its start.
     tension: f64,
     arc_length: f64,
-    /// Friction coefficient called upon.
+    /// Mobilised friction coefficient.
     mobilised: f64,
     cached_piece: CachedPiece,
-    /// Of the cable, m.
+    /// Radius of the cable, m.
     cable_radius: f64,
 }
 
@@ -128,7 +128,7 @@ impl ContactStretch {
         }
     }
 
-    /// Parts that nodes cut it into.
+    /// Number of parts into which nodes divide it.
     fn nodes(&self) -> usize {
         if self.cached_piece.turns() {
             arc_nodes::parts(self.cached_piece.at.stretch, self.to - self.from, self.cable_radius)
@@ -188,8 +188,8 @@ fn contact_nodes(nodes: &mut Nodes<'_>, contact_path: &ContactPath<'_>, c: &Cont
     push(&contact_path.place(c.ends.place[1]), (c.ends.tension[1], c.ends.material[1]));
 }
 
-/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
-/// what lies beside it along the ground.
+/// Adds the nodes of the load of contact j: a span pulls in its own direction, a contact beside it
+/// along the boundary.
 fn load_nodes(
     nodes: &mut Nodes<'_>,
     section: &CableSection,
@@ -201,7 +201,7 @@ fn load_nodes(
     let place = contact_path.place(c.ends.place[0]);
     let pulls = |side: usize| section.force_at_contact(context, j, side);
     for side in 0..2 {
-        // Beyond an end there is nothing: it has what comes to it.
+        // Beyond an end there is no cable, so it has the force on its inner side.
         let ends = (j + side == 0 || j + side == section.contacts.len()) && !section.has_span(j + side);
         let along = || place.tangent * c.ends.tension[side];
         let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
@@ -209,8 +209,8 @@ fn load_nodes(
     }
 }
 
-/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it
-/// turns.
+/// Normal force summed over a contact, its direction, the sum of the load along the cable, and the
+/// turn.
 fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64, Vec2, f64, f64) {
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
     for stretch in stretches {
@@ -264,7 +264,7 @@ fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &
 }
 
 /// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less
-/// the friction called upon, m N t.
+/// the mobilised friction m N t.
 fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<ContactSample> {
     let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
     for stretch in stretches {
@@ -286,21 +286,21 @@ fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<
     out
 }
 
-/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
-/// both ends leave over.
+/// The force of an obstacle on a contact, N: it balances the load there and the difference of the
+/// tensions at both ends.
 pub(in crate::model::spans) fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
     let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.place[side]).tangent * c.ends.tension[side]);
     before - after - contact_path.law.load * (c.ends.material[1] - c.ends.material[0])
 }
 
-/// The material that lies loose in the kink behind contact j, m.
+/// The arc lengths between which material lies loose in the kink after contact j, m.
 pub(in crate::model::spans) fn loose(section: &CableSection, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (section.contacts.get(j)?, section.contacts.get(j + 1)?);
     (c.next == Connection::Pocket && next.ends.material[0] > c.ends.material[1])
         .then_some([c.ends.material[1], next.ends.material[0]])
 }
 
-/// Tension at the start, at the end, and the greatest, N.
+/// Tensions at the start and at the end, and the greatest tension, N.
 pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) -> [f64; 3] {
     let context = &cable_equilibrium.context;
     let end = |section: Option<&CableSection>, side: usize| {
@@ -326,7 +326,7 @@ pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) ->
     [start, last, greatest]
 }
 
-/// The contact of the load that is contact j.
+/// The report of the load of contact j.
 fn load(
     section: &CableSection,
     context: &SolveContext,
@@ -337,7 +337,7 @@ fn load(
     let c = &section.contacts[j];
     let load_balance = load_balance(section, context, j);
     let at = contact_path.place(c.ends.place[0]).at;
-    // The obstacle holds what all else does to the point.
+    // The obstacle balances all other forces on the point.
     let held =
         load_balance.normal * load_balance.press() - load_balance.tangent * load_balance.sum.dot(&load_balance.tangent);
     let slips = contact_path.friction <= 0.0 || matches!(c.mode, Mode::Slip(_));
@@ -361,8 +361,8 @@ fn load(
     }
 }
 
-/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part
-/// of it.
+/// The reports of the heap in the pocket after contact j: one for each edge that carries a part of
+/// it.
 fn heap(section: &CableSection, context: &SolveContext, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&section.contacts[j], section.contacts.get(j + 1)) {
         (c, Some(next)) => {
@@ -391,10 +391,10 @@ fn heap(section: &CableSection, context: &SolveContext, j: usize, name: &str) ->
     borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
-/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
-/// all is alike.
+/// Stretches that stick and stretches at the limit of friction, with equal neighbours merged; empty
+/// if all are equal.
 fn parts(c: &Contact, friction: f64, stretches: &[ContactStretch]) -> Vec<ContactPart> {
-    /// Share of mobilised friction from which on it counts as all of it: rounding.
+    /// Fraction of mobilised friction from which it counts as fully mobilised (round-off).
     const LIMIT: f64 = 1.0 - 1e-9;
     let state = |s: &ContactStretch| {
         if s.mobilised.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick }
@@ -483,8 +483,8 @@ fn wheel(r: &mut SupportReaction, cable_equilibrium: &CableEquilibrium, section:
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
 }
 
-/// The force of the cable on the wheel that is contact j, and the forces in the cable before and
-/// after it, N.
+/// The force of the cable on the wheel of contact j, and the forces in the cable before and after
+/// it, N.
 pub(in crate::model::spans) fn wheel_force(
     context: &SolveContext,
     section: &CableSection,

@@ -1,5 +1,5 @@
-//! The layout says how supports and loads cut a cable into sections, on which side it passes each
-//! wheel, and which boundaries there are.
+//! The layout holds the sections into which supports and loads divide a cable, the side on which it
+//! passes each wheel, and the boundaries.
 
 use crate::catenary::PointForce;
 use crate::contact::swept_corners::{self, ImpassableCorner};
@@ -15,7 +15,7 @@ use crate::problem::wheel_passage::facing;
 use crate::scene::SupportKind;
 use std::sync::Arc;
 
-/// A dead load: where, and which it is.
+/// A dead load: its arc length and its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Load {
     arc_length: f64,
@@ -30,7 +30,7 @@ pub(in crate::model::spans) struct Pulley {
     pub support: usize,
     /// Index of its boundary with sense +1.
     pub curve: usize,
-    /// Sense on the side it must be passed; 0 = a point, either.
+    /// Sense in which the cable must pass it; 0 for a point, which it may pass in either.
     pub facing: f64,
 }
 
@@ -39,16 +39,17 @@ pub(in crate::model::spans) struct Pulley {
 pub(in crate::model::spans) struct SectionLayout {
     pub problem: Arc<Problem>,
     pub settings: Arc<SpansSettings>,
-    /// The end of the scene's cable from which it counts.
+    /// The end of the scene's cable from which arc lengths are counted.
     pub counted_from: CableEnd,
     loads: Vec<Load>,
     /// Corners that it must not pass, in order of x.
     pub corners: Arc<[ImpassableCorner]>,
-    /// Sections: material from, to (m) and the support at each end; None = free or dead load.
+    /// Sections: arc lengths of both ends (m) and the support at each end; None for a free end or a
+    /// dead load.
     pub sections: Vec<SectionBounds>,
 }
 
-/// A section between grips.
+/// The bounds of a section.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct SectionBounds {
     pub material: [f64; 2],
@@ -56,7 +57,7 @@ pub(in crate::model::spans) struct SectionBounds {
     pub pulleys: Vec<Pulley>,
 }
 
-/// The model's refusal.
+/// The error for a feature that the model lacks.
 pub(in crate::model::spans) fn unsupported(feature: Unsupported) -> SolveError {
     SolveError::Unsupported { model: Model::Spans, feature }
 }
@@ -154,8 +155,8 @@ impl SectionLayout {
         Ok(layout)
     }
 
-    /// Sets the side of its wheel on which the cable passes, by the way in which the scene counts
-    /// it.
+    /// Sets the side on which the cable passes each wheel, from the direction in which the scene
+    /// counts arc length.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
@@ -185,7 +186,7 @@ impl SectionLayout {
         out
     }
 
-    /// Writes the boundary conditions at a time, with supports dragged by hand at their places.
+    /// Sets the boundary conditions at a time, with dragged supports at their hand-set positions.
     pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut BoundaryConditions) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
@@ -257,10 +258,9 @@ impl SectionLayout {
     }
 }
 
-/// Moves the ends of a section to where an instant has them.
+/// Moves the ends of a section to their positions at an instant.
 ///
-/// # Errors
-/// A support inside an obstacle.
+/// # Errors An error if a support is inside an obstacle.
 pub(in crate::model::spans) fn place_ends(
     layout: &SectionLayout,
     index: usize,

@@ -1,8 +1,8 @@
-//! The settings of `spans` are its tuned constants in one place, grouped by what they govern.
+//! The settings of `spans` are its tuned constants in one place, grouped by purpose.
 //!
-//! Here stands what was chosen by trial: limits of iterations, first steps, distances within which
-//! things are taken for one. Constants that rounding or an error bound fixes stand beside the code
-//! that they belong to, as do the tolerances by which the model checks its own answers.
+//! They were chosen by trial: limits of iterations, first steps, distances within which things
+//! count as one. Constants that round-off or an error bound fixes are defined beside their code,
+//! and so are the tolerances of the model's own checks.
 //!
 //! The values were found on the scenes of the catalogue and on random scenes; the program
 //! `tuned-settings` halves and doubles each and prints what moves (`docs/notes/settings.md`).
@@ -41,28 +41,28 @@ pub struct NewtonSettings {
     /// Residual wanted: of lengths in hundredths of the section, of angles, of tensions relative.
     /// Smaller: iterations spent on rounding. Larger: forces are off by as much.
     pub residual: f64,
-    /// Part of T/EA above which a residual that suffices is lowered by one more step: forces are
-    /// off by a hundredth of this part then. Smaller: a step more in each solve. Larger: forces of
-    /// stiff cables are as exact as their tolerance, 1e-8.
+    /// Residual, as a fraction of T/EA, above which an accepted solution gets one more step: forces
+    /// are then off by a hundredth of this fraction. Smaller: one more step in each solve. Larger:
+    /// forces of stiff cables are only as accurate as their tolerance, 1e-8.
     pub refined_residual_factor: f64,
-    /// Multiple of the residual wanted below which a residual that no step lowers counts as
-    /// rounding. Smaller: rounding fails a step. Larger: a step that was halved often enough is
-    /// taken without having been solved.
+    /// Multiple of the wanted residual below which a residual that no step lowers counts as
+    /// round-off. Smaller: steps fail by round-off. Larger: a step that was halved often enough is
+    /// accepted without being solved.
     pub stalled_residual_factor: f64,
     /// Greatest turn of a contact's end in one iteration, rad. Smaller: more iterations round a
     /// post. Larger: the end jumps a turn of a post.
     pub max_turn: f64,
-    /// Part of its material that a span keeps at least in one iteration. Smaller: a span shrinks to
-    /// rounding in a few iterations. Larger: more iterations where one shrinks.
+    /// Least fraction of its material that a span keeps in one iteration. Smaller: a span shrinks
+    /// to round-off in a few iterations. Larger: more iterations for a shrinking span.
     pub kept_material_fraction: f64,
     /// Residual below which modes are judged. Smaller: iterations spent on a mode that will not
-    /// last. Larger: a contact slides because an iterate has tensions it will not keep, and what is
-    /// held at neither end slides away.
+    /// last. Larger: a contact slides because of temporary tensions of an iterate, and a cable held
+    /// at neither end slides away.
     pub mode_residual: f64,
     /// Iterations without progress after which modes are judged all the same. Smaller: as with a
     /// larger [`Self::mode_residual`]. Larger: iterations spent on a mode that will not last.
     pub mode_stalled_iterations: usize,
-    /// Multiple of rounding up to which violations of the friction cone are tolerated where modes
+    /// Multiple of round-off up to which violations of the friction cone are tolerated if modes
     /// cycle. Smaller: cycles at the edge of the cone fail. Larger: friction beyond its cone is
     /// accepted.
     pub cycle_rounding_factor: f64,
@@ -76,18 +76,18 @@ pub struct NewtonSettings {
 /// The prediction of which contacts slide in a step, before it is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlipSettings {
-    /// Most rounds of Newton's method, and of changing sides beside two for each contact. Smaller:
-    /// a worse guess, or none where many contacts change. Larger: each costs a tenth of an
-    /// iteration of Newton's method for the whole.
+    /// Most rounds of the predictor's Newton method, and most changes of sides in addition to two
+    /// per contact. Smaller: a worse guess, or none if many contacts change. Larger: each costs a
+    /// tenth of a Newton iteration of the section.
     pub newton_rounds: usize,
-    /// Change of tension, as part of it, from which another round is worth its cost: what is left
-    /// after it is about that squared. Smaller: more rounds. Larger: a worse guess.
+    /// Relative change of tension from which another round is worth its cost: the error after it is
+    /// about the square of the change. Smaller: more rounds. Larger: a worse guess.
     pub round_tolerance: f64,
-    /// Change of tension, as part of it, in the last of all rounds with which its guess is still
-    /// taken. Smaller: guesses are thrown away. Larger: guesses are taken that lead away.
+    /// Relative change of tension in the last round up to which the guess is used. Smaller: guesses
+    /// are discarded. Larger: bad guesses are used.
     pub accepted_tension_change: f64,
     /// Greatest factor by which the tension of a span may change in a round. Smaller: no prediction
-    /// in large steps. Larger: the linear spans of the guess no longer hold.
+    /// in large steps. Larger: the linearised spans of the guess are no longer valid.
     pub max_tension_factor: f64,
     /// Greatest angle by which a contact's end follows its span, rad. Smaller: ends stay behind in
     /// large steps. Larger: an end follows round a post.
@@ -97,129 +97,128 @@ pub struct SlipSettings {
 /// Steps from an equilibrium to another, and the way to the first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContinuationSettings {
-    /// Greatest move of a support in one solve, of the cable's length. Smaller: more solves.
-    /// Larger: sliding that starts and reverses inside a step is missed, and what is laid down in a
-    /// step is laid with the tension it began with.
+    /// Greatest move of a support in one solve, as a fraction of the cable's length. Smaller: more
+    /// solves. Larger: sliding that starts and reverses within a step is missed, and cable that
+    /// comes down in a step is laid with the tension at its start.
     pub max_move_fraction: f64,
     /// Most halvings of a step: 2⁻¹² of a step of 1 % of the cable is a hair's breadth. Smaller:
     /// steps fail. Larger: a failure costs more.
     pub max_halvings: u32,
-    /// Part of the way to an instant at which a step is first tried. Smaller: more steps. Larger: a
-    /// long span sags into what is below it.
+    /// First step, as a fraction of the path to an instant. Smaller: more steps. Larger: a long
+    /// span sags into obstacles below it.
     pub first_step: f64,
-    /// Part of that way up to twice which steps that succeed grow. Smaller: more steps. Larger:
-    /// more of them fail.
+    /// Half of the greatest step, as a fraction of that path. Smaller: more steps. Larger: more of
+    /// them fail.
     pub grown_step: f64,
-    /// Part of a step over which a cable that runs away is followed at least. Smaller: the place
-    /// from which it runs is found more exactly than matters. Larger: it is followed where it need
-    /// not be.
+    /// Least step, as a fraction, over which a cable that runs away is followed. Smaller: the place
+    /// from which it runs is located too exactly. Larger: it is followed without need.
     pub runaway_step_fraction: f64,
-    /// Most halvings of steps that are shorter than that part, with none longer between them that
-    /// failed: beyond it the cable is followed as one that runs away. Smaller: it is, where a few
-    /// short steps would do. Larger: a way is gone in steps of a millionth.
+    /// Most halvings of steps shorter than that fraction, without a longer failed step between
+    /// them, before the cable is followed as one that runs away. Smaller: it is followed although a
+    /// few short steps would do. Larger: the path is covered in steps of a millionth.
     pub max_short_step_halvings: u32,
-    /// Work of one search in tension for a cable that could as well lie loose, in contacts and
-    /// spans times iterations. Smaller: it lies loose where it would rest in tension, too. Larger:
-    /// slack cables in tanks take seconds. Tuned on the campaign's slack cables of seed 77000: of
-    /// 450 searches that found an equilibrium none took more than 24 022, and of 132 in the tank,
-    /// with 365 000 each, none found one.
+    /// Work of one search in tension for a cable that could also lie loose, in contacts and spans
+    /// times iterations. Smaller: it lies loose although it could rest in tension. Larger: slack
+    /// cables in tanks take seconds. Tuned on the campaign's slack cables of seed 77000: of 450
+    /// searches that found an equilibrium none took more than 24 022, and of 132 in the tank, with
+    /// 365 000 each, none found one.
     pub max_work_beside_loose: usize,
-    /// Drag with which a cable that runs away is followed at first, of the load per metre. Smaller:
-    /// steps fail where it runs fast. Larger: more of them.
+    /// First drag of a cable that runs away, relative to the load per metre. Smaller: steps fail
+    /// where it runs fast. Larger: more steps.
     pub drag_factor: f64,
-    /// Part of that drag below which it has come to rest. Smaller: more steps. Larger: it is
-    /// taken for resting while it runs.
+    /// Fraction of that drag below which it has come to rest. Smaller: more steps. Larger: it
+    /// counts as resting while it runs.
     pub rest_drag_fraction: f64,
-    /// Drag with which a balance that runs away is left, of the load per metre. Smaller: steps lead
-    /// back to it. Larger: more of them.
+    /// First drag with which an unstable equilibrium is left, relative to the load per metre.
+    /// Smaller: steps lead back to it. Larger: more steps.
     pub leaving_drag_factor: f64,
-    /// Part of the length by which material is passed on to leave it. Smaller: more steps. Larger:
-    /// a rest that is near is passed.
+    /// Displacement of material that leaves it, as a fraction of the length. Smaller: more steps.
+    /// Larger: a nearby equilibrium is missed.
     pub leaving_fraction: f64,
-    /// Slack on both sides of a contact, of the shorter chord, from which another balance is
-    /// sought, and the part of it that is left where it is taken from. Smaller: searches that find
-    /// nothing; larger: balances of steep spans are missed.
+    /// Slack on both sides of a contact, as a fraction of the shorter chord, from which another
+    /// equilibrium is sought, and the fraction that is left on the side from which it is taken.
+    /// Smaller: searches that find nothing; larger: equilibria of steep spans are missed.
     pub least_slack_fraction: f64,
-    /// Most searches for other balances. Smaller: some are missed; larger: cables over many things
-    /// take long.
+    /// Most searches for other equilibria. Smaller: some are missed; larger: cables over many
+    /// obstacles take long.
     pub max_other_equilibria: usize,
-    /// Part of the length by which the material at a contact differs in another balance. Smaller:
-    /// two answers of one search are two balances; larger: balances near each other are one.
+    /// Difference of the material at a contact from which two equilibria are different, as a
+    /// fraction of the length. Smaller: two answers of one search count as two; larger: nearby
+    /// equilibria count as one.
     pub other_balance_fraction: f64,
-    /// Most times in a row that the drag is raised. Smaller: it is given up where it runs fast.
-    /// Larger: a failure costs more.
+    /// Most successive rises of the drag. Smaller: a cable that runs fast is given up. Larger: a
+    /// failure costs more.
     pub max_drag_raises: usize,
-    /// Part of the force there that friction may lack in the step in which a load comes down.
-    /// Smaller: more steps. Larger: forces are off by as much while such a step lasts.
+    /// Friction that may be missing in the step in which a load comes down, as a fraction of the
+    /// force there. Smaller: more steps. Larger: forces are off by as much during such a step.
     pub missing_friction_fraction: f64,
-    /// Part of the whole below which no step is shortened for a load that comes down. Smaller: more
-    /// steps. Larger: its friction is off in more of them.
+    /// Fraction of the path below which no step is shortened for a load that comes down. Smaller:
+    /// more steps. Larger: more steps with an error of its friction.
     pub landing_step_fraction: f64,
     /// Most spans that are tried as pockets in one step. Smaller: slack in two kinks at once is no
-    /// answer. Larger: dearer failures, each halving tries again.
+    /// answer. Larger: failures cost more, because each halving tries again.
     pub max_pockets: usize,
-    /// Tension at which a rest is first searched, of the weight of the cable: so taut that it
-    /// touches only what it is led round. Smaller: it lies on more than the string of the route.
-    /// Larger: more steps from there.
+    /// Tension with which an equilibrium is first sought, in weights of the cable: so taut that it
+    /// touches only the obstacles that its route bends round. Smaller: it touches more than the
+    /// taut string of the route. Larger: more steps from there.
     pub first_tension_weights: f64,
-    /// The same where that finds none: corners that the string of the route bends round and the
-    /// cable does not give away more than it was shrunk by. Smaller: those corners stay. Larger:
-    /// more steps.
+    /// Tension of a second search, if the first finds nothing: corners that the string bends round
+    /// and the cable does not touch need more length than the first shrinkage. Smaller: those
+    /// corners remain. Larger: more steps.
     pub second_tension_weights: f64,
-    /// Part of the load that acts at first. Smaller: nothing gained. Larger: a long span sags into
-    /// what is below it before it can be met step by step.
+    /// Fraction of the load that acts at first. Smaller: nothing gained. Larger: a long span sags
+    /// into obstacles below it before they can be met step by step.
     pub first_load_fraction: f64,
-    /// Parts of the cone of friction that a cable taken over from another model may not use, in
-    /// turn: along the very edge of the cone sliding from an end would stop anywhere, and Newton
-    /// stalls. The first changes nothing that shows, the second holds a little first. Smaller:
-    /// Newton stalls. Larger: less of what the other model holds is held.
+    /// Fractions of the friction cone that a cable adopted from another model may not use, tried in
+    /// turn: at the very edge of the cone the slip front is undetermined, and Newton's method
+    /// stalls. The first has no visible effect, the second leaves a little reserve. Smaller:
+    /// Newton's method stalls. Larger: less of the other model's friction is kept.
     pub unused_cone_fractions: [f64; 3],
-    /// Friction over what there is that is first tried where a cable slides, as a part of it; then
-    /// twice that, and so on. Smaller: more of them are tried. Larger: what is missing is bracketed
-    /// by more.
+    /// First extra friction that is tried for a sliding cable, as a fraction of its friction; it is
+    /// doubled after each try. Smaller: more tries. Larger: a wider bracket of the missing
+    /// friction.
     pub first_missing_part: f64,
-    /// Most of it that is tried. Smaller: much that is missing is not told. Larger: dearer where no
-    /// friction holds the cable.
+    /// Greatest extra friction that is tried. Smaller: large missing frictions are not reported.
+    /// Larger: more time if no friction holds the cable.
     pub max_missing_part: f64,
-    /// Part of the tensions by which a contact may be off sliding where less friction does not
-    /// hold. Smaller: what is missing would have to be found to more digits. Larger: a failure to
-    /// find an answer is taken for sliding.
+    /// Relative distance from sliding within which contacts count as about to slide. Smaller: the
+    /// missing friction would need more digits. Larger: a failed search passes for sliding.
     pub mobilised_fraction: f64,
 }
 
-/// The first shape: which contacts the route has, and how the cable is laid on them.
+/// The first shape: the contacts of the route, and the laying of the cable on them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InitialSettings {
-    /// Distance within which an end of a route lies on a boundary, of the cable's radius. Smaller:
-    /// an end drawn roughly hangs beside what it lies on. Larger: an end held just above a surface
-    /// lies on it.
+    /// Distance within which an end of a route lies on a boundary, in radii of the cable. Smaller:
+    /// a roughly drawn end hangs beside the surface. Larger: an end held just above a surface
+    /// counts as lying on it.
     pub lying_end_radii: f64,
-    /// The same of a free end and of the points of the route behind it, which fall on what is below
-    /// them. Smaller: an end drawn by hand a little above the ground hangs from its support,
-    /// through the ground. Larger: what hangs beside an obstacle is laid on it.
+    /// The same distance for a free end and the points of the route behind it, which fall down.
+    /// Smaller: an end drawn by hand a little above the ground hangs from its support, through the
+    /// ground. Larger: cable that hangs beside an obstacle is laid on it.
     pub falling_end_radii: f64,
-    /// Distance within which points of a route between its ends lie on a boundary, of the cable's
-    /// radius: routes follow the surface, the centre line is cut off at kinks. Smaller: kinks are
-    /// left. Larger: a route that passes near is laid on it.
+    /// Distance within which inner points of a route lie on a boundary, in radii of the cable:
+    /// routes follow the surface, and the centre line cuts off kinks. Smaller: kinks are missed.
+    /// Larger: a route that passes near is laid on it.
     pub route_contact_radii: f64,
-    /// Tension with which the cable is laid at least where it does not lie in one piece, of its
-    /// weight. Smaller: spans over hollows shrink to nothing. Larger: friction at a free end has to
-    /// hold it, and it slides there first.
+    /// Least tension of a newly laid cable with free spans, in weights of the cable. Smaller: spans
+    /// over hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides
+    /// there first.
     pub laid_tension_weights: f64,
-    /// Part of the cable's length by which a route may be longer than it: no cable is strained so,
-    /// and it is laid along the string then. Smaller: a cable laid taut is laid anew with other
-    /// tensions. Larger: the first guess is far off.
+    /// Excess of the route over the cable's length, as a fraction of it, from which the cable is
+    /// laid along the taut string instead: no cable is strained so much. Smaller: a cable laid taut
+    /// is laid anew with other tensions. Larger: the first guess is far off.
     pub route_excess_fraction: f64,
-    /// Distance along the route, in radii of a post, within which the cable may come up to it
-    /// before or after the string does: less than half a turn. Smaller: a contact is placed where
-    /// the route is not. Larger: turns are mistaken for each other.
+    /// Distance along the route, in radii of a post, within which the cable may meet it before or
+    /// after the string does: less than half a turn. Smaller: a contact is placed off the route.
+    /// Larger: turns are mistaken for each other.
     pub post_approach_radii: f64,
     /// Distance from a wheel's centre beyond the nearest one, in radii, up to which a route counts
-    /// as drawn round the wheel. Smaller: the chords of a coarse polygon are left. Larger: of a
-    /// route that only comes near more is taken for its round.
+    /// as drawn round the wheel. Smaller: the chords of a coarse polygon are left. Larger: more of
+    /// a route that only passes near counts as wrapped.
     pub wheel_route_radii: f64,
     /// Distance within which a node of another model's answer touches a boundary, m. Smaller: a
-    /// contact that a barrier holds off is missed. Larger: a cable that passes near is laid on it.
+    /// contact with the gap of a barrier is missed. Larger: a cable that passes near is laid on it.
     pub adopted_contact_distance_m: f64,
 }
 
@@ -230,42 +229,42 @@ pub struct ChangeSettings {
     /// a cable that runs away is followed. Smaller: a long route fails, or a cable is given up on
     /// its way. Larger: a cycle, or a failure, costs more.
     pub max_changes: usize,
-    /// Part of the section that is next to nothing: two contacts of a first guess keep so much
-    /// material between them, and a contact beside a load that has less is released when Newton
-    /// stalls. Smaller: spans of no length; Newton comes so near to its end only after many
-    /// halvings. Larger: contacts near each other are moved apart, or laid down again for nothing.
+    /// Negligible length, as a fraction of the section: two contacts of a first guess keep so much
+    /// material between them, and a contact beside a load that has less is released when Newton's
+    /// method stalls. Smaller: spans without length; Newton's method gets so short only after many
+    /// halvings. Larger: contacts near each other are moved apart, or laid down again without need.
     pub least_material_fraction: f64,
-    /// Most times in one solve that something is done about loads where Newton stalls. Smaller: a
-    /// load between contacts fails a step. Larger: a failure costs more.
+    /// Most changes of loads in one solve when Newton's method stalls. Smaller: a load between
+    /// contacts fails a step. Larger: a failure costs more.
     pub max_load_releases: usize,
-    /// Distance from a contact within which a load is caught by it when Newton stalls, of the
-    /// section. Smaller: the step fails. Larger: a load that hangs is laid down.
+    /// Distance from a contact within which a load is set down on it when Newton's method stalls,
+    /// as a fraction of the section. Smaller: the step fails. Larger: a hanging load is laid down.
     pub catch_distance_fraction: f64,
-    /// Points of a span among which the nearest to a corner that was passed is sought. Smaller: the
-    /// contact begins beside the corner. Larger: dearer.
+    /// Number of points of a span among which the nearest to a tunnelled corner is sought. Smaller:
+    /// the contact begins beside the corner. Larger: more time.
     pub corner_search_points: usize,
-    /// Part of a contact that the first guess of a lifted end leaves lying at least. Smaller: the
-    /// contact has no length. Larger: the span is guessed too short.
+    /// Least fraction of a contact that the first guess of a lifted end leaves lying. Smaller: the
+    /// contact has no length. Larger: the guessed span is too short.
     pub lying_fraction: f64,
     /// Greatest tension of a span that may be slack in a kink, of the section's weight. Smaller:
     /// slack is found late. Larger: spans are tried as pockets that have tension.
     pub pocket_tension_fraction: f64,
-    /// Part of the contacts beside it that a span drawn across a kink takes at most. Smaller: it is
-    /// too short for its material. Larger: a contact has no length left.
+    /// Greatest fraction of the neighbouring contacts that a span across a kink takes. Smaller: it
+    /// is too short for its material. Larger: a contact has no length left.
     pub kink_span_fraction: f64,
 }
 
-/// Causes of failures, and corners that a step passed through.
+/// Causes of failures, and tunnelled corners.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AcceptanceSettings {
     /// Force across the load, of the weight of a span, up to which it hangs in one line. Smaller: a
     /// fold is not reported. Larger: a span that sags is reported as a fold.
     pub fold_force_fraction: f64,
-    /// Points of a span, and of a contact, that are compared before and after a step. Smaller: a
-    /// corner is passed unseen. Larger: dearer.
+    /// Number of points of a span, and of a contact, that are compared before and after a step.
+    /// Smaller: a tunnelled corner is missed. Larger: more time.
     pub tunnelling_points: usize,
     /// Move of a contact's ends up to which the ends alone are compared, rad or m. Smaller: points
-    /// are compared in every step. Larger: a contact moves round a corner unseen.
+    /// are compared in every step. Larger: a contact moves round a corner undetected.
     pub unchecked_move: f64,
 }
 

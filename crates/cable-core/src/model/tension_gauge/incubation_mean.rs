@@ -4,15 +4,15 @@
 //! 1/τ ∫ T(s, t') dt' over t − τ … t
 //! ```
 
-/// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the
-/// greatest mean is missed by 1/(4·4²) of its height at most, 1.6 %; with 8 looks by 0.4 %, and a
-/// step of `fem`, which is as long as that time, costs 3 % more.
+/// Number of evaluations of the mean in its averaging time. For a triangular jerk of that duration
+/// the greatest mean is missed by at most 1/(4·4²) of its height, 1.6 %; with 8 evaluations by 0.4
+/// %, and a step of `fem`, which is as long as that time, costs 3 % more.
 const LOOKS_PER_MEAN: usize = 4;
 
 /// The running mean of the tension at the points of a gauge.
 #[derive(Clone, Debug, Default)]
 pub(super) struct IncubationMean {
-    /// Time that means are taken over, s; 0: each instant counts.
+    /// Averaging time, s; 0: each instant counts.
     pub over_s: f64,
     /// Time of the last look at the mean, in parts of `over_s / LOOKS_PER_MEAN`.
     look: f64,
@@ -37,7 +37,7 @@ impl IncubationMean {
         &self.mean
     }
 
-    /// Begins at a time (s) with tensions (N): as long before as one likes where the cable was
+    /// Begins at a time (s) with tensions (N): with the same tensions before if the cable was
     /// `at_rest`, else with none before.
     pub fn begin(&mut self, time_s: f64, now: &[f64], at_rest: bool) {
         let part_s = self.over_s / LOOKS_PER_MEAN as f64;
@@ -55,7 +55,7 @@ impl IncubationMean {
         self.oldest = 0;
     }
 
-    /// Goes on from a time to another (s) with the tensions (N) at both, and hands each pair of
+    /// Advances from a time to another (s) with the tensions (N) at both, and passes each pair of
     /// means (N), with their times (s), to `look`.
     pub fn advance(
         &mut self,

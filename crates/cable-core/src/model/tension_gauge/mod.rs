@@ -38,11 +38,11 @@ pub struct TensionGauge {
     scale: [f64; 2],
     /// Arc lengths of the material points, m.
     points: Vec<f64>,
-    /// Time reached, s; not a number where nothing is known.
+    /// Time reached, s; NaN if nothing is known.
     time_s: f64,
     /// Tension at the points then, N.
     now: Vec<f64>,
-    /// Notes of a step that may still be discarded.
+    /// Data of a step that may still be discarded.
     next_s: f64,
     next: Vec<f64>,
     /// The running mean of the tension at the points.
@@ -59,7 +59,7 @@ impl Default for TensionGauge {
 }
 
 impl TensionGauge {
-    /// A gauge that gauges nothing.
+    /// A gauge that is switched off.
     #[must_use]
     pub fn off() -> Self {
         Self {
@@ -84,13 +84,14 @@ impl TensionGauge {
         Self { on: true, mean: IncubationMean::over(over_s), ..Self::off() }
     }
 
-    /// Begins a step of the caller: what was found before is forgotten, what was gauged is not.
+    /// Begins a step of the caller: earlier peaks are forgotten, the history of tensions is not.
     pub fn watch(&mut self, limit: Limit) {
         self.limit = limit;
         (self.greatest, self.means) = (None, PeaksOfMeans::default());
     }
 
-    /// Forgets what was gauged: the cable was put elsewhere, or goes on without inertia.
+    /// Forgets the history of tensions: the cable's state was replaced, or it continues without
+    /// inertia.
     pub fn forget(&mut self) {
         self.time_s = f64::NAN;
         (self.greatest, self.means) = (None, PeaksOfMeans::default());
@@ -120,19 +121,20 @@ impl TensionGauge {
         self.means.reached
     }
 
-    /// From now on a model is gauged that reckons with lengths and times so many times as large.
+    /// From now on the gauged model uses lengths and times multiplied by these factors.
     pub(crate) fn of_copy(&mut self, [length, time]: [f64; 2]) {
         self.scale = [self.scale[0] / length, self.scale[1] / time];
     }
 
-    /// Returns whether anything is gauged, and the past is not known up to a time (s of the model).
+    /// Returns whether the gauge is on and its history does not reach up to a time (s of the
+    /// model).
     #[must_use]
     pub fn asks(&self, time_s: f64) -> bool {
         self.on && !((self.time_s - time_s * self.scale[1]).abs() <= SAME_TIME_S)
     }
 
-    /// Begins a history at a time (s): with the present tension as long as one likes where the
-    /// cable was `at_rest`, else with none before. Arc lengths of nodes in m, tensions in N.
+    /// Begins a history at a time (s): with the present tension before if the cable was `at_rest`,
+    /// else with none before. Arc lengths of nodes in m, tensions in N.
     pub fn begin(&mut self, time_s: f64, at_rest: bool, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
@@ -189,7 +191,7 @@ impl TensionGauge {
         &mut self.next
     }
 
-    /// Keeps what was noted.
+    /// Keeps the noted step.
     pub fn keep(&mut self) {
         let (from_s, to_s) = (self.time_s, self.next_s);
         let h = to_s - from_s;

@@ -1,15 +1,15 @@
-//! Among the tensions of a step the highest mean is looked for, and the place and time at which it
-//! first reached a limit.
+//! This module finds the highest mean tension of a step, and the place and time at which it first
+//! reached a limit.
 
 use crate::math::larger;
 use crate::solution::TensionPeak;
 
-/// A mean that a gauge looks for: a mean of this much, from a time on, between two arc lengths.
+/// A limit of the mean tension, from a time on, between two arc lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Mean tension, N.
     pub tension_n: f64,
-    /// Not before, s.
+    /// Earliest time, s.
     pub from_s: f64,
     /// Arc lengths, m.
     pub within_m: [f64; 2],
@@ -59,8 +59,7 @@ impl PeaksOfMeans {
     }
 }
 
-/// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one
-/// before.
+/// The greatest of some figures, 0 for none. Independent lanes let the processor work in parallel.
 pub(super) fn greatest_of(figures: &[f64]) -> f64 {
     let mut lanes = [0.0; 4];
     let fours = figures.chunks_exact(4);

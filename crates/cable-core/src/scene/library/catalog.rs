@@ -52,7 +52,7 @@ scenes! {
     rubble_drop = "rubble-drop";
     /// A cable that comes down on itself.
     pile = "pile";
-    /// A robot that drives out and back by itself.
+    /// A robot drives out and back without remote control.
     robot_drive = "robot-drive";
     /// From above, between two posts.
     plan_posts = "plan-posts";
@@ -62,8 +62,8 @@ scenes! {
     loads_wind_heat = "loads-wind-heat";
 }
 
-/// A flexible, undamped cable alone, which nothing breaks: its length (m), density (kg/m) and EA
-/// (N). What closed forms are of.
+/// A single flexible, undamped, unbreakable cable, as closed forms assume: length (m), mass per
+/// length (kg/m) and EA (N).
 #[must_use]
 pub fn cable_alone([length, density, ea]: [f64; 3], supports: Vec<Support>) -> Scene {
     let mut scene = hanging_span();

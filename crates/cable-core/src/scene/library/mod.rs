@@ -1,5 +1,5 @@
-//! The library holds what comes with the program: named scenes (`catalog.rs`) and presets of
-//! cables, robots and maps (`preset.rs`).
+//! The library holds the built-in named scenes (`catalog.rs`) and the built-in presets of cables,
+//! robots and maps (`preset.rs`).
 //!
 //! | room | content |
 //! |---|---|

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SceneFault;
 use crate::math::Point;
-use crate::scene::nearest::nearest;
+use crate::scene::nearest_name::nearest;
 use crate::scene::obstacle::Obstacle;
 
 /// Confidence in a number.
@@ -21,7 +21,7 @@ pub enum Confidence {
     C,
 }
 
-/// A number with where it comes from. Its unit is in the name of the field that holds it.
+/// A number with its source. Its unit is in the name of the field that holds it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Figure {

@@ -16,7 +16,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{DocumentFault, SceneFault};
-use crate::scene::nearest::nearest;
+use crate::scene::nearest_name::nearest;
 use crate::scene::preset;
 
 type TomlNode<'a> = Spanned<DeValue<'a>>;

@@ -72,7 +72,7 @@ impl Scene {
         toml::to_string(&self.written()).unwrap_or_default()
     }
 
-    /// The scene as it is written, as a tree.
+    /// The scene in the form in which it is written, as a tree.
     pub(in crate::scene) fn written(&self) -> toml::Table {
         let mut table = toml::Table::try_from(self).unwrap_or_default();
         let cables = table.get_mut("cables").and_then(toml::Value::as_array_mut);
@@ -90,7 +90,7 @@ impl Scene {
     }
 }
 
-/// Another version is said first: all else would only be confusing.
+/// An unknown version is reported first, as all other messages would only confuse.
 fn check_version(table: &DeTable<'_>) -> Result<(), SceneError> {
     let at = Path::Root.key("version");
     match table.get("version").map(Spanned::get_ref) {

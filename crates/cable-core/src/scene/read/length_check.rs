@@ -7,7 +7,7 @@ use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Scene, Support, SupportKind};
 
 /// Refuses a cable that would have to break to reach its supports. Each stretch between two
-/// supports that grip it is looked at by itself; obstacles only make the way longer.
+/// supports that grip it is checked separately. Obstacles only make the way longer.
 pub(super) fn check_length(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     let thermal = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
     let last = cable.supports.len().saturating_sub(1);

@@ -7,7 +7,7 @@ use crate::units::Quantity;
 pub(super) struct Range {
     low: f64,
     high: f64,
-    /// The quantity of which it is, in SI units.
+    /// The quantity that the range limits, in SI units.
     pub(super) quantity: Quantity,
 }
 

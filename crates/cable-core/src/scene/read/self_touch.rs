@@ -34,7 +34,7 @@ struct EdgeTree<'a> {
     boxes: Vec<Sides>,
 }
 
-/// The first crossing found, if there is one. A closed line has an edge from its last point to its
+/// The first crossing that is found, if any. A closed line has an edge from its last point to its
 /// first.
 pub(super) fn first_self_touch(points: &[Point], ends: LineEnds) -> Option<SelfTouch> {
     let rises = |axis: usize| points.windows(2).all(|w| w[1][axis] > w[0][axis]);

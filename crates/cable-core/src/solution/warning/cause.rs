@@ -1,4 +1,4 @@
-//! The cause of a warning holds the figures that only this cause has.
+//! The cause of a warning carries the figures that belong to this kind of cause.
 
 use serde::{Deserialize, Serialize};
 
@@ -123,7 +123,7 @@ pub enum WarningCause {
         support: String,
         /// The obstacle's name.
         obstacle: String,
-        /// The way from there to where it is sent, m.
+        /// The displacement from there to its target, m.
         short_m: [f64; 2],
     },
     /// A support follows its target at a greatest speed, which is the limit.
@@ -222,7 +222,7 @@ pub enum WarningCause {
         /// The force that is left between them, N.
         left_n: f64,
     },
-    /// A warning of which only the sentence was kept.
+    /// A warning that was kept only as a sentence.
     Recorded {
         /// The kind.
         kind: WarningKind,
@@ -249,7 +249,7 @@ pub enum SlideReason {
     NoFriction,
     /// More friction would have held it.
     TooLittleFriction {
-        /// The friction that holds it, as a part of what there is.
+        /// The friction that would hold it, relative to the friction that there is.
         friction_ratio: f64,
     },
     /// Nothing holds all of its loads.
@@ -318,7 +318,7 @@ impl WarningCause {
         }
     }
 
-    /// The quantity of which the warning's value and limit are.
+    /// The quantity of the warning's value and limit.
     #[must_use]
     pub fn quantity(&self) -> Quantity {
         match self {

@@ -27,11 +27,11 @@ pub enum WarningKind {
     Slack,
     /// It crosses itself, or another part of itself lies across it.
     Loop,
-    /// It curls up: a free part turns most of the way round.
+    /// The cable curls up: a free part turns most of the way round.
     Curl,
     /// It goes round an obstacle once or more.
     Wrapped,
-    /// An obstacle holds it fast while it is pulled harder and harder.
+    /// An obstacle holds the cable fast while the pull on it grows.
     Snag,
     /// With friction a resting place is not unique.
     NotUnique,
@@ -39,9 +39,9 @@ pub enum WarningKind {
     SupportHeld,
     /// The scene puts a support or the route into an obstacle: it was put outside.
     InitialPenetration,
-    /// It hangs clear of the wheel of a pulley, which carries nothing.
+    /// The cable hangs clear of the wheel of a pulley, which carries no force.
     ClearOfWheel,
-    /// It lies through the robot, of which the model knows nothing.
+    /// The cable passes through the robot, because the model does not include the robot's outline.
     ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
     Stabilised,
@@ -103,7 +103,7 @@ impl WarningKind {
         }
     }
 
-    /// The quantity of which value and limit are where the cause names no other.
+    /// The quantity of value and limit, unless the cause names another.
     pub(super) fn quantity(self) -> Quantity {
         match self {
             Self::ServiceTension | Self::BreakingTension | Self::Broken | Self::MayBreak => Quantity::Force,

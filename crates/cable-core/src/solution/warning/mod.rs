@@ -41,8 +41,8 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// Returns whether it is about the same cause at the same place as another; their values may
-    /// differ. A support that lags goes on to another place.
+    /// Returns whether two warnings have the same cause at the same place; their values may differ.
+    /// A lagging support moves from place to place.
     pub(crate) fn has_cause_of(&self, other: &Self) -> bool {
         if let (Some(lags), Some(other_lags)) = (self.cause.lagging_support(), other.cause.lagging_support()) {
             return lags == other_lags && self.cable == other.cable;
@@ -67,7 +67,7 @@ impl Warning {
         }
     }
 
-    /// The same at a place in the plane, m.
+    /// Returns the warning with a place in the plane, m.
     #[must_use]
     pub fn at(self, at_m: [f64; 2]) -> Self {
         Self { at_m: Some(at_m), ..self }

@@ -25,7 +25,7 @@ pub fn steps(camera: &Camera) -> [f64; 2] {
     [factor * power * unit_m, factor * power / parts * unit_m]
 }
 
-/// Lines behind everything.
+/// Draws the grid lines behind all other layers.
 pub fn lines(view: &CanvasView<'_>) {
     let [major, minor] = steps(&view.camera);
     for (step, colour) in [(minor, view.palette.grid_minor), (major, view.palette.grid_major)] {
@@ -62,7 +62,7 @@ fn numbered(view: &CanvasView<'_>, axis: usize, step: f64, mut line: impl FnMut(
     }
 }
 
-/// Numbers along the left and lower edge, on strips over everything.
+/// Draws the numbers along the left and lower edge, on strips above all other layers.
 pub fn axes(view: &mut CanvasView<'_>) {
     let [major, _] = steps(&view.camera);
     let (length, _) = labels::of_length();

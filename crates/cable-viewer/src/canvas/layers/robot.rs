@@ -56,9 +56,9 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
 
-/// What the cable meets of it, where it touches that: it is cut back round the hitch and boxed at
-/// the tracks. What of it reaches below the ground, so that nothing gets under a track, is left
-/// out.
+/// Draws the contact outline of the robot if the cable touches it: the outline is cut back round
+/// the hitch and boxed at the tracks. Its part below the ground, which keeps the cable from getting
+/// under a track, is not drawn.
 fn touched(view: &CanvasView<'_>, state: &AppState, pose: &Pose, preset: &RobotPreset) {
     let contacts = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
     if !state.view.layers.contacts || !contacts.into_iter().any(|c| c.obstacle == OUTLINE_NAME) {

@@ -268,7 +268,7 @@ fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
     });
 }
 
-/// A relative change in per cent; one that rounds to nothing has no sign.
+/// A relative change in per cent; a change that rounds to zero has no sign.
 fn change(ratio: f64) -> String {
     let text = format!("{:+.2} %", 100.0 * ratio).replace('-', "−");
     if ["+0.00 %", "−0.00 %"].contains(&text.as_str()) { "0.00 %".to_owned() } else { text }
@@ -283,8 +283,8 @@ struct Summary {
     lines: Arc<Vec<String>>,
 }
 
-/// The differences of the last frame where nothing has changed since: to write two files and
-/// compare them takes milliseconds.
+/// The differences of the last frame are reused if nothing has changed since, as writing and
+/// comparing two files takes milliseconds.
 fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
     let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];

@@ -1,7 +1,7 @@
 //! Peaks of the kinetic energy in spans of time, one after the other, show whether it grows.
 
-use crate::record::history::History;
 use crate::record::sample::Sample;
+use crate::record::sample_history::History;
 
 /// Time over which the kinetic energy is compared with that of as long before, s. Shorter: every
 /// swing is a growth; longer: a run that diverges has ended.

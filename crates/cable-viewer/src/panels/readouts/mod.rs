@@ -57,8 +57,8 @@ fn shown(state: &AppState) -> Result<(&Scene, &Cable, &CableSolution), &'static 
     }
 }
 
-/// What stands above everything that scrolls: the greatest tension, its share of the limits, the
-/// ends and the sag.
+/// Draws the part above the scrolled area: the greatest tension, its share of the limits, the ends
+/// and the sag.
 pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let (scene, cable, solved) = match shown(state) {
         Ok(shown) => shown,
@@ -398,8 +398,8 @@ struct Compared {
     answered: bool,
 }
 
-/// Returns what came of comparing an answer with one that has the likely bending stiffness; None
-/// where nobody asked.
+/// Returns the result of the comparison of an answer with one that has the likely bending
+/// stiffness; `None` if it was not requested.
 fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<Compared> {
     if !bending_query_fits(state) {
         return None;

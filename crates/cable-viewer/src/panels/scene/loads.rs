@@ -1,4 +1,4 @@
-//! The list of point loads says how strong each is; a form has everything of one.
+//! The list of point loads shows the size of each load; a form shows all properties of one load.
 
 use cable_core::Load;
 use egui::{ComboBox, Ui};

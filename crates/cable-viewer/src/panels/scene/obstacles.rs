@@ -1,4 +1,5 @@
-//! The list of obstacles says the form of each; a form has everything of one.
+//! The list of obstacles shows the kind of each obstacle; a form shows all properties of one
+//! obstacle.
 
 use cable_core::Obstacle;
 use cable_core::math::Point;

@@ -1,4 +1,4 @@
-//! The outline is everything in the scene as a tree: a click on a thing selects it, and the panel
+//! The outline shows all items of the scene as a tree: a click on an item selects it, and the panel
 //! on the right edits it.
 
 use cable_core::scene::preset::robot_preset;
@@ -62,7 +62,7 @@ fn list(ui: &mut Ui, width: f32, id: &str, title: &str, contents: impl FnOnce(&m
     });
 }
 
-/// The greatest tension of a cable in words; nothing where there is no answer.
+/// The greatest tension of a cable in words; empty if there is no answer.
 fn greatest_tension(state: &AppState, cable: usize) -> String {
     let solved = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));
     let tensions = solved.into_iter().flat_map(|c| &c.nodes).map(|n| n.tension_n).filter(|t| t.is_finite());

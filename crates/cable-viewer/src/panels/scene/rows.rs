@@ -28,7 +28,7 @@ pub const VALUE_WIDTH: f32 = 84.0;
 /// Gap between columns, points.
 pub const GAP: f32 = 3.0;
 
-/// A thing with a word about it at the right end.
+/// A row with the name of an item, and a word about it at the right end.
 pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
     let selected = state.selection.selected == Some(item);
     let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
@@ -74,7 +74,7 @@ pub fn pair(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// The coordinates of a thing beside their name.
+/// A row with the coordinates of an item beside their name.
 pub fn place(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     pair(ui, &format!("Position, {}", Unit::M.display().symbol), contents);
 }

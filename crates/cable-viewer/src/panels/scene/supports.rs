@@ -1,4 +1,4 @@
-//! The list of supports says the kind of each; a form has everything of one.
+//! The list of supports shows the kind of each support; a form shows all properties of one support.
 
 use cable_core::math::Point;
 use cable_core::scene::{Motion, PulleySide, SupportKind};

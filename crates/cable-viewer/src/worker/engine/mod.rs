@@ -3,12 +3,14 @@
 //! - `answer_edit`: the answer to an edit: a draft, a rest or a state that is carried over
 //! - `motion`: frames of simulated time, and a hand that draws meanwhile
 //! - `outbox`: what waits for the window
+//! - `reset`: the simulation taken back to its start, and back again
 //! - `run`: the simulation in time, with its start, its whole steps and what is known of it
 //! - `snapshot`: what of the engine's state goes there
 
 mod answer_edit;
 mod motion;
 pub(super) mod outbox;
+mod reset;
 mod run;
 mod snapshot;
 
@@ -67,6 +69,26 @@ enum Phase {
     },
 }
 
+/// A run that a reset ended, as it was on screen.
+#[derive(Debug)]
+struct EndedRun {
+    run: Run,
+    edit: Option<Edit>,
+    phase: Phase,
+    snapshot: Snapshot,
+}
+
+impl EndedRun {
+    fn checkpoint(&self) -> Self {
+        Self {
+            run: self.run.checkpoint(),
+            edit: self.edit.clone(),
+            phase: self.phase.clone(),
+            snapshot: self.snapshot.clone(),
+        }
+    }
+}
+
 /// The requests of hands and of the robot's remote control.
 #[derive(Clone, Copy, Debug, Default)]
 struct Steering {
@@ -105,26 +127,6 @@ impl Refinement {
     fn put_off(&mut self, histories: bool) {
         if self.is_later() {
             *self = Self::Later { histories_due: histories };
-        }
-    }
-}
-
-/// A run that a reset ended, as it was on screen.
-#[derive(Debug)]
-struct EndedRun {
-    run: Run,
-    edit: Option<Edit>,
-    phase: Phase,
-    snapshot: Snapshot,
-}
-
-impl EndedRun {
-    fn checkpoint(&self) -> Self {
-        Self {
-            run: self.run.checkpoint(),
-            edit: self.edit.clone(),
-            phase: self.phase.clone(),
-            snapshot: self.snapshot.clone(),
         }
     }
 }
@@ -336,54 +338,6 @@ impl Engine {
         self.edit = Some(edit);
         self.phase = Phase::Answer;
         self.steering.hand = None;
-        self.sample();
-        Ok(())
-    }
-
-    /// Keeps the run so far, which a reset ends, and leaves a copy of it in its place.
-    fn keep_ended_run(&mut self) {
-        let Some(run) = self.run.take_if(|run| run.simulation().time_s() > 0.0) else { return };
-        let copy = run.checkpoint();
-        let (edit, phase, snapshot) = (self.edit.clone(), self.phase.clone(), self.outbox.snapshot.clone());
-        self.ended_run = Some(Box::new(EndedRun { run, edit, phase, snapshot }));
-        self.run = Some(copy);
-    }
-
-    /// Goes on from where the last reset was asked for, as if it had not been; nothing is solved
-    /// unless the scene, the model or the mesh is another than then, which is an edit of then.
-    fn undo_reset(&mut self, edit: Edit) -> Option<Result<(), Error>> {
-        let EndedRun { run, edit: before, phase, snapshot } = *self.ended_run.take()?;
-        // The run since then takes its place.
-        self.keep_ended_run();
-        let of = |e: &Edit| (e.scene.clone(), e.model, e.settings);
-        let is_same = before.as_ref().is_some_and(|before| of(before) == of(&edit));
-        (self.run, self.edit, self.phase) = (Some(run), before, phase);
-        self.refinement.put_off(false);
-        self.playback.paused = true;
-        self.outbox.answers.clear();
-        self.outbox.snapshot = Snapshot { real_speed: None, ..snapshot };
-        self.outbox.keep_answer();
-        (!is_same).then(|| self.take_edit(edit))
-    }
-
-    fn reset(&mut self) -> Result<(), Error> {
-        self.keep_ended_run();
-        self.outbox.history_restarts = true;
-        if self.coarse() {
-            self.phase = Phase::Answer;
-        }
-        self.outbox.answers.clear();
-        self.steering.hand = None;
-        let answers = matches!(self.phase, Phase::Answer);
-        if !self.run.as_mut().is_some_and(|run| answers && run.back_to_start())
-            && let Some(edit) = self.edit.clone()
-        {
-            let mut edit = edit;
-            self.refinement.put_off(edit.settings.histories);
-            let laid = self.settle_edit(&mut edit, None)?;
-            self.run = Some(Run::new(laid, RunStart::Settled));
-            self.phase = Phase::Answer;
-        }
         self.sample();
         Ok(())
     }

@@ -1,13 +1,13 @@
-//! The exploration takes an end from place to place, outwards from where it is.
+//! The exploration moves an end from place to place, outwards from its present position.
 //!
-//! On each grid places are reached in the order of how far their way is (E. W. Dijkstra, "A note on
-//! two problems in connexion with graphs", Numerische Mathematik 1, 1959; ways go to the eight
+//! On each grid places are reached in the order of the length of their way (E. W. Dijkstra, "A note
+//! on two problems in connexion with graphs", Numerische Mathematik 1, 1959; ways go to the eight
 //! neighbours, a diagonal counts 7/5 of a side). The first grid is coarse: it shows in a few steps
 //! what the map will look like. Each finer one has twice as many places side by side and goes on
 //! from the cables kept at those of the coarser ones, so that all grids together take hardly more
-//! steps than the finest alone. Between four places that agree, with nothing but free places
-//! between them, finer grids would show nothing new and do not look: where a cable lies slack all
-//! over a tank these are most places.
+//! steps than the finest alone. Between four places that agree, with only free places between them,
+//! finer grids would show nothing new and skip the cell: where a cable lies slack all over a tank
+//! these are most places.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -19,12 +19,12 @@ use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::simulation::Simulation;
 
-/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen;
-/// shorter: more answers.
+/// Longest way between two answers, m. Larger: an edge that the cable slips over is missed;
+/// smaller: more answers.
 const STEP_M: f64 = 0.25;
 
-/// A step without an answer is taken again in so many parts. Fewer: white spots where a slack cable
-/// falls over an edge.
+/// Number of parts in which a step without an answer is taken again. Smaller: white spots where a
+/// slack cable falls over an edge.
 const RETRY_PARTS: usize = 4;
 
 /// Costs of a way to a neighbour beside and across: 7/5 is near enough to √2, and whole numbers
@@ -34,36 +34,36 @@ const COSTS: [u64; 2] = [5, 7];
 /// The neighbours of a place.
 const NEIGHBOURS: [[i64; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 
-/// Shortest look along a way, m. Longer: what is thinner than a cable is passed; shorter: ways
-/// along the ground take longer to look at.
+/// Shortest step of the search for obstacles along a way, m. Larger: obstacles thinner than a cable
+/// are missed; smaller: ways along the ground take longer.
 const MIN_PROBE_STEP_M: f64 = 2e-3;
 
-/// Places side by side on the coarsest grid at least. Fewer: nothing can be told from it; more: it
+/// Least number of places in a row of the coarsest grid. Smaller: the map shows nothing; larger: it
 /// takes longer.
 const MIN_PLACES_ACROSS: usize = 6;
 
-/// Most places whose cables are kept for the next grid. More: memory (half a megabyte each); fewer:
-/// finer grids begin farther back.
+/// Maximum number of places whose cables are kept for the next grid. Larger: memory (half a
+/// megabyte each); smaller: finer grids begin farther back.
 const MAX_KEPT_CABLES: usize = 600;
 
-/// Four places whose tensions lie closer than this part of the service tension agree. More: a snag
-/// between them is not seen; less: slack parts of the map, which take longest, are looked at all
-/// over.
+/// Difference of tensions within which four places agree, as a fraction of the service tension.
+/// Larger: a snag between them is missed; smaller: slack parts of the map, which take longest, are
+/// explored completely.
 const AGREEMENT_FRACTION: f64 = 0.02;
 
-/// A tension that finite elements say has grown by this factor in one step is not believed at once:
-/// nodes catch on corners. The cable is laid anew as it last was, and the lesser tension counts.
-/// Less: laid anew more often, which forgets friction; more: false spots on the map, and all places
+/// Growth of tension in one step of finite elements from which it is checked, because nodes catch
+/// on corners: the cable is laid anew from its last state, and the smaller tension counts. Smaller:
+/// laid anew more often, which forgets friction; larger: false spots on the map, and all places
 /// behind them false (on the tank 68 kN and 233 N for 106 N).
 const SNAG_GROWTH: f64 = 2.0;
 
-/// Tensions below this part of the service tension are not asked for again: nothing depends on
-/// them.
+/// Tension below which no check is made, as a fraction of the service tension: nothing depends on
+/// it.
 const NEGLIGIBLE_FRACTION: f64 = 0.1;
 
-/// Nearer than this part of the farthest that is tried a cable that stops short is held by
-/// something: other ways there are tried as well. More: each place at the edge of the map is tried
-/// from all sides; less: false spots near obstacles.
+/// Distance, as a fraction of the farthest one, within which a cable that stops short is held by an
+/// obstacle, so that other ways to the place are tried. Larger: each place at the edge of the map
+/// is tried from all sides; smaller: false spots near obstacles.
 const RETRY_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The end at a place, and the cable there.
@@ -82,19 +82,19 @@ pub(super) struct Exploration<'a> {
     pub world: World,
     /// The other supports of the cable, m.
     pub holds: Vec<Vec2>,
-    /// Farther from those it is not tried, m.
+    /// Greatest distance from these supports that is tried, m.
     pub far_m: f64,
     /// The place of the start.
     pub first: usize,
-    /// Places that are free and not hopelessly far.
+    /// Places that are free and within that distance.
     pub free: Vec<bool>,
     /// Places that were answered.
     pub known: Vec<bool>,
     /// Places between others that agree.
     pub settled: Vec<bool>,
-    /// Places that were not reached for the cable, near enough for it: another way may lead there.
+    /// Places near enough that the cable did not reach: another way may lead there.
     pub beyond: Vec<bool>,
-    /// From where each place was reached.
+    /// The place from which each place was reached.
     pub parents: Vec<Option<usize>>,
     pub found: Area,
 }
@@ -103,8 +103,8 @@ pub(super) struct Exploration<'a> {
 type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
-    /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is
-    /// not there in the end.
+    /// Explores outwards from the start, grid after grid; at the end no place is only guessed from
+    /// a coarser grid.
     pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.is_candidate(k)).collect();
         let most_n = self.tension_n(&laid);
@@ -202,7 +202,7 @@ impl Exploration<'_> {
         high_n - low_n <= AGREEMENT_FRACTION * self.found.service_n
     }
 
-    /// Every how manieth place each grid has, the coarsest first. All but the last are small enough
+    /// The stride of each grid in places, the coarsest first. All but the last are small enough
     /// that their cables can be kept.
     fn strides(&self) -> Vec<usize> {
         let columns = self.found.columns;
@@ -229,8 +229,8 @@ impl Exploration<'_> {
         kept: &mut Vec<Rc<ReachedPlace>>,
         progress: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        // By cost and place; by from where as well: where one way has no answer another one of the
-        // same length may.
+        // The key is cost, place and origin: if one way has no answer, another one of the same
+        // length may have one.
         let mut open = BTreeMap::new();
         for from in kept.iter() {
             self.open(from, stride, &mut open);
@@ -244,7 +244,7 @@ impl Exploration<'_> {
             let mut simulation = from.simulation.clone();
             let before_n = from.most_n;
             drop(from);
-            // Without an answer on this way there may be one on another.
+            // If this way has no answer, another one may have one.
             let Some(out_n) = self.go(&mut simulation, [self.at(parent), self.at(place)]) else { continue };
             let most_n = larger(before_n, out_n);
             if most_n.is_infinite() && self.near(place) {
@@ -323,13 +323,13 @@ impl Exploration<'_> {
         vec2(self.found.at(place))
     }
 
-    /// Returns whether a place is free and not hopelessly far.
+    /// Returns whether a place is free and within the greatest distance.
     fn is_candidate(&self, place: usize) -> bool {
         let p = self.at(place);
         place == self.first || (self.is_free(p) && self.holds.iter().all(|h| (p - h).norm() <= self.far_m))
     }
 
-    /// Returns whether a cable that nothing holds would reach a place by far.
+    /// Returns whether a cable that no obstacle holds would easily reach a place.
     fn near(&self, place: usize) -> bool {
         self.holds.iter().all(|h| (self.at(place) - h).norm() <= RETRY_DISTANCE_FRACTION * self.far_m)
     }
@@ -338,8 +338,8 @@ impl Exploration<'_> {
         self.world.is_empty() || self.world.signed_gap(p, f64::INFINITY).is_none_or(|g| g.gap_m >= 0.0)
     }
 
-    /// Returns whether nothing lies between two free places: looked at in steps no longer than the
-    /// way to the nearest obstacle.
+    /// Returns whether no obstacle lies between two free places, in steps no longer than the
+    /// distance to the nearest obstacle.
     fn clear(&self, from: Vec2, to: Vec2) -> bool {
         let (way, mut gone, mut before) = (to - from, 0.0, f64::NEG_INFINITY);
         while !self.world.is_empty() && gone < way.norm() {
@@ -365,8 +365,8 @@ impl Exploration<'_> {
         })
     }
 
-    /// The way back from a place to the start; the largest tension on it, infinite where the cable
-    /// holds it back, None without an answer.
+    /// Moves the end back from a place to the start; returns the largest tension, infinite if the
+    /// cable holds it back, None without an answer.
     fn back(&self, simulation: &mut Simulation, place: usize) -> Option<f64> {
         let (mut at, mut most) = (place, 0.0);
         while let Some(before) = self.parents.get(at).copied().flatten().filter(|_| f64::is_finite(most)) {
@@ -376,8 +376,8 @@ impl Exploration<'_> {
         Some(most)
     }
 
-    /// Moves the end straight from one place to another; the largest tension on the way, infinite
-    /// where it gets no farther, None without an answer.
+    /// Moves the end straight from one place to another; returns the largest tension, infinite if
+    /// the cable stops it, None without an answer.
     pub fn go(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2]) -> Option<f64> {
         let steps = ((to - from).norm() / STEP_M).ceil();
         let mut most = self.tension_n(simulation);
@@ -391,8 +391,8 @@ impl Exploration<'_> {
         Some(most)
     }
 
-    /// A step; where it has no answer, or one that is not believed, it is taken in parts and with
-    /// the cable laid anew.
+    /// Takes a step; if it has no answer, or a doubtful one, it is taken in parts and with the
+    /// cable laid anew.
     fn go_with_retries(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
         let before = simulation.clone();
         let before_n = self.tension_n(&before);
@@ -422,7 +422,7 @@ impl Exploration<'_> {
         simulation.largest_n([self.query.cable])
     }
 
-    /// A step in so many parts; the largest tension in it, None without an answer.
+    /// Takes a step in so many parts; returns the largest tension in it, None without an answer.
     fn step(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2], parts: usize) -> Option<f64> {
         let mut most = 0.0;
         for k in 1..=parts {

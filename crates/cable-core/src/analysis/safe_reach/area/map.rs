@@ -7,7 +7,7 @@ use crate::model::Settings;
 use crate::scene::Scene;
 use crate::solution::Solution;
 
-/// The question.
+/// The query.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReachQuery {
     /// The scene.
@@ -20,12 +20,12 @@ pub struct ReachQuery {
     pub cable: usize,
     /// The support that is moved.
     pub support: usize,
-    /// Lower left and upper right corner of what is looked at, m.
+    /// Lower left and upper right corner of the map, m.
     pub corners_m: [Point; 2],
     /// Side of a place, m.
     pub spacing_m: f64,
-    /// Asks for the way there and back instead of the place itself: by the number of places on a
-    /// way as much work again.
+    /// True for the way there and back instead of the place itself: as many more steps as there are
+    /// places on the ways.
     pub back: bool,
 }
 
@@ -39,11 +39,11 @@ pub struct Area {
     /// Places side by side.
     pub columns: usize,
     /// Largest tension with the end there, or on the way there and back, N, row by row from below.
-    /// Not a number: nothing is known of it, no free way leads there or no answer was found;
-    /// infinite: the cable does not reach.
+    /// NaN if nothing is known: no free way leads there or no answer was found. Infinite if the
+    /// cable does not reach the place.
     pub most_n: Vec<f64>,
-    /// Of each place: its tension is taken from four round it that agree, or, while the map is not
-    /// done, from the nearest of a coarser grid.
+    /// For each place, true if its tension is interpolated from four agreeing ones round it, or,
+    /// while the map is unfinished, taken from the nearest one of a coarser grid.
     pub guessed: Vec<bool>,
     /// Position at which the end starts, m.
     pub start_m: Point,
@@ -62,8 +62,8 @@ impl Area {
         [self.origin_m[0] + column * self.spacing_m, self.origin_m[1] + row * self.spacing_m]
     }
 
-    /// Returns how much of the plane is below a tension (N), m², and the corners of the rectangle
-    /// round it, m; None where nothing is.
+    /// Returns the area of the plane below a tension (N), m², and the corners of its bounding
+    /// rectangle, m; None if there is none.
     #[must_use]
     pub fn below(&self, tension_n: f64) -> Option<(f64, [Point; 2])> {
         let within = self.most_n.iter().enumerate().filter(|(_, t)| **t <= tension_n).map(|(k, _)| self.at(k));

@@ -13,7 +13,7 @@ fn query(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> ReachQuery {
     ReachQuery { scene, now: None, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
 }
 
-/// Returns what is known of the place nearest to a point, and where that is.
+/// Returns the position of the place nearest to a point, and its tension.
 fn place(area: &Area, p: Point) -> (Point, f64) {
     let near = |k: &usize| (vec2(area.at(*k)) - vec2(p)).norm();
     let k = (0..area.most_n.len()).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
@@ -120,8 +120,8 @@ fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
     assert_eq!(bits(&look(&query)), bits(&look(&query)));
 }
 
-/// A fine map that is not done is covered from a coarse one and is told to be guessed; in the end
-/// only places between others that agree are.
+/// An unfinished fine map is filled from a coarse one and marked as guessed; at the end only places
+/// between agreeing ones are.
 #[test]
 fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     let query = query(free(), [[-2.0, -2.0], [12.0, 6.0]], 0.5);
@@ -153,7 +153,7 @@ fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     assert!(found.guessed.iter().zip(&found.most_n).all(|(g, n)| !g || n.is_finite()));
 }
 
-/// A hand has taken the end elsewhere meanwhile: the map begins there, with the cable as it lies.
+/// A hand has moved the end meanwhile: the map begins there, with the present state of the cable.
 #[test]
 fn it_begins_where_the_cable_lies_now() {
     let scene = free();

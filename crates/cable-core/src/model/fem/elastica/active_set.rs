@@ -1,5 +1,5 @@
-//! The active set is found: which contacts there are, which of them are a point and which a
-//! stretch.
+//! This module finds the active set of an elastica: its contacts, and for each whether it is a
+//! point or a stretch.
 
 use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{
@@ -8,27 +8,28 @@ use crate::model::fem::elastica::boundary_value::{
 use crate::model::fem::elastica::guess::contacts::contact_at;
 use crate::problem::Problem;
 
-/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off
-/// between their ends.
+/// Depth to which a cable may lie in an obstacle, as a fraction of its radius: the error of the
+/// shape inside an element.
 const OVERLAP_TOLERANCE: f64 = 1e-3;
 
-/// Elements of a new stretch of contact.
+/// Number of elements of a new stretch of contact.
 const STRETCH_ELEMENTS: usize = 8;
 
-/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside
-/// it. Newton's method finds the right one; far more than that turns over on the way.
+/// First length of a new stretch of contact, as a fraction of its radius or of the shorter free
+/// piece beside it. Newton's method finds the right length; if the first one is far too long, the
+/// stretch turns over on the way.
 const NEW_STRETCH_FRACTION: f64 = 0.05;
 
-/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a
-/// point.
+/// Length below which a stretch of contact becomes a point, as a fraction of the radius of the
+/// round (of the cable where the contact is a line).
 const SHORTEST_STRETCH_FRACTION: f64 = 1e-4;
 
-/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the
-/// scene's forces.
+/// Tolerance of the contact law: relative excess of the cable's curvature over that of the round it
+/// touches, and pull at a contact as a fraction of the scene's forces.
 const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 
-/// The same for a contact that was a stretch and became a point: at the very limit it is either,
-/// and would change for ever.
+/// The same tolerance for a contact that was a stretch and became a point. At the limit both states
+/// are solutions, and without this hysteresis the contact would alternate for ever.
 const POINT_CURVATURE_TOLERANCE: f64 = 1e-3;
 
 /// The two free pieces into which a node cuts a piece.
@@ -53,11 +54,11 @@ fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
 }
 
 impl Elastica {
-    /// Solves with the right set of contacts; returns false where none is found.
+    /// Finds the right set of contacts and solves with it; returns false if none is found.
     pub(super) fn settle(&mut self, problem: &Problem) -> bool {
         // Contacts that were stretches and became points.
         let mut points = Vec::new();
-        // Each change costs work, 1 to 4 are usual.
+        // Each change of the set costs work; 1 to 4 changes are usual.
         while self.work <= MOST_WORK {
             let saved = self.clone();
             let solved = self.newton();
@@ -82,10 +83,10 @@ impl Elastica {
         false
     }
 
-    /// Goes back to a guess with less contact with lines between free pieces: a stretch becomes a
-    /// point, a point opens. A cable that bends round obstacles before and behind a line is lifted
-    /// off it; where that is wrong the cable meets the line again. Returns whether there was any
-    /// such contact.
+    /// Goes back to the guess `from` with less contact on lines between free pieces: a stretch
+    /// becomes a point, and a point opens. A cable that bends round obstacles before and behind a
+    /// line is often lifted off it; if it is not, the cable meets the line again. Returns whether
+    /// there was any such contact.
     fn lift_off_lines(&mut self, from: &Self) -> bool {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
@@ -109,7 +110,7 @@ impl Elastica {
         true
     }
 
-    /// The first stretch of contact, between free pieces, that is too short for one.
+    /// The first stretch of contact between free pieces that is too short to be a stretch.
     fn shortest_stretch(&self, problem: &Problem) -> Option<usize> {
         let short = |p: &Piece| {
             let c = p.contact.and_then(|k| self.contacts.get(k));
@@ -119,7 +120,7 @@ impl Elastica {
         (0..self.pieces.len()).find(|&k| inner(k) && short(&self.pieces[k]))
     }
 
-    /// Makes a point contact of a piece that lies on one.
+    /// Turns the stretch of contact `k` into a point contact.
     fn make_point(&mut self, k: usize) {
         let Some(contact) = self.pieces[k].contact else { return };
         self.pieces.remove(k);
@@ -127,7 +128,7 @@ impl Elastica {
         self.joints[k - 1] = Joint::PointContact(contact);
     }
 
-    /// Makes a stretch of a point contact.
+    /// Turns a point contact into a stretch.
     fn make_stretch(&mut self, joint: usize, contact: usize) {
         let (before, after) = (&self.pieces[joint], &self.pieces[joint + 1]);
         let (Some(mut u), Some(v)) = (before.nodes.last().copied(), after.nodes.first().copied()) else { return };
@@ -171,8 +172,8 @@ impl Elastica {
         -(force(b) - force(a)).dot(&normal)
     }
 
-    /// Changes one contact that breaks its law; returns whether there was any, None where it is one
-    /// that no change mends.
+    /// Changes one contact that violates the contact law. Returns whether there was one, and None
+    /// if no change can mend it.
     fn change_one_contact(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {
@@ -200,7 +201,7 @@ impl Elastica {
                 return Some(true);
             }
         }
-        // A stretch that would have to pull where it begins or ends.
+        // Look for a stretch that would have to pull where it begins or ends.
         for j in 0..self.joints.len() {
             let (Joint::ContactBegin(k) | Joint::ContactEnd(k)) = self.joints[j] else { continue };
             let pulley = matches!(self.contacts[k].owner, Owner::Pulley(_));
@@ -208,7 +209,8 @@ impl Elastica {
                 return None;
             }
         }
-        // A stretch that would have to pull along its way, or that lies in another surface.
+        // Look for a stretch that would have to pull somewhere along it, or that lies inside
+        // another obstacle.
         for k in 0..self.pieces.len() {
             let Some(c) = self.pieces[k].contact.and_then(|c| self.contacts.get(c)) else { continue };
             let pulley = matches!(c.owner, Owner::Pulley(_));
@@ -219,7 +221,7 @@ impl Elastica {
                 }
             }
         }
-        // An end that its load lifts off its contact.
+        // Look for an end that its load lifts off its contact.
         let tips = [
             (0, self.pieces.first().map(|p| (p, p.nodes.first()))),
             (1, self.pieces.last().map(|p| (p, p.nodes.last()))),
@@ -256,7 +258,7 @@ impl Elastica {
         }
     }
 
-    /// The contact in whose obstacle a place on another contact lies, if in any.
+    /// Another contact whose obstacle contains the place `x` on contact `c`, if there is one.
     fn deeper_contact(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
@@ -264,8 +266,8 @@ impl Elastica {
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
     }
 
-    /// The friction that a new contact in a piece mobilises, and whether it slips: as the flexible
-    /// cable did there if it lay there, else as the contacts before and after it do in the mean.
+    /// The friction that a new contact in a piece mobilises, and whether it slips: the values of
+    /// the flexible cable if that lay there, else the mean of the contacts before and after it.
     fn friction_of_new(&self, new: &Contact, piece: usize, coefficient: f64) -> (f64, bool) {
         let far = |c: &&Contact| (c.at - new.at).norm();
         let on_it = self.contacts.iter().filter(|c| c.is_same_surface(new));
@@ -286,8 +288,8 @@ impl Elastica {
         (mean.clamp(-coefficient, coefficient), beside.iter().all(|c| c.slips))
     }
 
-    /// Adds a point contact where free pieces are deepest in an obstacle; returns whether they are
-    /// in any, None where a piece has no node at which it could be cut.
+    /// Adds a point contact where free pieces are deepest inside an obstacle. Returns whether any
+    /// piece is inside one, and None if that piece has no node at which it can be divided.
     fn add_deepest_contact(&mut self, problem: &Problem) -> Option<bool> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
@@ -305,13 +307,14 @@ impl Elastica {
                 if i > 0 {
                     measure(place(a), i);
                 }
-                // Between two nodes it may run into a corner or round that neither of them is in.
+                // Between two nodes the cable may run into a corner or round that contains neither
+                // of them.
                 let bulge = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]);
                 let (from, to) = (piece.grid[i], piece.grid[i + 1]);
                 world.geometry().segment_pairs(place(a), place(b), bulge, &mut |p| {
                     let at = self.state_in(piece, from + (to - from) * p.gap.fraction);
                     let nearer = if p.gap.fraction < 0.5 { i } else { i + 1 };
-                    // The nearest inner node; a piece of one element has none.
+                    // Take the nearest inner node; a piece of one element has none.
                     measure(place(&at), nearer.min(last - 1).max(1));
                 });
             }

@@ -1,4 +1,4 @@
-//! A solved elastica is written as an answer, with its error.
+//! This module writes a solved elastica as an answer, with its error estimates.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
@@ -10,31 +10,33 @@ use crate::solution::{
     Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Cost, Node, SupportReaction,
 };
 
-/// Most nodes of a piece in an answer.
+/// Maximum number of nodes of a piece in an answer.
 const MOST_PARTS: f64 = 400.0;
 
-/// Part of its diameter, and m, by which a line between two nodes may leave the cable.
+/// Distance by which the straight line between two nodes may leave the cable: a fraction of its
+/// diameter, and a length in m.
 const FLATNESS: [f64; 2] = [0.01, 5e-4];
 
-/// Part of a piece that lies by which a node stands before its end.
+/// Distance of the last node before the end of a piece in contact, as a fraction of the piece.
 const END_NODE_OFFSET: f64 = 1e-6;
 
-/// Part of an element by which two nodes of an answer are apart at least.
+/// Least distance of two nodes of an answer, as a fraction of an element.
 const NODE_SPACING_FRACTION: f64 = 1e-3;
 
-/// Halvings of an element by which the place of its greatest tension is found: what is left of it
-/// is squared.
+/// Number of halvings of an element that locate its greatest tension: the error of that tension is
+/// the square of the interval that is left.
 const PEAK_HALVINGS: usize = 24;
 
-/// Part of what halving the elements changes that may be left of an error: a fifteenth by the
-/// fourth order, twice that where the last elements beside a contact do not have it yet.
+/// Error that may be left after the elements are halved, as a fraction of the change by halving:
+/// 1/15 by the fourth order, and twice that because the last elements beside a contact may not have
+/// reached this order.
 const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 
-/// Elements of all pieces together that are refined to.
+/// Maximum number of elements of all pieces together after refinement.
 const MOST_ELEMENTS: usize = 4000;
 
-/// Raises the elastica to the whole stiffness and refines it; returns its answer with the error.
-/// None where that is not found.
+/// Raises the bending stiffness of the elastica to that of the cable and refines its elements.
+/// Returns the answer with its error, and None if the continuation fails.
 pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
     if !elastica.stiffen(problem) {
         return None;
@@ -45,9 +47,9 @@ pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: 
     Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
 }
 
-/// Halves the elements until the forces change by less than `tolerance` of the greatest, or until
-/// the next halving is not solved; returns what error is left, in parts of the greatest tension.
-/// None where the first halving is not solved: nothing is known of the error then.
+/// Halves the elements until the forces change by less than the fraction `tolerance` of the
+/// greatest tension, or until the next halving fails. Returns the answer's error relative to the
+/// greatest tension, and None if the first halving fails: then nothing is known of the error.
 pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
     let mut known = None;
     loop {
@@ -113,7 +115,8 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
                 ..Node::default()
             };
             match out.last_mut() {
-                // The greater tension counts where two pieces meet, and the force beyond.
+                // At the joint of two pieces, the greater tension and the force of the second piece
+                // count.
                 Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
                     if node.tension_n > l.tension_n {
                         *l = node;
@@ -191,79 +194,96 @@ fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<Suppo
 }
 
 fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport> {
-    let mut out: Vec<ContactReport> = report_of_whole(elastica, problem).into_iter().collect();
-    for (j, joint) in elastica.joints.iter().enumerate() {
-        let (k, stretch) = match *joint {
-            Joint::PointContact(k) => (k, None),
-            Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
-            // The stretch that the cable begins with.
-            Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
-            _ => continue,
-        };
-        let Some(c) = elastica.contacts.get(k) else { continue };
-        let Owner::Obstacle(obstacle) = c.owner else { continue };
-        let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
-            continue;
-        };
-        let mut r = ContactReport {
-            obstacle: problem.world.obstacle_name(obstacle).to_owned(),
-            normal_n: elastica.push(j),
-            tension_before_n: tension(a),
-            tension_after_n: tension(b),
-            begins_m: a[ARC],
-            ends_m: b[ARC],
-            state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
-            ..ContactReport::default()
-        };
-        let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
-        if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
-            // The point force comes after what lies.
-            samples = along(elastica, problem, p);
-            samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
-        } else if let Some(p) = stretch {
-            samples.extend(along(elastica, problem, p));
-            if let (Some(last), Some(next)) = (p.nodes.last(), elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
-            {
-                samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
-            }
-        }
-        let tip = match (*joint, stretch) {
-            (Joint::ContactEnd(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
-            (Joint::ContactBegin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
-            _ => None,
-        };
-        if let Some((which, u)) = tip {
-            let push = elastica.tip_push(which, c, u);
-            let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
-            r.normal_n += push;
-            samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
-        }
-        r.set_samples(samples);
-        let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
-        if let Some(p) = stretch {
-            r.normal_n += pressed_along(elastica, c, p);
-            let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
-            if let (Joint::ContactBegin(_), Some(next)) =
-                (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
-            {
-                r.normal_n += elastica.push(j + 1);
-                r.tension_after_n = tension(next);
-            } else if *joint == Joint::ContactBegin(k) {
-                r.tension_after_n = tension(last);
-            } else {
-                r.tension_before_n = tension(first);
-            }
-            (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
-            r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
-            let u = elastica.state_in(p, 0.5);
-            (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
-        }
-        r.friction_n = c.mobilised * r.normal_n;
-        r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
-        (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
-        out.push(r);
+    let joints = elastica.joints.iter().enumerate();
+    let at_joints = joints.filter_map(|(j, joint)| contact_report(elastica, problem, j, *joint));
+    report_of_whole(elastica, problem).into_iter().chain(at_joints).collect()
+}
+
+/// The contact that begins at joint `j`, or with which the cable begins there; None if there is
+/// none.
+fn contact_report(elastica: &Elastica, problem: &Problem, j: usize, joint: Joint) -> Option<ContactReport> {
+    let (k, stretch) = match joint {
+        Joint::PointContact(k) => (k, None),
+        Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
+        // The cable begins with this stretch.
+        Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
+        _ => return None,
+    };
+    let c = elastica.contacts.get(k)?;
+    let Owner::Obstacle(obstacle) = c.owner else { return None };
+    let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
+        return None;
+    };
+    let mut r = ContactReport {
+        obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+        normal_n: elastica.push(j),
+        tension_before_n: tension(a),
+        tension_after_n: tension(b),
+        begins_m: a[ARC],
+        ends_m: b[ARC],
+        state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+        ..ContactReport::default()
+    };
+    let mut samples = joint_samples(elastica, problem, j, joint, stretch);
+    let tip = match (joint, stretch) {
+        (Joint::ContactEnd(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
+        (Joint::ContactBegin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
+        _ => None,
+    };
+    if let Some((which, u)) = tip {
+        let push = elastica.tip_push(which, c, u);
+        let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
+        r.normal_n += push;
+        samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
     }
-    out
+    r.set_samples(samples);
+    let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
+    if let Some(p) = stretch {
+        r.normal_n += pressed_along(elastica, c, p);
+        let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { return None };
+        if let (Joint::ContactBegin(_), Some(next)) = (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+        {
+            r.normal_n += elastica.push(j + 1);
+            r.tension_after_n = tension(next);
+        } else if joint == Joint::ContactBegin(k) {
+            r.tension_after_n = tension(last);
+        } else {
+            r.tension_before_n = tension(first);
+        }
+        (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
+        r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
+        let u = elastica.state_in(p, 0.5);
+        (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
+    }
+    r.friction_n = c.mobilised * r.normal_n;
+    r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
+    (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
+    Some(r)
+}
+
+/// Samples of the contact force at joint `j`, and along the stretch beside it with its other end.
+fn joint_samples(
+    elastica: &Elastica,
+    problem: &Problem,
+    j: usize,
+    joint: Joint,
+    stretch: Option<&Piece>,
+) -> Vec<ContactSample> {
+    let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
+        return Vec::new();
+    };
+    let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
+    if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
+        // The point force follows the stretch.
+        samples = along(elastica, problem, p);
+        samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
+    } else if let Some(p) = stretch {
+        samples.extend(along(elastica, problem, p));
+        if let (Some(last), Some(next)) = (p.nodes.last(), elastica.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
+            samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
+        }
+    }
+    samples
 }
 
 /// Force along the normal of a contact on the piece that lies on it, N.
@@ -277,7 +297,7 @@ fn pressed_along(elastica: &Elastica, contact: &Contact, piece: &Piece) -> f64 {
     piece.nodes.windows(2).zip(piece.grid.windows(2)).map(of_element).sum()
 }
 
-/// The contact of a cable that lies on one surface from end to end; None where it does not.
+/// The contact of a cable that lies on one surface from end to end; None if it does not.
 fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactReport> {
     let [piece] = elastica.pieces.as_slice() else { return None };
     let contact = elastica.contacts.get(piece.contact?)?;
@@ -305,13 +325,13 @@ fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactRepo
     Some(report)
 }
 
-/// A piece at as many places as it takes to draw it with straight lines.
+/// The states of a piece at as many places as straight lines need to draw it.
 fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
     let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
     let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
     for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
         let (a, b) = (&pair[0], &pair[1]);
-        // A sagitta of length times turn over 8.
+        // The sagitta is the length times the turn over 8.
         let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
         let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
         let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
@@ -320,7 +340,8 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
         places.extend(peak(elastica, piece, [g[0], g[1]]).filter(clear));
         places.sort_by(f64::total_cmp);
         out.extend(places.into_iter().map(|x| elastica.state_in(piece, x)));
-        // A node just before the end tells the spread force from the point force at the end.
+        // A node just before the end separates the distributed force from the point force at the
+        // end.
         if piece.contact.is_some() && g[1] >= 1.0 {
             out.push(elastica.state_in(piece, 1.0 - END_NODE_OFFSET));
         }
@@ -329,8 +350,8 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
     out
 }
 
-/// The place of the greatest tension between two places of a piece, if it is at neither:
-/// between nodes it is read too small by the square of their distance.
+/// The place of the greatest tension between two places of a piece, if it is at neither. The nodes
+/// alone would miss part of it, which grows with the square of their distance.
 fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
         let u = elastica.state_in(piece, x);
@@ -347,7 +368,7 @@ fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Opt
     Some(from)
 }
 
-/// Force of a contact on a piece that lies on it, from place to place.
+/// Samples of the contact force along a piece that lies on its contact.
 fn along(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
     let of = |pair: &[[f64; STATES]]| {
         let (a, b) = (&pair[0], &pair[1]);

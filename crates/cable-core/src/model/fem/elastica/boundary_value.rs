@@ -1,46 +1,46 @@
-//! An elastica is a boundary value problem: this module has its pieces and joints, their equations
-//! (derived in the module above), and Newton's method for them.
+//! An elastica is a boundary value problem. This module defines its pieces and joints, their
+//! equations (derived in `elastica/mod.rs`), and Newton's method for them.
 
 use crate::linalg::PivotingBand;
 use crate::math::{Vec2, perp};
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 pub(super) const STATES: usize = 8;
-/// Place of θ among the unknowns.
+/// Index of θ among the unknowns.
 pub(super) const ANGLE: usize = 2;
-/// Place of M among the unknowns.
+/// Index of M among the unknowns.
 pub(super) const MOMENT: usize = 3;
-/// Place of s among the unknowns.
+/// Index of s among the unknowns.
 pub(super) const ARC: usize = 6;
-/// Place of the length of the piece among the unknowns.
+/// Index of the length of the piece among the unknowns.
 pub(super) const LENGTH: usize = 7;
 
-/// Half-bandwidth: rows of a joint stand up to 13 from the columns they belong to.
+/// Half-bandwidth: rows of a joint are up to 13 away from the columns they belong to.
 const HALF_BAND: usize = 16;
 
-/// Newton steps. 5 to 8 are usual; more than this finds nothing.
+/// Maximum number of Newton steps. 5 to 8 are usual; beyond this limit none converged.
 const MAX_STEPS: usize = 40;
 
-/// Longest turn of a node in one step, rad.
+/// Greatest turn of a node in one step, rad.
 const LONGEST_TURN: f64 = 0.4;
 
-/// Part of its length that a piece may lose in one step: it must not turn over.
+/// Fraction of its length that a piece may lose in one step, so that it does not turn over.
 const PIECE_SHORTENING_LIMIT: f64 = 0.6;
 
-/// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a
-/// point. Fewer: first guesses that are too long are; more: all others wait for it.
+/// Number of successive steps in which a stretch of contact tends to a negative length before it
+/// becomes a point. Smaller: stretches whose first guess is too long become points; larger: all
+/// other pieces wait for it.
 const STEPS_BEFORE_POINT_CONTACT: usize = 3;
 
-/// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten
-/// contacts are left to a chain of bars; more: seconds go into what is not found. Chosen so that a
-/// guess costs some tenths of a second; not tuned further.
+/// Work spent on a cable from one guess, in Newton steps times nodes. Smaller: cables with ten
+/// contacts are left to a chain of bars; larger: seconds are spent on guesses that fail. Chosen so
+/// that a guess costs some tenths of a second; not tuned further.
 pub(super) const MOST_WORK: usize = 25_000;
 
-/// Newton has ended where no unknown moves by more than this part of its size.
+/// Newton's method has converged when no unknown moves by more than this fraction of its size.
 const STEP_TOLERANCE: f64 = 1e-10;
 
-/// Part of an unknown's size by which it is moved to find a slope, with central differences: their
-/// error is its square.
+/// Step of central differences, as a fraction of the unknown's size: their error is its square.
 const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// A surface on which the cable can lie, at one place.
@@ -54,11 +54,11 @@ pub(super) struct Contact {
     pub(super) radius: Option<f64>,
     /// Outward normal of a line.
     pub(super) normal: Vec2,
-    /// +1 passed anticlockwise, −1 clockwise.
+    /// +1 if the cable passes it anticlockwise, −1 clockwise.
     pub(super) sense: f64,
-    /// Friction mobilised: force along growing arc length over normal force.
+    /// Mobilised friction: force along growing arc length over normal force.
     pub(super) mobilised: f64,
-    /// True if that is all there is.
+    /// True if that is all the friction there is: the contact slips.
     pub(super) slips: bool,
 }
 
@@ -90,14 +90,14 @@ impl Contact {
         self.radius.filter(|r| *r > 0.0).map_or(0.0, |r| self.sense / r)
     }
 
-    /// True if two contacts are with one line or round.
+    /// True if two contacts are with the same line or round.
     pub(super) fn is_same_surface(&self, other: &Self) -> bool {
         self.owner == other.owner
             && self.radius == other.radius
             && if self.radius.is_some() { self.at == other.at } else { (self.normal - other.normal).norm() < 1e-9 }
     }
 
-    /// True if it is a sharp corner: a cable slides over it, and none can lie on it.
+    /// True if it is a sharp corner: a cable slides over it, and no stretch of cable can lie on it.
     pub(super) fn is_point(&self) -> bool {
         self.radius == Some(0.0)
     }
@@ -108,7 +108,7 @@ impl Contact {
 pub(super) struct Piece {
     /// The contact it lies on; None: it is free.
     pub(super) contact: Option<usize>,
-    /// Places of its nodes, 0 to 1.
+    /// Places of its nodes along it, 0 to 1.
     pub(super) grid: Vec<f64>,
     pub(super) nodes: Vec<[f64; STATES]>,
 }
@@ -153,12 +153,12 @@ pub struct Elastica {
     pub(super) joints: Vec<Joint>,
     pub(super) ends: [End; 2],
     pub(super) contacts: Vec<Contact>,
-    /// Newton steps so far.
+    /// Number of Newton steps so far.
     pub steps: usize,
-    /// The same times nodes.
+    /// Sum over these steps of the number of nodes.
     pub(super) work: usize,
     pub(super) residual: f64,
-    /// The piece that Newton's method wanted to be shorter than nothing.
+    /// The piece whose length Newton's method made negative.
     pub(super) shrinking: Option<usize>,
 }
 
@@ -178,7 +178,8 @@ pub(super) fn tension(u: &[f64; STATES]) -> f64 {
     force(u).dot(&tangent(u))
 }
 
-/// The angle from a line's or round's own direction, as a sine: zero where the cable is tangent.
+/// Sine of the angle between the cable and the tangent of the line or round: zero where the cable
+/// is tangent.
 fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
     contact.gap(place(u)).1.dot(&tangent(u))
 }
@@ -192,7 +193,7 @@ impl Elastica {
         contact.sense * (pull * turn + self.body.dot(&perp(t)))
     }
 
-    /// The slope of all unknowns along a piece.
+    /// The derivatives of all unknowns along a piece.
     pub(super) fn slope(&self, contact: Option<usize>, u: &[f64; STATES]) -> [f64; STATES] {
         let (t, f) = (tangent(u), force(u));
         let n = perp(t);
@@ -232,8 +233,8 @@ impl Elastica {
             self.lying_equations(c, u, out);
         }
         match (self.ends[which], contact) {
-            // The contact prescribes the direction and distance of an end that lies on it: only its
-            // place along the contact or its pull is free.
+            // The contact prescribes the direction and distance of an end that lies on it, so only
+            // its place along the contact or its tension is free.
             (End::Held(at, _), Some(_)) => out.push((place(u) - at).dot(&tangent(u))),
             (End::Loaded(load), Some(c)) => {
                 out.push(tension(u) - sign * (load.dot(&tangent(u)) + c.mobilised * self.tip_push(which, c, u)));
@@ -249,8 +250,8 @@ impl Elastica {
         }
     }
 
-    /// Force of a contact on an end that lies on it, along its normal, N: the load of that end
-    /// presses there in one point.
+    /// Normal point force (N) of a contact on an end that lies on it, which balances the load of
+    /// that end.
     pub(super) fn tip_push(&self, which: usize, c: &Contact, u: &[f64; STATES]) -> f64 {
         match self.ends[which] {
             End::Loaded(load) => c.sense * load.dot(&perp(tangent(u))),
@@ -258,8 +259,8 @@ impl Elastica {
         }
     }
 
-    /// Appends the four conditions under which a piece lies on its contact: all of it does where
-    /// its start does.
+    /// Appends the four conditions under which a piece lies on its contact. If they hold at its
+    /// start, they hold all along it.
     fn lying_equations(&self, c: &Contact, u: &[f64; STATES], out: &mut Vec<f64>) {
         let bent = self.bending * c.curvature() * (1.0 + tension(u) / self.axial_stiffness);
         out.extend([c.gap(place(u)).0, slant(c, u), u[MOMENT] - bent, force(u).dot(&perp(tangent(u)))]);
@@ -301,7 +302,7 @@ impl Elastica {
         }
     }
 
-    /// The size by which each unknown is measured.
+    /// The scale of each unknown.
     fn sizes(&self) -> [f64; STATES] {
         let moment = self
             .pieces
@@ -314,9 +315,10 @@ impl Elastica {
         [self.length, self.length, 1.0, moment, f, f, self.length, self.length]
     }
 
-    /// Solves all equations at the present set of contacts; false where that does not end.
+    /// Solves all equations with the present set of contacts; returns false if the iteration does
+    /// not converge.
     pub(super) fn newton(&mut self) -> bool {
-        // Steps in a row in which a piece in contact would become shorter than nothing.
+        // Number of successive steps in which a piece in contact would get a negative length.
         let mut vanishing = vec![0; self.pieces.len()];
         self.shrinking = None;
         for _ in 0..MAX_STEPS {
@@ -373,7 +375,7 @@ impl Elastica {
         let mut right: Vec<f64> = Vec::with_capacity(STATES * count);
         let last = self.pieces.len() - 1;
         let (mut first, mut column) = (Vec::new(), 0);
-        // The equations of one place as a function of one or two nodes, with their slopes.
+        // Adds the equations of one place, a function of one or two nodes, with their derivatives.
         let mut add = |column: usize, near: &[[f64; STATES]], of: &Residual<'_>| {
             let row = right.len();
             of(near, &mut right);
@@ -423,12 +425,12 @@ impl Elastica {
         }
         self.residual = right.iter().fold(0.0, |m: f64, r| if r.abs() <= m { m } else { r.abs() });
         right.iter_mut().for_each(|r| *r = -*r);
-        // Equations of length, angle and force stand side by side.
+        // Rows are scaled because they mix lengths, angles and forces.
         band.scale(&mut right);
         band.solve(&mut right).then_some(right)
     }
 
-    /// Newton steps and the largest imbalance of the equations that is left.
+    /// Number of Newton steps and the largest residual that is left.
     #[must_use]
     pub fn cost(&self) -> (usize, f64) {
         (self.steps, self.residual)

@@ -1,9 +1,10 @@
-//! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either
-//! side of its chord, past what it then touches.
+//! This module finds the other equilibria of a compressed stiff cable: it may bow to either side of
+//! its chord, and may touch obstacles there.
 //!
-//! Of a cable that touches nothing they are those of the free cable (`free/beam/buckled_shapes.rs`)
-//! that keep clear of obstacles. Where one of them does not, or the cable touches something as it
-//! is, its mirror image, pushed out of what it lies in, is let go as a chain of bars.
+//! For a cable that touches nothing they are those shapes of the free cable
+//! (`free/beam/buckled_shapes.rs`) that keep clear of obstacles. If one of them does not, or the
+//! cable already touches something, its mirror image is pushed out of obstacles and relaxed as a
+//! chain of bars.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica;
@@ -13,13 +14,13 @@ use crate::problem::Problem;
 use crate::solution::error_estimates::{greatest_tension, place};
 use crate::solution::{CableSolution, Histories, Node};
 
-/// Depth inside an obstacle up to which a mirror image is pushed out, of the cable's length.
-/// Larger: time; smaller: buckled shapes that lie on the ground are not found.
+/// Depth inside an obstacle up to which a mirror image is pushed out, as a fraction of the cable's
+/// length. Larger: more time; smaller: buckled shapes that lie on the ground are not found.
 const PUSHED_OUT_FRACTION: f64 = 0.5;
 
-/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `free` finds
-/// the shapes of the same cable without obstacles, and is asked only where it is compressed enough
-/// to buckle. None where there is no other.
+/// Returns the equilibria of a compressed cable other than `answer`, at a time (s). `free` finds
+/// the shapes of the same cable without obstacles, and is called only if the compression suffices
+/// to buckle it. None if there is no other.
 pub(in crate::model::fem) fn other_equilibria(
     problem: &Problem,
     time_s: f64,
@@ -49,14 +50,14 @@ pub(in crate::model::fem) fn other_equilibria(
     Histories::bowed_elsewhere(tensions(&answer.nodes), &others)
 }
 
-/// Returns whether two shapes of a cable are two equilibria.
+/// Returns whether two shapes are far enough apart to be two different equilibria.
 fn are_apart(problem: &Problem, some: &[Node], others: &[Node]) -> bool {
     let off = |n: &Node| place(others, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
     some.iter().map(off).fold(0.0, larger) > SAME_SHAPE_FRACTION * problem.length
 }
 
-/// The mirror image of each part of a cable about the chord between its supports; None where
-/// nothing is between two of them.
+/// The mirror image of each part of a cable about the chord between its supports; None if no part
+/// lies between two supports.
 fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
     let held = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
     let stops: Vec<(f64, Vec2)> = held.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
@@ -75,7 +76,7 @@ fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
     any.then_some(nodes)
 }
 
-/// Nodes with those that lie in an obstacle on its surface.
+/// The nodes, with those inside an obstacle moved to its surface.
 fn pushed_out(problem: &Problem, mut nodes: Vec<Node>) -> Vec<Node> {
     for n in &mut nodes {
         if let Some(gap) =

@@ -1,28 +1,29 @@
-//! The resting place of a stiff cable in contact, as a boundary value problem: the elastica between
-//! supports and contacts that are a point or a stretch, without a mesh that contact would have to
-//! be found on.
+//! These modules find the equilibrium of a stiff cable in contact as a boundary value problem: the
+//! elastica between supports and contacts, each a point or a stretch. No contact has to be detected
+//! on a mesh.
 //!
-//! With t = (cos θ, sin θ), n = perp(t), the force F of what comes after on what comes before (T =
-//! F·t), the moment M and the unstretched arc length s, α = 1 + αₜΔT and ε = T/EA, a free piece
-//! obeys
+//! Let t = (cos θ, sin θ), n = perp(t), F the force of the cable after a point on the cable before
+//! it (T = F·t), M the moment, s the unstretched arc length, α = 1 + αₜΔT and ε = T/EA. A free
+//! piece obeys
 //! ```text
 //! x' = α(1 + ε) t,     θ' = αM/EI,     M' = −α(1 + ε) F·n,     F' = −b
 //! ```
-//! One that lies on a round of radius ρ, passed in the sense σ (+1 anticlockwise, outward normal
-//! N = −σn), or on a line (1/ρ = 0), has
+//! A piece that lies on a round of radius ρ, passed in the sense σ (+1 anticlockwise, outward
+//! normal N = −σn), or on a line (1/ρ = 0), obeys
 //! ```text
 //! θ' = α(1 + ε)σ/ρ,    M = EI (1 + ε)σ/ρ,    F = T t,    p = σ(Tθ' + b·n) ≥ 0,    T' = −b·t − μp
 //! ```
-//! with μ the friction that is mobilised, positive where it pulls the cable along growing s. Where
-//! a free piece and one that lies meet, and at a contact in one point, a point force P(N + μt)
-//! acts; x, θ and M go through. A contact is one point while its cable is less bent than its round,
-//! σM/EI ≤ 1/ρ, and a stretch where that would be broken: what belongs to which is found by an
-//! active set. Weightless and without friction T + M²/2EI is the same all along: T falls by EI/2ρ²
-//! where the cable lies on a round.
+//! with μ the mobilised friction, positive where it pulls the cable along growing s. Where a free
+//! piece meets a piece in contact, and at a point contact, a point force P(N + μt) acts; x, θ and M
+//! are continuous. A contact is a point while the cable there is less bent than its round, σM/EI ≤
+//! 1/ρ, and a stretch where the cable would be bent more: an active set decides. Without weight and
+//! friction T + M²/2EI is constant along the cable, so T falls by EI/2ρ² where the cable lies on a
+//! round.
 //!
 //! Each piece is solved by Lobatto collocation of fourth order (U. Ascher, R. Mattheij, R.
 //! Russell, *Numerical Solution of Boundary Value Problems for Ordinary Differential Equations*,
-//! SIAM 1995), its length s among the unknowns; all equations are local, so the Jacobian is a band.
+//! SIAM 1995), with its length among the unknowns. All equations are local, so the Jacobian is a
+//! band matrix.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -57,23 +58,23 @@ pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 
-/// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
-/// tensions have fewer digits than are written.
+/// Relative accuracy of the forces of another equilibrium that a warning reports. Smaller: more
+/// time; larger: its tensions have fewer correct digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
 
-/// Part of the tolerance up to which what bending changes is nothing. Smaller: layers of
-/// micrometres are resolved; larger: flexible answers for cables whose stiffness shows.
+/// Change by bending that is neglected, as a fraction of the tolerance. Smaller: boundary layers of
+/// micrometres are resolved; larger: cables whose stiffness shows get flexible answers.
 const NEGLIGIBLE_FRACTION: f64 = 1e-2;
 
 /// Turn of a stretch in contact up to which it is straight, °. Larger: wraps are taken for struts.
 const MAX_STRAIGHT_TURN_DEG: f64 = 30.0;
 
-/// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
-/// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
-/// the bars changes. None where neither is found.
+/// Finds the equilibrium of a stiff cable in contact, starting from the answer for a flexible one
+/// if there is one. The result is an elastica, or a chain of bars if no elastica is found; the
+/// chain's error is the change by halving its bars. None if neither is found.
 ///
-/// The contacts of the elastica are first those of the flexible cable, then those of a chain that
-/// comes to rest by itself, then those of a chain of half the bars.
+/// The contacts of the elastica are tried in this order: those of the flexible cable, those of a
+/// chain relaxed from it, and those of a chain with bars half as long.
 pub fn rest(
     problem: &Problem,
     time_s: f64,
@@ -92,12 +93,12 @@ pub fn rest(
     });
     let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
     if crushed {
-        // A cable that is pressed so bows, if anything lifts it.
+        // A cable under such compression bows as soon as anything lifts it.
         let rest = rest_by_chain(chain_input, chain::rest_of_flexible(chain_input), tolerance);
         return rest.filter(|(answer, _)| !lies_crushed(problem, answer)).or(bent);
     }
     let chain = match &bent {
-        // A cable may run away from an equilibrium: a chain that is let go there shows it.
+        // The equilibrium may be unstable: a chain released there shows it.
         Some((answer, _)) => match chain::test_stability(chain_input, answer) {
             StabilityOutcome::Stays | StabilityOutcome::Unknown => return bent,
             StabilityOutcome::Leaves(chain) => Some(*chain),
@@ -108,8 +109,8 @@ pub fn rest(
     rest_by_chain(chain_input, chain, tolerance)
 }
 
-/// The resting place of a stiff cable from a chain of bars at rest: as an elastica where that is
-/// found, else as the chain on bars half as long.
+/// Finds the equilibrium of a stiff cable from a chain of bars at rest: an elastica if one is
+/// found, else the chain with bars half as long.
 fn rest_by_chain(
     chain_input: ChainInput<'_>,
     chain: Option<Chain<'_>>,
@@ -133,14 +134,14 @@ fn rest_by_chain(
     let (coarse, finer) = (chain.solution(), fine.solution());
     let mut errors = ErrorEstimates::between(&coarse, &finer);
     if let Some(flexible) = flexible.filter(|answer| bend_length(problem, answer) < fine.bar) {
-        // On bars longer than its bends it is a flexible chain, which cuts off what they are round.
+        // With bars longer than its bends the chain is in effect flexible and cuts the bends off.
         errors = errors.componentwise_max(&ErrorEstimates::between(&finer, flexible));
     }
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
-/// True if an answer lies straight on a surface, pressed along itself with more than it bears if
-/// anything lifts it.
+/// True if an answer lies straight on a surface under more compression than it could bear if
+/// anything lifted it.
 fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
     answer.contacts.iter().any(|contact| {
         let [from, to] = contact.extent_m();
@@ -157,12 +158,12 @@ fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     (problem.bending_stiffness / greatest).sqrt()
 }
 
-/// The answer for the flexible cable, where its stiffness changes next to nothing; None where it
-/// may change more, or where the flexible shape has angles, which stiffness rounds off.
+/// Returns the answer for the flexible cable if the stiffness changes next to nothing; None if it
+/// may change more, or if the flexible shape has angles, which stiffness rounds off.
 ///
-/// A bend of curvature κ lowers the tension by EI κ²/2, and where it begins or ends, over a length
-/// λ = √(EI/T), the cable is led κλ² aside. Of that a cable takes up no more than a bar that is as
-/// long, EA κλ²/L at each such place.
+/// A bend of curvature κ lowers the tension by EI κ²/2. Where it begins or ends, over a length λ =
+/// √(EI/T), it displaces the cable sideways by κλ². The tension changes by at most EA κλ²/L at each
+/// such place: the force of a straight bar of the same length L under that elongation.
 fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -> Option<CableSolution> {
     let has_angles = problem.supports.len() > 2
         || !problem.loads.is_empty()
@@ -192,9 +193,8 @@ fn flexible_limit(problem: &Problem, flexible: &CableSolution, tolerance: f64) -
     Some(CableSolution { assumptions, ..flexible.clone() }.known_to(flexible.errors.plus(&bent)))
 }
 
-/// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the
-/// cable can come there `from` its present one without passing through an obstacle; None where it
-/// finds none.
+/// The nodes of the equilibrium of a chain of bars released at `shape`, if the cable can get there
+/// from the shape `from` without passing through an obstacle; None if there is none.
 pub fn rest_near(
     problem: &Problem,
     time_s: f64,
@@ -207,9 +207,9 @@ pub fn rest_near(
     keeps_sides(problem, from, &found).then(|| found.nodes.into())
 }
 
-/// True if a cable can have come from one shape to an answer without passing through an obstacle.
-/// Newton's method can pass through: where a contact of the continuation in EI would have to pull
-/// it opens, and a cable that springs off a post may come to rest on its other side.
+/// True if a cable can have moved from one shape to an answer without passing through an obstacle.
+/// Newton's method can pass through: the continuation in EI opens a contact that would have to
+/// pull, and a cable that springs off a post may come to rest on its other side.
 fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
     let [old, new] = [from, &to.nodes].map(|nodes| nodes.iter().map(Node::at).collect::<Vec<Vec2>>());
     swept_corners::through(&swept_corners::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()

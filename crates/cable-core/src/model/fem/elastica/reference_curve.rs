@@ -1,11 +1,11 @@
-//! The shape, tension and friction of an answer are read at any arc length.
+//! This module interpolates the shape, tension and friction of an answer at any arc length.
 
 use crate::math::Vec2;
 use crate::model::fem::free::nearest_turn;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ContactReport, ContactState, Node};
 
-/// The nodes of an answer with their directions counted on.
+/// The nodes of an answer with their directions, which include whole turns.
 pub(super) struct ReferenceCurve<'a> {
     pub(super) nodes: &'a [Node],
     /// Direction of each chord, rad.
@@ -13,7 +13,7 @@ pub(super) struct ReferenceCurve<'a> {
 }
 
 impl<'a> ReferenceCurve<'a> {
-    /// Counts the directions on from chord to chord.
+    /// Computes the directions chord by chord, so that they do not jump by 2π.
     pub fn new(nodes: &'a [Node]) -> Self {
         let mut last: Option<f64> = None;
         let angles = nodes
@@ -60,7 +60,8 @@ impl<'a> ReferenceCurve<'a> {
         a.curvature_per_m + (b.curvature_per_m - a.curvature_per_m) * f
     }
 
-    /// Direction at `s` (m), rad, by the chords whose middles are between `from` and `to` (m).
+    /// Direction at `s` (m), rad, interpolated between the chords whose middles are between `from`
+    /// and `to` (m).
     pub fn angle_at(&self, s: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = |k: usize| 0.5 * (self.nodes[k].arc_length_m + self.nodes[k + 1].arc_length_m);
         let inside = |k: usize| middle(k) > from && middle(k) < to;
@@ -79,7 +80,7 @@ impl<'a> ReferenceCurve<'a> {
 pub(super) struct MobilisedFriction {
     /// Force along growing arc length over normal force.
     pub(super) coefficient: f64,
-    /// True if that is all the friction there is.
+    /// True if that is all the friction there is: the contact slips.
     pub(super) slips: bool,
 }
 

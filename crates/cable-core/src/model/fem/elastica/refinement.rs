@@ -1,38 +1,38 @@
-//! The pieces of an elastica are read between their nodes, and get new nodes: where their layers
-//! ask for them, or at half the distance.
+//! This module evaluates the pieces of an elastica between their nodes, and gives them new nodes:
+//! graded into boundary layers, or at half the distance.
 
 use crate::math::{Vec2, cross};
 use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, MOMENT, Piece, STATES, force, tangent};
 use crate::model::fem::free::places;
 
-/// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
-/// larger: its square is seen.
+/// Step of the differences of a state's slope, as a fraction of an element. Smaller: round-off;
+/// larger: an error that grows with its square.
 const DIFFERENCE: f64 = 1e-2;
 
-/// Layers √(EI/T) to which an element shows how the cable bends. Smaller: states are read with less
-/// than their order; larger: errors of shear are seen as bends.
+/// Element length, in layers √(EI/T), up to which an element resolves the bend. Smaller: states are
+/// interpolated with less than their order; larger: errors of shear appear as bends.
 const RESOLVED_LAYERS: f64 = 2.0;
 
-/// Turn of a layer (rad) that may be left at the node where elements become long beside it.
-/// Smaller: layers are refused that elements show well enough; larger: bends between nodes are not
-/// seen.
+/// Turn of a boundary layer (rad) that may remain at the node where elements become long compared
+/// with the layer. Smaller: layers that are resolved well enough are rejected; larger: bends
+/// between nodes are missed.
 const MAX_LEFT_TURN: f64 = 0.05;
 
 impl Elastica {
-    /// Thickness λ of the layer in which bending fades beside a place with a tension (N), m; where
-    /// that goes to zero the weight takes over.
+    /// Thickness λ (m) of the boundary layer in which bending fades, at a tension (N); where the
+    /// tension goes to zero, the weight limits it.
     pub(super) fn layer_thickness(&self, tension: f64) -> f64 {
         let w = self.body.norm();
         let least = (self.bending / (self.length * self.length)).max((self.bending * w * w).cbrt());
         (self.bending / tension.max(least)).sqrt()
     }
 
-    /// The state at a place of a piece, on Hermite's quintic between its nodes. It is as exact
-    /// there as the nodes are (the cubic is off by 3e-7 m where a cable is bent to 1 m within 10
-    /// elements).
+    /// The state at the place `x` (0 to 1) of a piece, by Hermite's quintic between its nodes. It
+    /// is as accurate there as the nodes are (the cubic is off by 3e-7 m where a cable is bent to 1
+    /// m within 10 elements).
     ///
-    /// An element that is longer than the layer λ does not see it: an error of a shear, δ, would
-    /// turn the quintic by (h/λ)² δ/T. Such an element is read as [`Self::outer_state`].
+    /// An element longer than the layer λ does not resolve it: an error δ of the shear would turn
+    /// the quintic by (h/λ)² δ/T. Such an element is evaluated by [`Self::outer_state`].
     pub(super) fn state_in(&self, piece: &Piece, x: f64) -> [f64; STATES] {
         let e = piece.grid.partition_point(|g| *g <= x).clamp(1, piece.grid.len() - 1) - 1;
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
@@ -55,21 +55,22 @@ impl Elastica {
         })
     }
 
-    /// The thickness √(EI/F) of the layer in a free element that is long beside it, m; None where
-    /// the element shows how the cable bends.
+    /// The layer thickness √(EI/F) in a free element that is long compared with it, m; None if the
+    /// element resolves the bend.
     fn layer_of_long(&self, [a, b]: [&[f64; STATES]; 2], h: f64) -> Option<f64> {
         let layer = (2.0 * self.bending / (force(a) + force(b)).norm()).sqrt();
         (h * a[LENGTH] > RESOLVED_LAYERS * layer).then_some(layer)
     }
 
-    /// True if no bend of a layer reaches an element that is long beside it: there the equations
-    /// carry it on without end, and a cable that turns back and forth from node to node balances.
+    /// True if no bend of a boundary layer reaches an element that is long compared with the layer.
+    /// There the discrete equations do not damp it, and a cable that turns back and forth from node
+    /// to node would satisfy them.
     pub(super) fn resolves_layers(&self) -> bool {
         let is_resolved = |piece: &Piece| {
             piece.contact.is_some()
                 || piece.nodes.windows(2).zip(piece.grid.windows(2)).all(|(u, g)| {
                     let layer = self.layer_of_long([&u[0], &u[1]], g[1] - g[0]);
-                    // The outer cable turns as its force does.
+                    // The outer solution turns with the force.
                     let left = |u: &[f64; STATES]| {
                         u[MOMENT] / self.bending - cross(force(u), -self.body) / force(u).norm_squared()
                     };
@@ -79,9 +80,9 @@ impl Elastica {
         self.pieces.iter().all(is_resolved)
     }
 
-    /// The state at the part `z` of a free element that is long beside its layer. Its force changes
-    /// by its weight alone, so it is linear; the cable's direction is that of the force but for
-    /// what shear turns it by, which is small, as the moment is.
+    /// The state at the fraction `z` of a free element that is long compared with its layer. Its
+    /// force changes by its weight alone, so it is linear. The cable has the direction of the
+    /// force, apart from a small turn by shear; the moment is small, too.
     fn outer_state(&self, [a, b]: [&[f64; STATES]; 2], z: f64, h: f64) -> [f64; STATES] {
         let mut u: [f64; STATES] = std::array::from_fn(|i| a[i] + z * (b[i] - a[i]));
         let angle_between = |v: Vec2, w: Vec2| cross(v, w).atan2(v.dot(&w));
@@ -104,7 +105,7 @@ impl Elastica {
         std::array::from_fn(|i| (on[i] - back[i]) / (2.0 * step))
     }
 
-    /// Gives free pieces new nodes where their present layers ask for them, on the present curve.
+    /// Gives free pieces new nodes on the present curve, graded to their present boundary layers.
     pub(super) fn regrid(&mut self) {
         let regridded = |piece: &Piece| {
             let (Some(first), Some(last)) = (piece.nodes.first(), piece.nodes.last()) else { return piece.clone() };
@@ -125,7 +126,7 @@ impl Elastica {
         self.pieces = self.pieces.iter().map(regridded).collect();
     }
 
-    /// The same with every element halved.
+    /// Returns the same elastica with every element halved.
     #[must_use]
     pub fn halved(&self) -> Self {
         let halve = |piece: &Piece| {

@@ -1,5 +1,5 @@
-//! Equilibria with lagged friction: the energy is minimised with frozen normal forces, which are
-//! then renewed, until nothing changes.
+//! This module finds equilibria with lagged friction: it minimises the energy with frozen normal
+//! forces, renews these, and repeats until nothing changes.
 
 use crate::math::{larger, smaller};
 use crate::model::fem::newton::SolverMemory;
@@ -7,23 +7,23 @@ use crate::model::fem::state::{CableState, ChangedNodes, StickSlipChanges, updat
 use crate::model::fem::system::contact::friction_limits::FrictionLimits;
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
-/// Tolerance of a round in which limits of friction are sought, in those of the equilibrium.
-/// Greater: the search follows noise; less: what rounding hides is sought in each round.
+/// Tolerance of a round in which friction limits are sought, as a fraction of that of the
+/// equilibrium. Larger: the search follows noise; smaller: every round seeks what round-off hides.
 const SEARCH_TOLERANCE: f64 = 0.1;
 
-/// Roundings of a coordinate that the lengths of the bars beside a node may be off by together.
-/// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
-/// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
+/// Error of the lengths of the two bars beside a node, in units of the round-off of a coordinate.
+/// Smaller: a polish of many short bars spends all of its iterations on what round-off hides (for
+/// 10 000 bars on a floor that was 0.7 of the work); larger: less accurate equilibria.
 const LENGTH_ROUNDINGS: f64 = 2.0;
 
-/// Force that the rounding of coordinates makes at a node of even bars, N: it grows with the number
-/// of bars.
+/// Force that the round-off of coordinates causes at a node between even bars, N. It grows with the
+/// number of bars.
 pub(super) fn rounding_of_bars(cable: &CableState) -> f64 {
     let farthest = cable.motion.positions.iter().map(|x| x.norm()).fold(0.0, larger);
     LENGTH_ROUNDINGS * f64::EPSILON * farthest * cable.problem.axial_stiffness / cable.even()
 }
 
-/// A solution in which normal forces and stick-slip states were renewed.
+/// A solution whose normal forces and stick-slip states are up to date.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Lagged {
     pub(in crate::model::fem) done: Converged,
@@ -33,7 +33,7 @@ pub(in crate::model::fem) struct Lagged {
 }
 
 impl Lagged {
-    /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
+    /// True if friction lies within the friction cone, at sliding nodes and elsewhere.
     pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
         self.changes.are_lawful()
             && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.stopping.tolerance
@@ -52,7 +52,7 @@ impl SolverMemory {
         self.solve_rounds(cable, unknowns, rounds).map(|found| found.done)
     }
 
-    /// The same; returns the state of friction, too.
+    /// As [`Self::solve_with_lag`]; returns the state of friction, too.
     pub(in crate::model::fem) fn solve_rounds(
         &mut self,
         cable: &mut CableState,
@@ -91,7 +91,7 @@ impl SolverMemory {
             } else {
                 spare = spare.saturating_sub(1);
             }
-            // A round that needed no iteration found the normal forces it had used.
+            // A round that needed no iteration confirms the normal forces that it used.
             let found = done.iterations == 0 && off <= cable.input.stopping.tolerance;
             if (found || cable.contacts.friction_contacts.is_empty()) && changes.wrong == 0 && changes.same {
                 return Ok(Lagged { done: total, changes, off: 0.0 });
@@ -104,7 +104,7 @@ impl SolverMemory {
         Ok(Lagged { done: total, changes, off })
     }
 
-    /// The same, until the law holds at every sliding node.
+    /// Solves in such rounds until the law of friction holds at every sliding node.
     pub(in crate::model::fem) fn solve_lawfully(
         &mut self,
         cable: &mut CableState,

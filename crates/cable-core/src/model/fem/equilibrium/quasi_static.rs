@@ -8,7 +8,7 @@ use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
 impl Stepper {
-    /// A step without inertia to the time `to` (s); friction remembers.
+    /// Takes a step without inertia to the time `to` (s); friction keeps its memory.
     pub(in crate::model::fem) fn quasi_static_step(
         &mut self,
         to: f64,
@@ -17,11 +17,10 @@ impl Stepper {
         self.rest_rounds(to, dragged, f64::INFINITY)
     }
 
-    /// The same of a cable whose friction counts.
+    /// Takes a quasi-static step of a cable with friction.
     ///
-    /// # Errors
-    /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides
-    /// meanwhile would keep what that did.
+    /// # Errors `CornerPulls` if a corner would have to pull, before anything is accepted:
+    /// otherwise the friction memory would keep the slip of that state.
     pub(in crate::model::fem) fn step_without_pull(
         &mut self,
         to: f64,
@@ -44,8 +43,8 @@ impl Stepper {
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent)
                 && self.cable.contacts.slip < self.cable.contacts.tuning.slip_m
             {
-                // A cable whose grips change all along it, as at the first shape, comes to rest
-                // more easily on ground that gives way.
+                // A cable whose friction changes all along it, as at the first shape, comes to rest
+                // more easily with a larger elastic slip.
                 self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
                 unknowns = self.solver.present_unknowns(&self.cable);
                 done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
@@ -60,12 +59,13 @@ impl Stepper {
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             self.accept_unknowns(&unknowns, to);
-            // The mesh stays as it balances if corners are met and left by turns to the last.
+            // If corners are met and left by turns up to the last round, the mesh stays as it is in
+            // balance.
             if settled || round + 1 == self.cable.mesh.tuning.equilibrium.corner_rounds {
                 break;
             }
             let found = remesh(&mut self.cable, Inertia::QuasiStatic);
-            // Marks that are moved take strain from bar to bar, which has to be balanced once more.
+            // Moving marks moves strain from bar to bar, so the cable has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {
                 break;
@@ -74,14 +74,14 @@ impl Stepper {
         Ok(total)
     }
 
-    /// Takes unknowns as the state at rest at the time `to`; returns whether what the cable runs
-    /// over changed.
+    /// Accepts unknowns as the state at rest at the time `to`; returns whether the corners and
+    /// posts that the cable runs over changed.
     pub(super) fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
         self.accept_unknowns(unknowns, to);
         remesh(&mut self.cable, Inertia::QuasiStatic).sliding_nodes
     }
 
-    /// The same, corners as they are.
+    /// Accepts unknowns with the corners as they are.
     pub(super) fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
         self.cable.commit_contacts(unknowns);
         self.cable.contacts.outline_motion = None;

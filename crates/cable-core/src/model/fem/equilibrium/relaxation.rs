@@ -1,9 +1,10 @@
-//! A cable comes down to its equilibrium against a viscous resistance that fades (pseudo-transient
-//! continuation: C. T. Kelley, D. E. Keyes, *SIAM Journal on Numerical Analysis* 35(2), 1998).
+//! This module relaxes a cable to its equilibrium against a viscous resistance that fades
+//! (pseudo-transient continuation: C. T. Kelley, D. E. Keyes, *SIAM Journal on Numerical Analysis*
+//! 35(2), 1998).
 //!
-//! Each round is a step of implicit Euler without mass, solved loosely at first. Where the cable
-//! hardly moves any more its equilibrium is sought without resistance. If that fails the rounds go
-//! on, solved exactly, until the force of the resistance is nothing.
+//! Each round is a step of implicit Euler without mass, solved loosely at first. When the cable
+//! hardly moves any more, its equilibrium is sought without resistance. If that fails, the rounds
+//! continue, solved exactly, until the force of the resistance is negligible.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::lagged_friction::Lagged;
@@ -21,8 +22,8 @@ const RESISTANCE_FALL: f64 = 0.6;
 /// See `RESISTANCE_FALL`.
 const SHORT_MOVE_M: f64 = 0.3;
 
-/// Factor of the resistance after a round that was not solved, and the resistance, in first ones,
-/// at which the relaxation is given up.
+/// Factor of the resistance after a round that was not solved, and the multiple of the first
+/// resistance at which the relaxation is given up.
 const RESISTANCE_RISE: f64 = 8.0;
 /// See `RESISTANCE_RISE`.
 const MAX_RESISTANCE: f64 = 1e9;
@@ -30,11 +31,11 @@ const MAX_RESISTANCE: f64 = 1e9;
 /// Factor of the resistance after a search without it that failed.
 const RETURNED_RESISTANCE: f64 = 30.0;
 
-/// Resistance, in first ones, below which the equilibrium is sought without it.
+/// Resistance, as a fraction of the first one, below which the equilibrium is sought without it.
 const LEAST_RESISTANCE: f64 = 1e-5;
 
-/// Greatest move (m) of a node in a round after which that is done every `SLOW_ROUNDS` rounds, and
-/// at once.
+/// Greatest move (m) of a node in a round after which the equilibrium is sought without resistance:
+/// every `SLOW_ROUNDS` rounds below the first value, and at once below the second.
 const SLOW_MOVE_M: f64 = 1e-4;
 /// See `SLOW_MOVE_M`.
 const NO_MOVE_M: f64 = 1e-7;
@@ -44,11 +45,11 @@ const SLOW_ROUNDS: usize = 8;
 /// Move (m) that a change of the mesh counts as.
 const REMESHED_MOVE_M: f64 = 0.1;
 
-/// Tolerance of a round, in those of an equilibrium.
+/// Tolerance of a loosely solved round, as a multiple of that of an equilibrium.
 const LOOSE_TOLERANCE: f64 = 1e2;
 
-/// Least distance (m) that both ends have moved from where they are `now` to `sought`, if that is
-/// more than the length (m) of the cable.
+/// Least distance (m) that both ends move from `now` to `sought`, if it exceeds the length (m) of
+/// the cable.
 pub(super) fn moved_away(length: f64, now: &[Vec2], sought: &[Vec2]) -> Option<f64> {
     let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
     let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
@@ -59,16 +60,16 @@ pub(super) fn moved_away(length: f64, now: &[Vec2], sought: &[Vec2]) -> Option<f
 struct RoundMotion {
     /// Greatest move of a node, m.
     moved: f64,
-    /// Greatest force of the resistance, N: it adds up along a creeping stretch.
+    /// Greatest force of the resistance, N, which adds up along a creeping stretch.
     resists: f64,
-    /// The node where it is greatest.
+    /// The node where that force is greatest.
     slowest: usize,
 }
 
-/// A relaxation on its way.
+/// The progress of a relaxation.
 struct Relaxation {
     resistance: f64,
-    /// The resistance it began with, N/m.
+    /// The first resistance, N/m.
     first: f64,
     /// True once the search without resistance has failed: then rounds are solved exactly.
     exact_rounds: bool,
@@ -78,8 +79,8 @@ struct Relaxation {
 
 impl Relaxation {
     /// The resistance that a relaxation begins with, N/m: the weight of a bar over its sag, or dead
-    /// loads where these are greater. With the weight alone a cable of 5 g/m under 100 N, laid
-    /// through a post, was thrown about and found no rest.
+    /// loads where these are greater. With the weight alone a cable of 5 g/m under 100 N whose
+    /// route led through a post was thrown about and did not come to rest.
     fn first_resistance(cable: &CableState) -> f64 {
         let whole = load_scale(&cable.problem).1 / cable.meshing.even_bars as f64;
         if whole > cable.mesh.tuning.equilibrium.dead_load_weights * cable.meshing.bar_weight {
@@ -94,7 +95,7 @@ impl Relaxation {
         Self { resistance: first, first, exact_rounds: false, iterations: 0 }
     }
 
-    /// True if the equilibrium is to be sought without resistance after a round.
+    /// True if the equilibrium is to be sought without resistance after this round.
     fn is_nearly_over(&self, round: usize, moved: f64) -> bool {
         self.resistance < LEAST_RESISTANCE * self.first
             || (moved < SLOW_MOVE_M && round % SLOW_ROUNDS == SLOW_ROUNDS - 1)
@@ -109,8 +110,9 @@ impl Relaxation {
 }
 
 impl Stepper {
-    /// Relaxes the cable, then finds its equilibrium. On the way rounding may hide any force: a
-    /// cable that is laid in contact begins there. If that finds no equilibrium, it may hide less.
+    /// Relaxes the cable, then finds its equilibrium. During relaxation any contact force may be
+    /// lost in round-off, because a cable that is laid in contact begins like that. If no
+    /// equilibrium is found, the limit on that force is lowered.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         let kept = self.rollback.with_saved();
         self.rollback.save(&self.cable);
@@ -126,9 +128,11 @@ impl Stepper {
         found
     }
 
-    /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
+    /// As [`Self::relax`]; `noise` is the greatest force, in tolerances, that may be lost in
+    /// round-off during relaxation.
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        // Stretches into which the outline moves go out of its way before anything slides.
+        // Stretches of cable in the way of the moving outline are moved aside before anything
+        // slides.
         prepare_way(&mut self.cable, [to, to], Some(dragged));
         self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
         self.cable.contacts.outline_motion = None;
@@ -186,7 +190,7 @@ impl Stepper {
         Err(last)
     }
 
-    /// Solves a round; returns the unknowns it ended with, whether or not they are a solution.
+    /// Solves a round; returns the unknowns at its end, whether or not they are a solution.
     fn solve_round(
         &mut self,
         relaxation: &Relaxation,
@@ -204,8 +208,8 @@ impl Stepper {
         let exact = self.cable.input.stopping.tolerance;
         self.cable.input.stopping.tolerance = if relaxation.exact_rounds { exact } else { LOOSE_TOLERANCE * exact };
         self.cable.input.stopping.max_noise = noise * exact;
-        // The contacts of a first shape carry no normal force yet: without refreshing, the cable
-        // would slide as if on ice.
+        // The contacts of a first shape carry no normal force yet. Without renewing it, the cable
+        // would slide without friction.
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         let rounds = self.cable.mesh.tuning.equilibrium.whole_lag_rounds;
         let solved = self.solver.solve_rounds(&mut self.cable, &mut unknowns, rounds);

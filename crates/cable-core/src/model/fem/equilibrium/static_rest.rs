@@ -1,5 +1,5 @@
-//! This module finds the static rest of a cable in contact: its first shape, the search, and the
-//! polish of what was found.
+//! This module finds the static equilibrium of a cable in contact: from its first shape through the
+//! search to the polish of the result.
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
@@ -15,14 +15,13 @@ use crate::model::fem::system::{Converged, Failure, FailureCause, load_scale, to
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
-/// Depth of the centre line's touching distance, in radii of the cable, from which it is said to
-/// run through an obstacle: one that touches it has a depth of 0. Smaller: cables that press on an
-/// obstacle are said to run through it; larger: none that a corner cuts off is. A choice, tuned on
-/// no campaign.
+/// Depth, in radii of the cable, from which the cable is reported to run through an obstacle; a
+/// cable that just touches has a depth of 0. Smaller: cables that press on an obstacle are
+/// reported; larger: cables that cut off a corner are not. A choice, tuned on no campaign.
 const MAX_DEPTH_RADII: f64 = 0.9;
 
-/// Returns why a cable that nothing but friction holds does not rest where it was brought: the
-/// forces that each node alone may leave unbalanced add up.
+/// Returns the reason why a cable held by friction alone does not rest in its present place: the
+/// forces that may be left unbalanced at single nodes add up.
 pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
     if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.self_contacts.shape.is_on() {
         return None;
@@ -33,13 +32,15 @@ pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoE
         .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
 }
 
-/// The obstacle through which a cable at `x` runs that found no rest: it cannot get out of there.
+/// Reports the obstacle through which a cable at `x` runs that did not come to rest, because it
+/// cannot get out of there.
 fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
     let (mesh, world) = (&cable.mesh, &cable.problem.world);
     if x.len() != mesh.nodes() {
         return None;
     }
-    // The centre line is in the obstacle itself, or nearly: a cable that touches it is outside.
+    // The centre line is inside the obstacle itself, or nearly so; a cable that touches it is
+    // outside.
     let least = -MAX_DEPTH_RADII * cable.problem.radius;
     let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
     let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
@@ -80,7 +81,8 @@ impl Stepper {
                 break;
             };
             all = Converged { iterations: all.iterations + done.iterations, ..done };
-            // With the bars it balances on: new ones would have to be brought to rest again.
+            // The bars stay as they are in balance: new ones would have to be brought to rest
+            // again.
             self.accept_unknowns(&unknowns, to);
         }
         self.cable.input.stopping.tolerance = exact;
@@ -88,9 +90,9 @@ impl Stepper {
         all
     }
 
-    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the
-    /// second order in their length, without which a run would begin with a jerk. Where they find
-    /// no rest they stay as they were laid.
+    /// Brings straight bars to rest that were placed along the sagging bars of statics. Their
+    /// positions change to the second order in the bar length; without this a run would begin with
+    /// a jerk. If they do not come to rest, they stay where they were placed.
     pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
         if !self.rested {
             return;
@@ -108,7 +110,7 @@ impl Stepper {
         }
     }
 
-    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support
+    /// Finds the equilibrium with contact at the present time; `dragged` are the hand-set support
     /// positions, m.
     ///
     /// # Errors
@@ -165,9 +167,9 @@ impl Stepper {
         }
     }
 
-    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
-    /// coming near to anything. The way down with contact takes as many rounds as a cable that
-    /// hangs has bars.
+    /// Starts from `shape`, an equilibrium without contact, if the cable can get there from its
+    /// first shape without coming near an obstacle. Relaxation with contact would take as many
+    /// rounds as a hanging cable has bars.
     pub(in crate::model::fem) fn start_from_shape(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.self_contacts.shape.is_on();
         let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
@@ -191,8 +193,8 @@ impl Stepper {
         }
         self.cable.motion.positions = to;
         self.forget_history();
-        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
-        // that little force is left over.
+        // The bars here are straight. The missing sag between nodes makes their tensions wrong, but
+        // evenly, so little unbalanced force is left.
         let now = self.cable.motion.time;
         prepare_input(&mut self.cable, now, Some(dragged));
         self.cable.input.stopping.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
@@ -207,8 +209,8 @@ impl Stepper {
         self.cable.input.stopping.tolerance = exact;
     }
 
-    /// Finds the equilibrium. One in which the cable does not touch itself is sought first as if it
-    /// could pass itself: its first shape may cross itself.
+    /// Finds the equilibrium. Since the first shape may cross itself, an equilibrium without
+    /// self-contact is first sought as if the cable could pass through itself.
     fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.cable.motion.time;
         let shape = self.cable.contacts.self_contacts.shape;
@@ -236,8 +238,8 @@ impl Stepper {
         Ok(self.relax(time, dragged))
     }
 
-    /// A cable with much to spare for which no route is drawn begins on an arc, where it does not
-    /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
+    /// A cable with much slack and no drawn route starts on an arc, where it does not touch itself.
+    /// Along a straight line it would, or its bars would stand upright in a row under compression.
     fn start_on_an_arc(&mut self) {
         let cable = &mut self.cable;
         let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();

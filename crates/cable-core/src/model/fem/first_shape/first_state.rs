@@ -1,4 +1,4 @@
-//! The first state of a cable: along its route, at rest, clear of obstacles.
+//! This module makes the first state of a cable: along its route, at rest, clear of obstacles.
 
 use std::sync::Arc;
 
@@ -50,8 +50,8 @@ pub(in crate::model::fem) fn cable_along_route(
     cable
 }
 
-/// Arc lengths at which a mesh needs a node, m: supports, loads and, where the cable can touch
-/// something, points of its route that are not as near to one of these as `near` (m).
+/// Arc lengths at which a mesh needs a node, m: supports, loads and, if the cable can touch
+/// something, points of its route that are farther than `near` (m) from all of these.
 fn places_of_nodes(problem: &Problem, route: &[(f64, Vec2)], near: f64) -> Vec<f64> {
     let mut breaks = vec![0.0, problem.length];
     breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
@@ -69,7 +69,7 @@ fn places_of_nodes(problem: &Problem, route: &[(f64, Vec2)], near: f64) -> Vec<f
     breaks
 }
 
-/// A cable at rest with its nodes along a route, which nothing has pushed out of obstacles yet.
+/// A cable at rest with its nodes along a route, not yet pushed out of obstacles.
 fn cable_at_rest(
     problem: Arc<Problem>,
     outline: Option<MovingOutline>,
@@ -105,8 +105,8 @@ fn cable_at_rest(
             ..NodalMotion::default()
         },
         meshing: Meshing {
-            // A sliding node scales the forces of all that lies beyond it; what touches itself
-            // has one scale.
+            // A sliding node scales the energy of all that lies beyond it; a cable in contact with
+            // itself needs one scale.
             slides: !problem.cable.self_contact,
             never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
             even_bars: segments,
@@ -132,9 +132,9 @@ fn cable_at_rest(
     }
 }
 
-/// True if the mass is spread over the bars. Where the cable can touch something it is lumped all
-/// the time: contacts take momentum of one node, nodes come and go with corners and pulleys, and a
-/// mass that changed as contact begins would change the energy.
+/// True if the mass is spread over the bars. If the cable can touch something, the mass is always
+/// lumped: a contact takes the momentum of one node, nodes come and go with corners and pulleys,
+/// and a mass matrix that changed when contact begins would change the energy.
 fn spreads_mass(problem: &Problem) -> bool {
     touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
 }

@@ -1,4 +1,4 @@
-//! These modules lay a cable along its route: the shape from which its rest is sought.
+//! These modules lay a cable along its route: the shape from which its equilibrium is sought.
 //!
 //! | room | content |
 //! |---|---|

@@ -1,24 +1,24 @@
-//! Nodes and bars of a shape are pushed out of obstacles.
+//! This module pushes nodes and bars of a shape out of obstacles.
 
 use crate::contact::Gap;
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
-/// Passes of pushing the first shape out of obstacles. Ten are enough for routes drawn within a
-/// diameter.
+/// Maximum number of passes that push the first shape out of obstacles. Ten are enough for routes
+/// drawn within a diameter.
 const MAX_PASSES: usize = 60;
 
-/// Depth (m) inside an obstacle to which a first shape is found and pushed out.
+/// Depth (m) inside an obstacle up to which a first shape is detected and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 
 /// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m)
-/// or it gives up.
+/// or the passes are spent.
 pub fn depenetrate(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
     push_chain_out(problem, &mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
 }
 
-/// The same of a chain of which nodes are held, and bars lie on rounds.
+/// Pushes out a chain whose nodes may be `held` and whose bars may lie on rounds.
 pub fn push_chain_out(
     problem: &Problem,
     held: &[bool],
@@ -44,7 +44,7 @@ pub fn push_chain_out(
             for g in gaps.iter().filter(inside) {
                 let inside = problem.world.geometry().outward_of(g).is_some_and(|o| o.dot(&g.normal) < 0.0);
                 let distance = (x[e] + (x[e + 1] - x[e]) * g.fraction - g.point).norm();
-                // A segment that has cut a corner off is nearest to it from inside.
+                // A segment that cuts off a corner is nearest to it from inside.
                 let (way, lack) =
                     if inside { (-g.normal, clear - g.gap_m + 2.0 * distance) } else { (g.normal, clear - g.gap_m) };
                 if lack > 0.5 * clear {

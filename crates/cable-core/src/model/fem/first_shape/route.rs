@@ -1,5 +1,4 @@
-//! The first shape spreads the material of a cable along a route that goes round what is in the
-//! way.
+//! This module spreads the material of a cable along a route that avoids obstacles.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::fem::mesh::Mesh;
@@ -9,14 +8,14 @@ use crate::problem::ground_route::above_ground;
 use crate::problem::way_over::{bodies_in_the_way, hull_over};
 use crate::scene::SupportKind;
 
-/// Steps of the half turn by which an end is leaned to either side until it is clear of what is
-/// below it. More: the same at more cost; fewer: it begins higher than it needs to.
+/// Number of steps of the half turn by which an end is leaned to either side until it is clear of
+/// obstacles below it. Larger: the same at more cost; smaller: it begins higher than it needs to.
 const LEANS: i32 = 36;
 
-/// Halvings in the search for the angle of an arc: rounding.
+/// Number of halvings in the search for the angle of an arc: down to round-off.
 const ARC_HALVINGS: usize = 52;
 
-/// Corners of the way of a cable with the arc length at each, m.
+/// The corners of a cable's route, each with its arc length, m.
 #[must_use]
 pub fn route(problem: &Problem) -> Vec<(f64, Vec2)> {
     let points = if problem.route.len() >= 2 {
@@ -29,8 +28,8 @@ pub fn route(problem: &Problem) -> Vec<(f64, Vec2)> {
         along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
     }
     let total = along.last().copied().unwrap_or(0.0);
-    // Arc length as a function of the way: straight between supports that sit at a known arc
-    // length.
+    // Arc length is a function of the distance along the way, linear between supports whose arc
+    // length is known.
     let mut knots = vec![(0.0, 0.0)];
     for s in &problem.supports {
         if let (Some(arc), Some(at)) = (s.arc_length, s.at)
@@ -52,9 +51,9 @@ pub fn route(problem: &Problem) -> Vec<(f64, Vec2)> {
     points.iter().zip(&along).map(|(p, &w)| (arc_at(w), *p)).collect()
 }
 
-/// The same of a stiff cable: an end that nothing holds, and that would hang into something solid,
-/// is turned about the support it hangs from until its tip is clear. A flexible cable comes down in
-/// a heap there, a stiff one leans.
+/// The corners of a stiff cable's route. A free end that would hang into an obstacle is turned
+/// about the support it hangs from until its tip is clear: a flexible cable comes down in a heap
+/// there, a stiff one leans.
 #[must_use]
 pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
     let mut points = route(problem);
@@ -71,7 +70,7 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         let reach = s - hinged;
         let pull = tip.force.at(0.0) + problem.body_force(0.0) * (0.5 * problem.length);
         let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
-        // A clamp says to which side it leans.
+        // A clamp determines the side to which it leans.
         let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
         let step = std::f64::consts::PI / f64::from(LEANS);
         let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -step } else { step };
@@ -94,9 +93,9 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
     points
 }
 
-/// Nodes on a circular arc from the first to the last, as long as the cable, on the side from which
-/// its weight draws it: a cable with much to spare touches itself nowhere there. None where the
-/// ends are in one place, or farther apart than the cable is long.
+/// Nodes on a circular arc as long as the cable, from the first to the last, bowed against its
+/// weight: there a cable with much slack does not touch itself. None if the ends are in one place,
+/// or farther apart than the cable is long.
 #[must_use]
 pub fn bow(problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Option<Vec<Vec2>> {
     let (from, to) = (*x.first()?, *x.last()?);
@@ -129,8 +128,8 @@ fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {
     best.1
 }
 
-/// From support to support; an end that nothing holds hangs from the nearest one along its load, or
-/// down.
+/// The straight way from support to support; a free end hangs from the nearest one along its load,
+/// or down.
 fn straight(problem: &Problem) -> Vec<Vec2> {
     let mut points: Vec<Vec2> = problem.supports.iter().filter_map(|s| s.position_at(0.0).map(|p| p.0)).collect();
     let used: f64 = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
@@ -154,8 +153,8 @@ fn straight(problem: &Problem) -> Vec<Vec2> {
     points
 }
 
-/// Each leg that meets an obstacle is replaced by the upper hull of its ends and of what is in the
-/// way.
+/// Replaces each leg that meets an obstacle by the upper hull of its ends and of the obstacles in
+/// the way.
 fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = points.first().copied().into_iter().collect();
     for leg in points.windows(2) {

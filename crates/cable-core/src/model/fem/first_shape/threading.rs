@@ -1,4 +1,4 @@
-//! The cable is threaded through its pulleys.
+//! This module threads the cable through its pulleys.
 
 use std::sync::Arc;
 
@@ -12,15 +12,15 @@ use crate::problem::wheel_passage::facing;
 use crate::scene::PulleySide;
 use crate::state::State;
 
-/// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where
-/// the layout lays it.
+/// Puts a sliding node at every pulley: at the material that is nearest to it in `state`, else at
+/// the arc length of the layout.
 pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Option<&State>) {
     let problem = Arc::clone(&cable.problem);
     let layout = StationLayout::new(&problem, cable.motion.time, &[], &[]);
     for station in &layout.stations {
         let (Restraint::Pulley(wheel), Some(support)) = (station.restraint, station.support) else { continue };
         let lies = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or([station.arc_length; 2]);
-        // Nodes that lay on the wheel would touch nothing there.
+        // Material nodes on the wheel would have no contact there.
         clear_of_nodes(cable, lies);
         let s = 0.5 * (lies[0] + lies[1]);
         let k = cable.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, cable.mesh.nodes() - 1);
@@ -30,8 +30,8 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
         let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
         let sense = -facing(wheel.side, passing);
-        // Its material is counted where the state has it: beside that the cable would be fed over
-        // the wheel, and friction would hold it there.
+        // The mark is placed where the state has its material. Elsewhere the cable would be fed
+        // over the wheel, and friction would hold it there.
         let outward = state.and_then(|state| (state.position_at(at)? - wheel.center).try_normalize(0.0));
         let mark = outward.filter(|_| wheel.radius > 0.0).unwrap_or(up);
         let end = BarEnd { center: wheel.center, radius: wheel.radius, mark, sense };

@@ -1,17 +1,18 @@
-//! The dual-weighted residual estimates how wrong the forces are.
+//! The dual-weighted residual estimates the error of the forces.
 //!
-//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span
-//! then closes with another start force, and pulleys slide a little to keep their balance:
+//! Each element's chord differs by δ from the chord of the exact catenary under the same force.
+//! With the exact chords the span closes at another start force, and pulleys slide a little to keep
+//! their balance:
 //! ```text
 //! δF₀ = −C⁻¹ Σδ(F₀ + δF₀),     C = ∂reach/∂F₀
 //! ```
 //! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in
 //! finite element methods*, Acta Numerica 2001: the residual weighted by the inverse Hessian, here
-//! 2×2.) The lack is taken at the force it leads to, in a few rounds: one is enough for a taut
-//! span; in a slack one, whose horizontal force is a small part of its tension, what is left after
-//! one is no longer small beside that.
+//! 2×2.) δ is evaluated at the corrected force, in a few rounds. One round is enough for a taut
+//! span. In a slack one, whose horizontal force is a small fraction of its tension, the remainder
+//! after one round is not small compared with that force.
 //!
-//! The estimate is of the error of the whole force vector beside every station, in parts of the
+//! The estimate covers the error of the whole force vector beside every station, relative to the
 //! greatest tension: a slack span may have its greatest tension right to many digits and its
 //! horizontal force wrong in the third.
 
@@ -24,33 +25,34 @@ use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
 use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 
-/// Rounds of the correction, and the part of it below which another round changes nothing that
-/// shows.
+/// Maximum number of rounds of the correction.
 const ROUNDS: usize = 8;
+/// Change of the correction, relative to it, below which another round is not worth while.
 const CORRECTION_TOLERANCE: f64 = 0.01;
-/// By how much finer elements are made where the lack of the present ones says nothing, and how
-/// often at most: 4⁵ = 1024 times.
+/// Factor by which the number of elements grows if the present ones give no estimate.
 const REFINEMENT_FACTOR: usize = 4;
+/// Maximum number of such refinements: 4⁵ = 1024 times as many elements.
 const MOST_FINER: usize = 5;
-/// Most elements of a span that is only solved for its error: some milliseconds.
+/// Maximum number of elements of a span that is solved only for its error: some milliseconds.
 const MAX_ELEMENTS: usize = 1 << 15;
-/// Rounding errors of a span's closure, in units of the last place of its length. Measured against
-/// the closed form: up to 5, of two answers.
+/// Round-off of a span's closure, in units of the last place of its length. Measured against the
+/// closed form: up to 5 for the difference of two answers.
 const ROUNDING: f64 = 8.0;
 
-/// Part of the greatest tension to which friction is known that remembers many steps: where
-/// rounding stops Newton a balance is accepted at 1e-8, and what that leaves adds up. Less: one in
-/// ten histories of stiff cables is farther from that of `spans` (up to 8e-8 in 300); more: nobody
-/// asks for less.
+/// Error of friction that remembers many steps, relative to the greatest tension: where round-off
+/// stops Newton's method a balance is accepted at 1e-8, and the remainders add up. Smaller: one in
+/// ten histories of stiff cables differs by more from that of `spans` (up to 8e-8 in 300); larger:
+/// a worse bound than necessary.
 const MEMORY: f64 = 1e-7;
 
-/// Arc lengths that differ by less are those of one node of two meshes, m.
+/// Difference of arc lengths (m) up to which two nodes of two meshes are the same.
 const NODE_TOLERANCE_M: f64 = 1e-9;
 
-/// The same without friction: tensions of stiff cables beside pulleys agree to that.
+/// Error without friction, relative to the greatest tension: tensions of stiff cables beside
+/// pulleys agree to that.
 const SMOOTH_PULLEY_TOLERANCE: f64 = 1e-10;
 
-/// Estimated error of the force vector on any station, in parts of the greatest tension.
+/// Estimated error of the force vector on any station, relative to the greatest tension.
 #[must_use]
 pub fn relative_error(network: &mut PulleyNetwork) -> f64 {
     let (mut largest, mut error) = (0.0, 0.0);
@@ -60,7 +62,7 @@ pub fn relative_error(network: &mut PulleyNetwork) -> f64 {
             largest = larger(largest, force.norm());
             error = larger(error, d.norm());
         }
-        // On a pulley both pull.
+        // The cable pulls at a pulley on both sides.
         error = larger(error, (change[1] - change[0]).norm());
     }
     let memory = match (network.pulleys().is_empty(), network.rubs()) {
@@ -69,14 +71,14 @@ pub fn relative_error(network: &mut PulleyNetwork) -> f64 {
         (false, true) => MEMORY * largest,
     };
     let error = error + rounding(network) + memory;
-    // In parts of what the greatest tension is at least.
+    // The error is relative to the least value that the greatest tension can have.
     let least = if error < 0.5 * largest { largest - error } else { largest };
     let share = if least > 0.0 { error / least } else { error };
     share * (1.0 + CORRECTION_TOLERANCE)
 }
 
-/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force
-/// that closes the span moves its end.
+/// Estimated error of the shape, m: the sum of the chords' errors up to a node, and the
+/// displacement by the force that closes the span.
 #[must_use]
 pub fn position_error(network: &mut PulleyNetwork) -> f64 {
     let changes = force_errors(network);
@@ -132,9 +134,9 @@ fn force_errors(network: &mut PulleyNetwork) -> Vec<[Vec2; 2]> {
     errors
 }
 
-/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies
-/// in one element its lack says nothing about the force: the span is solved on finer elements until
-/// it does.
+/// Change of the start force with which the exact catenary closes a span, N. If a fold lies in one
+/// element, its error gives no estimate of the force, and the span is solved on finer elements
+/// until it does.
 fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &Span) -> Vec2 {
     let (material, goal) = (&network.material, span.span_response.reach);
     if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
@@ -155,11 +157,12 @@ fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &Span) -> Vec2 {
             return (force + off - span.force) * (1.0 + CORRECTION_TOLERANCE);
         }
     }
-    // The known difference is that of the finest from it.
+    // The computed difference is that of the finest mesh from this span; the factor bounds the
+    // rest.
     (force - span.force) * 2.0
 }
 
-/// The same by rounds of the correction; None where they do not settle.
+/// The change of the start force by rounds of the correction; None if they do not converge.
 fn correction(material: &Material, layout: &StationLayout, ends: SpanEnds, force: Vec2, goal: Vec2) -> Option<Vec2> {
     let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
     for _ in 0..ROUNDS {
@@ -179,9 +182,9 @@ fn correction(material: &Material, layout: &StationLayout, ends: SpanEnds, force
     None
 }
 
-/// Greatest difference of a force on a station between a network and the same on half as long bars,
-/// in parts of the greatest tension, for an error of fourth order: sixteen fifteenths of it is the
-/// error of the coarser.
+/// Error of the coarser of two networks, relative to the greatest tension: sixteen fifteenths
+/// (fourth order) of the greatest difference of a force on a station between it and the same
+/// network with bars half as long.
 #[must_use]
 pub fn difference(coarse: &PulleyNetwork, fine: &PulleyNetwork) -> f64 {
     let (mut largest, mut off) = (0.0, 0.0);
@@ -193,8 +196,8 @@ pub fn difference(coarse: &PulleyNetwork, fine: &PulleyNetwork) -> f64 {
     if largest > 0.0 { off / (0.9375 * largest) } else { off }
 }
 
-/// Adds what frictionless pulleys do to small changes of the forces beside the stations: they slide
-/// until the tensions agree again.
+/// Adds the response of frictionless pulleys to small changes of the forces beside the stations:
+/// they slide until the tensions agree again.
 fn let_pulleys_follow(network: &PulleyNetwork, changes: &mut [[Vec2; 2]]) {
     let pulleys = network.pulleys();
     let imbalances: Vec<Option<f64>> = pulleys
@@ -215,9 +218,9 @@ fn let_pulleys_follow(network: &PulleyNetwork, changes: &mut [[Vec2; 2]]) {
     }
 }
 
-/// Estimated relative error of the forces on the finer of two meshes: of fourth order at the
-/// stations, a fifteenth of the change, of third between nodes, where a stiff cable may have its
-/// greatest tension, a seventh.
+/// Estimated relative error of the forces on the finer of two meshes: a fifteenth of the change at
+/// the stations (fourth order), and a seventh between nodes (third order), where a stiff cable may
+/// have its greatest tension.
 #[must_use]
 pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     let (mut largest, mut change) = (fine.bending_force(), 0.0);

@@ -1,8 +1,8 @@
-//! The corrected bar is one element of a free cable: it goes from its force to its chord.
+//! The corrected bar is one element of a free cable; it gives the chord as a function of the force.
 //!
-//! Between two nodes acts the body force q (N per metre of arc length, any direction), so the
-//! tension force varies as F(s) = F − q s about the middle. A perfectly flexible cable points along
-//! it:
+//! The body force q (N per metre of arc length, any direction) acts between two nodes, so the
+//! tension force varies as F(s) = F − q s about the middle. A perfectly flexible cable has its
+//! direction:
 //! ```text
 //! chord = ∂Ψ/∂F,   Ψ(F) = ∫ θ (|F(s)| + |F(s)|²/2EA) ds       (complementary energy, convex)
 //! ```
@@ -31,8 +31,8 @@ pub struct Material {
     pub thermal_stretch: f64,
     /// Weight and wind, N per metre of arc length.
     pub body: Vec2,
-    /// Tension below which directions are smoothed, N. Too large: bends become round; 0: a fold of
-    /// the cable in one Gauss point divides by zero.
+    /// Tension below which directions are smoothed, N. Larger: sharp bends become round; 0: a fold
+    /// of the cable in one Gauss point divides by zero.
     pub smoothing: f64,
 }
 
@@ -103,7 +103,7 @@ impl Material {
         let (up, ratio) = (-self.body / q, q * ds / ends);
         let across = Vec2::new(up.y, -up.x);
         let (h, v) = (force.dot(&across), force.dot(&up));
-        // Straight up and down r is 1: H = 0 takes the place of the logarithm.
+        // For a vertical element r is 1 and H = 0, and their product 0·∞ is avoided.
         let stretch = if ratio < 1e-3 { 1.0 + ratio * ratio / 3.0 } else { ratio.min(1.0 - 1e-15).atanh() / ratio };
         let exact = (across * (h * 2.0 * stretch) + up * (2.0 * v)) * (rest / ends) + elastic;
         exact - self.respond(ds, force).chord

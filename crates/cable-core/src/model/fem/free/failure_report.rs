@@ -1,5 +1,5 @@
-//! A failure of the solver is reported in the words of the scene: which pulley runs out, or where
-//! the forces do not balance.
+//! This module reports a failure of the solver in terms of the scene: the pulley that runs out, or
+//! the place where the forces do not balance.
 
 use crate::error::{NoEquilibrium, Place, SolveError};
 use crate::math::Vec2;
@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::problem::Problem;
 
-/// The error that a failure of a network means at a time (s), in the words of the scene.
+/// The error for the user that a failure of a network at a time (s) means.
 pub(super) fn solve_error(problem: &Problem, network: &PulleyNetwork, time: f64, failure: Failure) -> SolveError {
     let name = |k: usize| {
         let support = network.layout.stations.get(k).and_then(|s| s.support).and_then(|i| problem.supports.get(i));

@@ -1,5 +1,5 @@
-//! These modules find the equilibrium of a cable that touches nothing but its supports; `beam` that
-//! of a stiff one.
+//! These modules find the equilibrium of a cable that touches nothing but its supports; `beam`
+//! handles stiff ones.
 //!
 //! | room | content |
 //! |---|---|
@@ -15,14 +15,14 @@
 //! | `beam/` | equilibrium of a cable with bending stiffness, without contact |
 //! | `dual_weighted_residual.rs` | a posteriori error estimate of forces and shape |
 //! | `straight_route.rs` | straight nodes from support to support before the first answer |
-//! | `auxiliary_weight.rs` | the hint of weight that shapes a weightless slack cable, in the element material |
+//! | `element_material.rs` | values that all elements share, with the auxiliary weight of a weightless cable |
 //! | `results.rs` | nodes and support reactions of a solved network of spans |
 //! | `failure_report.rs` | solver failures as scene errors: which pulley runs out, what does not balance |
 
-pub(in crate::model::fem) mod auxiliary_weight;
 pub(in crate::model::fem) mod beam;
 pub(in crate::model::fem) mod dual_weighted_residual;
 pub mod element;
+pub(in crate::model::fem) mod element_material;
 pub(in crate::model::fem) mod failure_report;
 pub(in crate::model::fem) mod pulley_balance;
 pub(in crate::model::fem) mod pulley_state;

@@ -1,17 +1,16 @@
 //! The pulley balance finds how much cable lies on each side of the pulleys that join the spans.
 //!
-//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley.
-//! With the tension before and after a pulley, ρ = ln(T_after/T_before), and the bounds of
-//! Coulomb's law (capstan: ±μ·turn):
+//! Each span is solved by itself (`span`); the arc lengths `s` at the pulleys couple them. With ρ =
+//! ln(T_after/T_before) at a pulley and the bounds of Coulomb's law (capstan: ±μφ, φ the turn):
 //! ```text
 //! frictionless   ρ = 0
 //! stick          s = s_old,      −μφ ≤ ρ ≤ μφ
 //! slip           ρ = −μφ where s grew (the cable went to the side before), ρ = +μφ where it shrank
 //! ```
-//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable
-//! where ∂ρ/∂s is positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton
-//! stalls or ends at an unstable place, each pulley in turn is bisected for a change of ρ from −
-//! to +, which only stable places have. Wheels with a radius are in `wheel_arcs`.
+//! ρ is the slope of the energy in `s` up to a positive factor, so an equilibrium is stable where
+//! ∂ρ/∂s is positive: all pivots of the (tridiagonal) Newton matrix must be positive. If Newton's
+//! method stalls or ends at an unstable equilibrium, each pulley in turn is bisected for a change
+//! of ρ from − to +, which occurs only at stable ones. Wheels with a radius are in `wheel_arcs`.
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
@@ -21,33 +20,33 @@ use crate::model::fem::free::span::{Span, elements};
 use crate::model::fem::free::stations::{Restraint, SpanEnds, StationLayout, Wheel};
 use crate::numerics::backtrack;
 
-/// Newton steps for the pulleys together. Measured: 3 to 8.
+/// Maximum number of Newton steps for all pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
 
-/// Lengths of a step that are tried.
+/// Maximum number of step lengths that are tried.
 const MAX_HALVINGS: usize = 12;
-/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start
-/// converges.
+/// Decades by which the smoothing of a fold is first raised: to a tenth of the load, where any
+/// start converges.
 const FOLD_ROUNDING_DECADES: i32 = 6;
-/// Rounds of bisection.
+/// Maximum number of rounds of bisection.
 const MAX_ROUNDS: usize = 60;
-/// Tensions at a pulley agree when ln of their ratio is off by less than this.
+/// Error of ρ below which a pulley is balanced.
 const BALANCE_TOLERANCE: f64 = 1e-12;
-/// As above where no step makes it smaller (a stiff cable: ρ has lost its last digits).
+/// As above if no step makes the error smaller (for a stiff cable ρ has lost its last digits).
 const BALANCE_LIMIT: f64 = 1e-8;
-/// Part of the room to the next station that a step may take.
+/// Fraction of the room to the next station that a step may take.
 const STEP_ROOM_FRACTION: f64 = 0.4;
-/// Least cable between a pulley and the next station, in parts of the cable.
+/// Least arc length between a pulley and the next station, as a fraction of the cable.
 const END_CABLE_FRACTION: f64 = 1e-7;
 
 /// The reason why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
-    /// The span that starts at this station could not be solved; the force left, N.
+    /// The span that starts at this station could not be solved; with the unbalanced force, N.
     Span(usize, f64),
     /// The cable runs out through the pulley at this station.
     RunsOut(usize),
-    /// The balance at the pulley of this station could not be found; the force left, N.
+    /// The balance at the pulley of this station could not be found; with the unbalanced force, N.
     Unbalanced(usize, f64),
     /// The cable leaves its wheel.
     LeavesWheel(usize),
@@ -62,7 +61,7 @@ pub struct PulleyNetwork {
     pub material: Material,
     /// The stations at each span's ends.
     pub ends: Vec<SpanEnds>,
-    /// The spans' answers, as `ends`.
+    /// The solved spans, in the order of `ends`.
     pub spans: Vec<Span>,
     /// Tension force just before and just after each station, N.
     pub forces: Vec<[Vec2; 2]>,
@@ -73,8 +72,8 @@ pub struct PulleyNetwork {
     /// Arc length at each station before anything slid (friction remembers it), m.
     held_at: Vec<f64>,
     warm: bool,
-    /// Every pulley with what friction remembers of it, in order; empty until it was asked for
-    /// (`pulley_states`).
+    /// The friction memory of every pulley, in order; empty until friction begins to remember
+    /// (`pulley_state`).
     pub pulley_states: Vec<PulleyState>,
 }
 
@@ -120,7 +119,7 @@ impl PulleyNetwork {
         self.warm = true;
     }
 
-    /// Solves everything, friction from where the material was laid.
+    /// Solves all spans and pulleys, with friction measured from where the material was laid.
     ///
     /// # Errors
     /// The reason why there is no answer.
@@ -166,8 +165,8 @@ impl PulleyNetwork {
         Ok(())
     }
 
-    /// A span folded so sharply that one element turns round in itself: where its tension vanishes
-    /// D has a kink, which is rounded off and then sharpened tenfold at a time.
+    /// Solves a span folded so sharply that the fold lies within one element. D has an angle where
+    /// the tension vanishes; it is smoothed, and the smoothing is reduced tenfold at a time.
     fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
         let (mut force, mut steps) = (guess, 0);
         for power in (0..=FOLD_ROUNDING_DECADES).rev() {
@@ -181,7 +180,7 @@ impl PulleyNetwork {
         None
     }
 
-    /// Forces of the stretches that end free: the load beyond.
+    /// Sets the forces of the stretches that end free: the loads beyond them.
     fn set_free_end_forces(&mut self) {
         let Some((first, last)) = self.layout.anchored() else { return };
         let end = self.layout.stations.len() - 1;
@@ -231,8 +230,8 @@ impl PulleyNetwork {
             - self.held_at[station]
     }
 
-    /// Imbalance at a pulley: 0 where it rests, else positive where the arc length must shrink.
-    /// `None`: held.
+    /// Imbalance at a pulley: 0 if it is balanced, positive if the arc length must shrink. `None`
+    /// if friction holds it.
     pub(in crate::model::fem) fn imbalance(&self, station: usize, wheel: &Wheel) -> Option<f64> {
         let b = self.law(station, wheel);
         if !(wheel.friction > 0.0) {
@@ -265,7 +264,8 @@ impl PulleyNetwork {
         }
         for _ in 0..MAX_ROUNDS {
             self.bisect_each()?;
-            // Of several stable places bisection may find another each time: Newton stays at one.
+            // If there are several stable equilibria, bisection may find a different one each time;
+            // Newton's method stays at one.
             let bisected = self.clone();
             if self.newton(&self.pulleys()) {
                 return Ok(());
@@ -283,7 +283,7 @@ impl PulleyNetwork {
         imbalance.abs() * self.forces[station][0].norm()
     }
 
-    /// Newton on all pulleys; true when they rest in a stable place.
+    /// Applies Newton's method to all pulleys; true if they end in a stable equilibrium.
     fn newton(&mut self, pulleys: &[usize]) -> bool {
         let imbalances = |n: &Self| -> Vec<Option<f64>> {
             pulleys.iter().map(|&k| n.wheel(k).and_then(|w| n.imbalance(k, &w))).collect()
@@ -313,8 +313,8 @@ impl PulleyNetwork {
         false
     }
 
-    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction
-    /// held it.
+    /// Moves every pulley by the fraction `alpha` of its step, within its room, and not beyond the
+    /// place where friction held it.
     fn move_pulleys(&mut self, pulleys: &[usize], from: &[f64], step: &[f64], alpha: f64) {
         for (i, &k) in pulleys.iter().enumerate() {
             self.layout.stations[k].arc_length = from[i];
@@ -422,19 +422,19 @@ impl PulleyNetwork {
         let turn = turn_between(before, after);
         let turning =
             perp(after).dot(&rates[1]) / after.norm_squared() - perp(before).dot(&rates[0]) / before.norm_squared();
-        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the
-        // side before.
+        // The active bound: the lower one if ρ lies below it or the pulley gave cable to the side
+        // before.
         let lower = (after.norm() / before.norm()).ln() - imbalance < 0.0;
         let sign = if lower { -1.0 } else { 1.0 };
         ratio - sign * wheel.friction * turn.signum() * turning
     }
 
-    /// One round of bisection over the pulleys.
+    /// Runs one round of bisection over the pulleys.
     fn bisect_each(&mut self) -> Result<(), Failure> {
         (0..self.pulleys().len()).try_for_each(|p| self.bisect(self.pulleys()[p]))
     }
 
-    /// Brings one pulley to rest with the others held: the change of its imbalance from − to +.
+    /// Balances one pulley with the others held: finds the change of its imbalance from − to +.
     fn bisect(&mut self, station: usize) -> Result<(), Failure> {
         let Some(wheel) = self.wheel(station) else { return Ok(()) };
         let start = self.layout.stations[station].arc_length;
@@ -447,8 +447,8 @@ impl PulleyNetwork {
         } else {
             self.layout.stations[station - 1].leaves() + least
         };
-        // From where friction held it towards the limit; the imbalance keeps its sign until it
-        // rests.
+        // The search goes from where friction held it towards the limit; the imbalance keeps its
+        // sign up to the root.
         let (mut near, mut far) = (held, limit);
         self.try_at(station, limit)?;
         let at_limit = self.imbalance(station, &wheel);
@@ -480,8 +480,8 @@ impl PulleyNetwork {
         Ok(())
     }
 
-    /// A pulley that wants beyond the station beside it: past a load the load changes sides, past
-    /// an end it runs out.
+    /// Handles a pulley whose balance lies beyond the next station: a load changes to the other
+    /// side; at an end the cable runs out.
     fn pass(&mut self, station: usize, up: bool) -> Result<(), Failure> {
         let other = if up { station + 1 } else { station - 1 };
         let inner = other > 0 && other + 1 < self.layout.stations.len();

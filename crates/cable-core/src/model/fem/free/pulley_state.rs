@@ -1,24 +1,26 @@
-//! A pulley holds its cable by friction or lets it slide, and remembers where it held it.
+//! This module holds the friction state of a pulley: it holds its cable or lets it slide, and
+//! remembers where it held it.
 
 use crate::math::Vec2;
 use crate::model::spans::contact::{CableProperties, WheelFriction};
 
-/// State of friction at a point.
+/// State of friction at a pulley without a radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PointFriction {
-    /// The material there stays.
+    /// The material there sticks.
     Holds,
-    /// It slides with this coefficient, signed.
+    /// It slides with this signed coefficient.
     Slides(f64),
 }
 
 /// State of friction at a pulley.
 #[derive(Clone, Debug)]
-#[allow(clippy::large_enum_variant)] // A handful of them in a scene.
+#[allow(clippy::large_enum_variant)] // A scene has only a few of them.
 pub(super) enum FrictionState {
-    /// Of a wheel.
+    /// The state on a wheel.
     Wheel(WheelFriction),
-    /// Of a point: μ, whether it holds, and the material it held last, m.
+    /// The state at a pulley without a radius: μ, stick or slip, and the arc length that it held
+    /// last, m.
     Point { friction: f64, mode: PointFriction, held: f64 },
 }
 
@@ -29,12 +31,12 @@ pub struct PulleyState {
     pub(super) friction: FrictionState,
     /// Angles at which the cable meets and leaves a wheel, rad.
     pub(super) angles: [f64; 2],
-    /// Material there, m.
+    /// Arc lengths there, m.
     pub(super) material: [f64; 2],
 }
 
-/// An unknown at a pulley: the angle and the material at its side 0 or 1; the material of a point
-/// at both.
+/// An unknown at a pulley: the angle or the arc length at its side 0 or 1, or the arc length at a
+/// pulley without a radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Unknown {
     Angle(usize),
@@ -51,8 +53,8 @@ impl PulleyState {
         }
     }
 
-    /// Tension (N), normal and material (m) at a fraction of its arc, where its cable was in the
-    /// last step; None for a point.
+    /// Tension (N), outward normal and arc length (m) at a fraction of its arc in the last step;
+    /// None for a pulley without a radius.
     pub fn on_arc(&self, on: &CableProperties, fraction: f64) -> Option<(f64, Vec2, f64)> {
         let FrictionState::Wheel(wheel) = &self.friction else { return None };
         let angle = self.angles[0] + (self.angles[1] - self.angles[0]) * fraction;

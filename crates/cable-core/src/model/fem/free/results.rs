@@ -1,4 +1,4 @@
-//! This module reads nodes and support reactions out of a solved network.
+//! This module reads nodes and support reactions from a solved network.
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::arc_nodes;
@@ -16,17 +16,17 @@ pub struct Point {
     pub arc_length: f64,
     /// Its position, m.
     pub at: Vec2,
-    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may
-    /// push: less than zero.
+    /// Tension, N: the larger one of those on both sides, which is the one that breaks the cable.
+    /// Negative where a stiff cable is compressed.
     pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
-    /// Internal force just beyond it, at the end of the cable just before it, N.
+    /// Internal force just after it (at the end of the cable just before it), N.
     pub force: Vec2,
 }
 
 impl Point {
-    /// As an answer holds it.
+    /// This point as a node of an answer.
     #[must_use]
     pub fn node(&self, problem: &Problem) -> Node {
         let tension_n = self.tension;
@@ -45,8 +45,7 @@ impl Point {
     }
 }
 
-/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to
-/// `out`.
+/// Appends all points of a solved network in order of arc length to `out`; `cable_radius` is in m.
 pub fn points(network: &PulleyNetwork, cable_radius: f64, out: &mut Vec<Point>) {
     out.clear();
     let layout = &network.layout;
@@ -88,7 +87,7 @@ fn free_curvature(force: Vec2, body: Vec2, smoothing: f64) -> f64 {
     -cross(force, body) / (force.norm_squared() + smoothing * smoothing)
 }
 
-/// The points between two stations; of the two only the first, and only where it does not anchor.
+/// Appends the points between two stations, and the first station itself if it does not anchor.
 fn run(network: &PulleyNetwork, SpanEnds { first, last }: SpanEnds, start: Vec2, force: Vec2, out: &mut Vec<Point>) {
     let (layout, material) = (&network.layout, &network.material);
     let (mut at, mut force) = (start, force);
@@ -119,7 +118,7 @@ fn run(network: &PulleyNetwork, SpanEnds { first, last }: SpanEnds, start: Vec2,
     }
 }
 
-/// The points at an anchor: one, or those round a wheel.
+/// Appends the point of an anchor, or the points round its wheel.
 fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<Point>) {
     let station = &network.layout.stations[k];
     let [before, after] = network.forces[k];
@@ -172,8 +171,8 @@ fn remembered(network: &PulleyNetwork, station: usize, fraction: f64) -> Option<
     Some((normal, material, tension))
 }
 
-/// Force of the cable on a station, N: it is pulled back along the cable before it and on along the
-/// cable after it, and carries the load that acts there, and the cable on its wheel.
+/// Force of the cable on a station, N: the tensions on both sides, the load that acts there, and
+/// the weight of the cable on its wheel.
 #[must_use]
 pub fn reaction(station: &Station, [before, after]: [Vec2; 2], body: Vec2) -> Vec2 {
     match station.restraint {

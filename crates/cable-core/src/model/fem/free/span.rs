@@ -1,33 +1,35 @@
-//! A span consists of the elements between two anchors; it is solved for the force at its start.
+//! This module solves a span, the elements between two anchors, for the force at its start.
 //!
-//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an
-//! element and by the load at a station. What is left are two unknowns however many elements there
-//! are, and their equation is the minimum of a convex function (the dual of the potential energy):
+//! The force at the start determines the force at every node: F drops by q Δs along an element and
+//! by the load at a station. So there are two unknowns however many elements there are, and they
+//! minimise a convex function (the dual of the potential energy):
 //! ```text
 //! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
 //! ```
-//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it.
-//! Newton with a line search; accepted on the gradient where D itself has no digits left.
+//! Every minimum is an equilibrium in tension: compression and unstable states cannot occur.
+//! Newton's method with a line search finds it; where D itself has no digits left, a step is
+//! accepted by the gradient.
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 use crate::numerics::backtrack;
 
-/// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
+/// Maximum number of Newton steps of a span. Measured: 3 to 14, up to 40 for a span folded on
+/// itself.
 const MAX_STEPS: usize = 200;
-/// Halvings of a Newton step.
+/// Maximum number of halvings of a Newton step.
 const MAX_HALVINGS: usize = 40;
-/// Fraction of the promised decrease a step must give (Armijo). Any small number will do.
+/// Fraction of the predicted decrease that a step must give (Armijo). Any small number will do.
 const ARMIJO: f64 = 1e-4;
-/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over
-/// its elements.
+/// Gap, as a fraction of the length, below which a span is closed: a few rounding errors of a sum
+/// over its elements.
 const CLOSURE_TOLERANCE: f64 = 4e-16;
-/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the
-/// gap of taut stiff spans stops at about 1e-13. Newton is quadratic here, so a step that does not
-/// halve it meets rounding.
+/// Gap, as a fraction of the length, at which a span still counts as closed if a step no longer
+/// halves it: the gap of taut stiff spans stops at about 1e-13. Newton's method is quadratic here,
+/// so a step that does not halve the gap has reached round-off.
 const CLOSURE_LIMIT: f64 = 1e-10;
-/// A step this small, in parts of the force, changes nothing any more.
+/// Size of a step, relative to the force, that no longer changes anything.
 const FORCE_ROUNDING: f64 = 1e-15;
 
 /// The shape of a span under a start force.
@@ -52,13 +54,13 @@ pub struct Span {
     pub span_response: SpanResponse,
     /// Newton steps taken.
     pub steps: usize,
-    /// Unbalanced force that its gap stands for, N.
+    /// Unbalanced force that corresponds to its gap, N.
     pub residual: f64,
 }
 
 impl Span {
-    /// Changes of the forces at both ends with the arc length at an end (`by_end`: the last
-    /// station, else the first).
+    /// Derivatives of the forces at both ends by the arc length at one end: the last if `by_end`,
+    /// else the first.
     #[must_use]
     pub fn force_rates(&self, material: &Material, layout: &StationLayout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
         let rate = reach_rate(material, layout, ends, self.force, by_end);
@@ -67,7 +69,7 @@ impl Span {
     }
 }
 
-/// Runs over the elements between two stations: `each(ds, middle force)`; returns the force before
+/// Calls `each(ds, middle force)` for the elements between two stations; returns the force before
 /// the last station.
 pub fn elements(
     material: &Material,
@@ -146,9 +148,9 @@ fn load_and_length(material: &Material, layout: &StationLayout, SpanEnds { first
     (material.body * length + loads, length)
 }
 
-/// A start force near the answer: the parabola where the span is taut, else the catenary's own
-/// first guess (A. Peyrot and A. Goulois, *Analysis of cable structures*, Computers & Structures
-/// 1979), point loads spread evenly.
+/// A start force near the solution: that of the parabola if the span is taut, else the first guess
+/// for a catenary (A. Peyrot and A. Goulois, *Analysis of cable structures*, Computers & Structures
+/// 1979), with point loads spread evenly.
 #[must_use]
 pub fn first_guess(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2) -> Vec2 {
     let (load, length) = load_and_length(material, layout, ends);
@@ -198,11 +200,11 @@ pub fn first_guess(material: &Material, layout: &StationLayout, ends: SpanEnds, 
 /// Strain below which a span counts as slack for the first guess: both guesses are good about here.
 const SLACK_STRAIN: f64 = -0.02;
 
-/// Part of the load that must act across the chord for the parabola to mean anything.
+/// Fraction of the load that must act across the chord for the parabola to be usable.
 const CROSS_LOAD_FRACTION: f64 = 1e-6;
 
-/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a
-/// number blew up).
+/// Solves a span between points `d` apart (m) from a start force. `None` if Newton's method
+/// diverges.
 #[must_use]
 pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
     let (load, length) = load_and_length(material, layout, ends);

@@ -1,8 +1,8 @@
 //! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it
 //! quasi-statically.
 //!
-//! A flexible cable is solved span by span (`span`, `pulley_balance`): no start can fail, and what
-//! is found is in tension and stable by construction. The mesh follows the error estimate where the
+//! A flexible cable is solved span by span (`span`, `pulley_balance`): every start converges, and
+//! the result is in tension and stable by construction. The mesh follows the error estimate if the
 //! scene does not give one.
 
 use crate::model::settings::MAX_MOVE_FRACTION;
@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::auxiliary_weight::material_at;
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
 use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
+use crate::model::fem::free::element_material::material_at;
 use crate::model::fem::free::failure_report::solve_error;
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::results;
@@ -30,24 +30,24 @@ use crate::solution::error_estimates::greatest_tension;
 use crate::solution::{Assumptions, CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
-/// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
+/// First number of elements if none is given: an error of 1e-6 for a usual span, in 50 µs.
 const FIRST_SEGMENTS: usize = 40;
-/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error
-/// falls.
+/// Maximum number of elements by the error estimate. Beyond it round-off grows faster than the
+/// error falls.
 const MOST_SEGMENTS: usize = 4000;
-/// Part of the tolerance the estimate must stay below.
+/// Fraction of the tolerance below which the estimate must stay.
 const ESTIMATE_FRACTION: f64 = 0.5;
 /// Order of the corrected bar.
 const ORDER: f64 = 4.0;
-/// Rounds of mesh refinement.
+/// Maximum number of rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Most slow steps in one call.
+/// Maximum number of slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
-/// Part of a slow step that is taken with the step before it.
+/// Fraction of a slow step that is joined to the step before it.
 const JOINED_FRACTION: f64 = 0.5;
 
-/// The balance of pulleys without friction. On wheels it is found with the material on them by a
-/// mean of the tension (to 1e-7 of it), and then exactly.
+/// Balances pulleys without friction. On wheels the strain of the material is first taken from a
+/// mean tension (accurate to 1e-7), and then integrated exactly.
 fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, Failure> {
     network.solve()?;
     if network.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0)) {
@@ -69,10 +69,10 @@ pub struct Statics {
     segments: usize,
     /// Arc length at each support that slides, m.
     slid: Vec<Option<f64>>,
-    /// The flexible cable of the last answer: where the next one starts.
+    /// The flexible cable of the last answer, from which the next one starts.
     network: Option<PulleyNetwork>,
-    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction
-    /// remembers.
+    /// The same cable on a finer mesh if pulleys have friction: it gives the effect of the mesh on
+    /// the friction memory.
     finer: Option<PulleyNetwork>,
     /// The stiff cable of the last answer.
     beam: Option<Beam>,
@@ -82,15 +82,14 @@ pub struct Statics {
     estimate: Option<f64>,
     /// Estimated error of the shape, m.
     shape_error: Option<f64>,
-    /// True if it was put where it is: then it is not as it was laid.
+    /// True if its state was adopted from outside, so that it no longer lies as on its route.
     adopted: bool,
 }
 
 impl Statics {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
-    /// # Errors
-    /// `Unsupported` when the scene needs what it lacks.
+    /// # Errors `Unsupported` if the scene needs a feature that `Statics` lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         let given = settings.segments.or(problem.cable.segments);
         let mut new = Self {
@@ -112,11 +111,9 @@ impl Statics {
         Ok(new)
     }
 
-    /// Finds the resting place at the present time; `dragged` are the hand-set support positions,
-    /// m.
+    /// Finds the equilibrium at the present time; `dragged` are the hand-set support positions, m.
     ///
-    /// # Errors
-    /// A typed reason when there is none, or none was found.
+    /// # Errors The reason if there is no equilibrium, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         let time = self.time;
         self.rest_at(time, dragged)
@@ -132,7 +129,7 @@ impl Statics {
         let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
         let mut report = StepReport::default();
         let mut pieces = HalvedSteps::new(end, dt_s / steps, MAX_HALVINGS, JOINED_FRACTION);
-        // A hand goes straight.
+        // A hand moves a support along a straight line.
         let from: Vec<Option<Vec2>> = (0..dragged.len()).map(|k| self.support_at(k)).collect();
         let drawn = |time: f64| -> Vec<Option<Vec2>> {
             let part = if time < end { (time - start) / dt_s } else { 1.0 };
@@ -170,7 +167,7 @@ impl Statics {
         (longest / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, MAX_SLOW_STEPS)
     }
 
-    /// Rest at a time; on an error nothing has changed.
+    /// Finds the equilibrium at a time; on an error nothing has changed.
     fn rest_at(&mut self, time: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
         let mut layout = StationLayout::new(&self.problem, time, dragged, &self.slid);
@@ -211,7 +208,7 @@ impl Statics {
         if rubs {
             estimate += self.follow_finer(&network, time, dragged, first);
             network.commit_friction();
-            // Friction is as wrong as the steps that it remembers.
+            // Friction carries the errors of the steps that it remembers.
             let before = if first { None } else { self.estimate };
             estimate = before.map_or(estimate, |e| larger(e, estimate));
         }
@@ -233,8 +230,8 @@ impl Statics {
         Ok(StepReport { cost, warnings: self.warnings(has_auxiliary_weight) })
     }
 
-    /// The balance of pulleys that rub: from what they remember, else as the cable was laid;
-    /// whether it was laid anew.
+    /// Balances pulleys with friction from their memory, or else from the route. Returns whether it
+    /// started from the route.
     fn begin_rubbing(&self, network: &mut PulleyNetwork, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
@@ -256,12 +253,12 @@ impl Statics {
         network.balance_with_friction().map(|()| true)
     }
 
-    /// Goes the same way with bars half as long in steps half as long and with a memory of its own:
-    /// by how much the forces differ, in parts of the greatest. What mesh and steps do to friction
-    /// adds up in what friction remembers, of which the present balance knows nothing.
+    /// Follows the same motion with bars and steps half as long and a friction memory of its own;
+    /// returns the difference of the forces relative to the greatest. Errors of mesh and steps add
+    /// up in the friction memory, and the present balance alone does not show them.
     fn follow_finer(&mut self, network: &PulleyNetwork, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
         let Some(finer) = self.finer(network, time, dragged, first) else {
-            // It begins anew from here.
+            // The finer cable begins anew from here.
             self.finer = None;
             return 0.0;
         };
@@ -316,8 +313,8 @@ impl Statics {
         Some(finer)
     }
 
-    /// Position of a support in the last answer, of a wheel its centre (where the cable meets it is
-    /// no move of the support), m.
+    /// Position of a support in the last answer, m. For a wheel it is the centre, because the point
+    /// where the cable meets it can move without the support.
     fn support_at(&self, support: usize) -> Option<Vec2> {
         let station = self.network.as_ref()?.layout.stations.iter().find(|s| s.support == Some(support))?;
         match station.restraint {
@@ -326,7 +323,7 @@ impl Statics {
         }
     }
 
-    /// Rest with bending stiffness, from the flexible cable.
+    /// Finds the equilibrium with bending stiffness, starting from the flexible cable.
     fn bend(
         &mut self,
         network: PulleyNetwork,
@@ -334,7 +331,7 @@ impl Statics {
         has_auxiliary_weight: bool,
     ) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        // A stiff cable has a shape of its own: it needs no hint of weight.
+        // A stiff cable has a definite shape without auxiliary weight.
         let body = if has_auxiliary_weight { Vec2::zeros() } else { network.material.body };
         let stiff = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
         let wanted = if given { None } else { Some(ESTIMATE_FRACTION * self.settings.tolerance) };
@@ -348,20 +345,20 @@ impl Statics {
             }
         }
         self.time = time;
-        // A mesh that the user gives is answered at its nodes.
+        // On a mesh that the user gives, the answer has values at its nodes only.
         self.points = beam.points(!given);
         self.rested = Some((beam.layout().clone(), beam.station_forces()));
         (self.estimate, self.shape_error) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), shape_error);
         let cost = Cost { iterations, residual_n: beam.residual, ..Cost::default() };
         self.network = Some(network);
-        // A stiff cable has a shape of its own without weight, too.
+        // A stiff cable has a definite shape even without weight.
         self.beam = Some(beam);
         let warnings = self.warnings(false);
         Ok(StepReport { cost, warnings })
     }
 
-    /// The equilibria of a stiff cable that is compressed: the one that was found and those bowed
-    /// to another side, each its nodes; none of any other cable.
+    /// The nodes of each equilibrium of a compressed stiff cable: the one that was found and those
+    /// bowed to another side. Empty for any other cable.
     pub fn buckled_shapes(&self) -> Vec<Vec<Node>> {
         let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
         self.beam
@@ -392,8 +389,7 @@ impl Statics {
 
     /// Takes over a state of the same cable.
     ///
-    /// # Errors
-    /// When a number is not finite or the state does not fit the cable.
+    /// # Errors If a number is not finite or the state does not fit the cable.
     pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);

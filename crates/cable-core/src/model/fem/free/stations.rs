@@ -2,8 +2,8 @@
 //!
 //! A station either anchors the cable (held, or a pulley it slides through) or carries a load on a
 //! free point. The elements between two stations follow them when the arc length at a pulley
-//! changes, so a pulley needs no new mesh: node arc lengths are the stations' ones and fixed
-//! fractions in between.
+//! changes, so a moving pulley needs no new mesh: nodes are at the stations and at fixed fractions
+//! between them.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::bars_between;
@@ -13,11 +13,11 @@ use crate::scene::{PulleySide, SupportKind};
 /// The way in which a station holds the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Restraint {
-    /// Not at all.
+    /// The cable is free.
     Free,
-    /// At a point, m.
+    /// The cable is fixed at a point, m.
     Fixed(Vec2),
-    /// It slides through.
+    /// The cable slides through a pulley.
     Pulley(Wheel),
 }
 
@@ -28,7 +28,7 @@ pub struct Wheel {
     pub center: Vec2,
     /// Radius of the cable's centre line, m; 0 = a point.
     pub radius: f64,
-    /// Coulomb friction.
+    /// Coulomb friction coefficient.
     pub friction: f64,
     /// Side of the wheel on which the cable runs.
     pub side: PulleySide,
@@ -39,7 +39,7 @@ pub struct Wheel {
 /// A support or a point load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station {
-    /// Its arc length (of a wheel: where the cable meets it), m.
+    /// Its arc length, m (for a wheel: of the point where the cable meets it).
     pub arc_length: f64,
     /// Material on the wheel, m.
     pub material_on_wheel: f64,
@@ -51,7 +51,7 @@ pub struct Station {
     pub support: Option<usize>,
     /// Direction of a clamp, rad.
     pub clamp: Option<f64>,
-    /// Elements from here to the next station.
+    /// Number of elements from here to the next station.
     pub element_count: usize,
 }
 
@@ -88,7 +88,7 @@ pub struct SpanEnds {
     pub last: usize,
 }
 
-/// The stations of one cable at a time, first and last at its ends.
+/// The stations of one cable at one time; the first and the last are at its ends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StationLayout {
     /// In order of arc length.
@@ -98,8 +98,8 @@ pub struct StationLayout {
 }
 
 impl StationLayout {
-    /// The stations at a time (s). `slid` gives the arc length at each support where it is known
-    /// (pulleys after the first answer); the others are laid: the cable's material spread evenly
+    /// Makes the stations at a time (s). `slid` gives the arc length at each support where it is
+    /// known (pulleys after the first answer); for the others the cable's material is spread evenly
     /// along the way through its supports.
     #[must_use]
     pub fn new(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>], slid: &[Option<f64>]) -> Self {
@@ -122,7 +122,7 @@ impl StationLayout {
                 (_, Some(p)) => Restraint::Fixed(p),
             };
             if restraint == Restraint::Free && support.kind == SupportKind::Pulley && !end {
-                continue; // let go: the cable no longer knows it
+                continue; // the cable has been released from it
             }
             let known = support.arc_length.or(slid.get(k).copied().flatten());
             let released = at.is_none() && !matches!(support.kind, SupportKind::Load | SupportKind::Free);
@@ -146,7 +146,7 @@ impl StationLayout {
                 _ => stations.insert(at.min(stations.len()), point_load(load.arc_length, force)),
             }
         }
-        // A load on the very end belongs to the end.
+        // A load exactly at the end belongs to the end.
         while let [.., end, load] = stations.as_mut_slice() {
             if load.support.is_some() {
                 break;
@@ -192,19 +192,19 @@ fn point_load(arc_length: f64, load: Vec2) -> Station {
     }
 }
 
-/// Position of a support at a time, dragged there by hand or not, m.
+/// Position of a support at a time, m: where it is dragged by hand, or else by its motion.
 #[must_use]
 pub fn place(problem: &Problem, support: usize, time_s: f64, dragged: &[Option<Vec2>]) -> Option<Vec2> {
     let own = problem.supports.get(support)?.position_at(time_s)?.0;
     Some(dragged.get(support).copied().flatten().unwrap_or(own))
 }
 
-/// The least share of the cable that is left to a hanging end when the way to the last support is
-/// longer than the cable. Any value in (0, 1) will do: it is where a search starts.
+/// Least fraction of the cable that is left to a hanging end if the way to the last support is
+/// longer than the cable. Any value in (0, 1) will do, because a search starts from it.
 const LEAST_TAIL: f64 = 0.05;
 
 /// Arc length at every support with the material spread evenly along the route, or along the
-/// straight way where there is none. Hanging ends get the material that the way between the outer
+/// straight way if there is no route. Hanging ends get the material that the way between the outer
 /// anchors leaves.
 fn arcs_along_route(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) -> Vec<f64> {
     let count = problem.supports.len();
@@ -217,7 +217,7 @@ fn arcs_along_route(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) ->
             .map(|p| p.map_or(0.0, |p| problem.length * nearest(&problem.route, &way, p) / whole))
             .collect();
     }
-    // Way from support to support; a free one is passed over.
+    // Distance along the way from support to support; a free support is skipped.
     let (mut way, mut last) = (vec![0.0; count], None);
     for k in 0..count {
         way[k] = if k > 0 { way[k - 1] } else { 0.0 };

@@ -1,12 +1,12 @@
-//! Before the first answer a cable lies straight from support to support.
+//! This module lays a cable straight from support to support before its first answer.
 
 use crate::math::Vec2;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::StationLayout;
 use crate::problem::Problem;
 
-/// The straight way through the supports at the time 0, in so many segments; `slid` is the arc
-/// length at each support that slides, m. Ends that hang hang down.
+/// The points of the straight way through the supports at time 0, in so many segments; `slid` is
+/// the arc length at each support that slides, m. Hanging ends point down.
 pub(super) fn straight_points(problem: &Problem, segments: usize, slid: &[Option<f64>]) -> Vec<Point> {
     let mut layout = StationLayout::new(problem, 0.0, &[], slid);
     layout.cut(segments);

@@ -1,9 +1,9 @@
 //! This module finds the arcs of a cable on the wheels of its pulleys.
 //!
-//! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact
-//! points follow the forces of the spans beside (a few rounds, each gains the ratio of radius to
-//! span). Along the arc, with t the direction and n the outward normal, dT = −q·t ds ± μ (T dα −
-//! q·n ds): the capstan with the weight on the wheel.
+//! The cable is tangent to a wheel at the points where it meets and leaves it. These contact points
+//! follow from the forces of the neighbouring spans in a few rounds; each round reduces the error
+//! by the ratio of radius to span. Along the arc, with t the direction and n the outward normal,
+//! dT = −q·t ds ± μ (T dα − q·n ds): the capstan law with the weight on the wheel.
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
@@ -12,18 +12,19 @@ use crate::model::fem::free::stations::{Restraint, Wheel};
 use crate::problem::wheel_passage::{TURN_ROUNDING, angle_near, facing, turn_through_centre};
 use crate::scene::PulleySide;
 
-/// Steps of the integration round a wheel.
+/// Number of steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
-/// Tilt from the top of a wheel (tangent, below it from the bottom) of the contact points to begin
-/// with: the wrap is then about twice as much, rad. Smaller: at 0 the arc has no length and no
-/// side; larger: more rounds for wheels that are hardly wrapped. A choice, tuned on no campaign.
+/// Tangent of the first tilt of the contact points from the top of a wheel, or from its bottom if
+/// the cable runs below it; the wrap (rad) is then about twice as much. Smaller: at 0 the arc has
+/// no length and no side; larger: more rounds for wheels with little wrap. A choice, tuned on no
+/// campaign.
 const FIRST_TILT: f64 = 0.05;
-/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to
-/// span.
+/// Maximum number of rounds that find where a cable meets and leaves its wheels; each reduces the
+/// error by the ratio of radius to span.
 const WHEEL_ROUNDS: usize = 80;
 /// Rounds of wheels end when no contact point moves by more than this angle, rad.
 const CONTACT_ANGLE_TOLERANCE: f64 = 1e-12;
-/// As above where round-off allows no better.
+/// As above if round-off allows no better.
 const CONTACT_ANGLE_LIMIT: f64 = 1e-8;
 
 impl PulleyNetwork {
@@ -60,14 +61,15 @@ impl PulleyNetwork {
         (tension / first).ln()
     }
 
-    /// +1 where the cable runs clockwise round the wheel at a station, −1 the other way, by the
+    /// +1 if the cable runs clockwise round the wheel at a station, −1 otherwise, judged by the
     /// anchors before and after it.
     pub(in crate::model::fem) fn clockwise_at(&self, station: usize, wheel: &Wheel) -> f64 {
         let [arrive, leave] = self.passing(station).map(Option::unwrap_or_default);
         facing(wheel.side, arrive + leave)
     }
 
-    /// The ways to a station from the anchor before and on to the anchor after, where there are.
+    /// The vectors to a station from the anchor before it and on to the anchor after it, if there
+    /// are any.
     fn passing(&self, station: usize) -> [Option<Vec2>; 2] {
         let near = |k: usize| match self.layout.stations[k].restraint {
             Restraint::Free => None,
@@ -80,7 +82,7 @@ impl PulleyNetwork {
         [before.map(|b| here - b), after.map(|a| a - here)]
     }
 
-    /// Contact points for straight cables, to start with.
+    /// Sets the first contact points, for straight cables.
     pub(in crate::model::fem) fn meet_wheels_straight(&mut self) {
         for k in self.pulleys() {
             let Some(mut wheel) = self.wheel(k) else { continue };
@@ -94,7 +96,7 @@ impl PulleyNetwork {
         }
     }
 
-    /// Balances with contact points and forces in agreement.
+    /// Balances the pulleys until contact points and forces agree.
     pub(in crate::model::fem) fn balance_on_wheels(&mut self) -> Result<(), Failure> {
         for round in 1..=WHEEL_ROUNDS {
             self.balance()?;
@@ -113,10 +115,10 @@ impl PulleyNetwork {
         Ok(())
     }
 
-    /// Moves the contact points to where the forces say; returns the largest move, rad, and a wheel
-    /// the cable would leave at these forces. On the way to an answer that may pass (a span too
-    /// slack yet hangs clear of the wheel's side): it is left touching in one point between the two
-    /// directions.
+    /// Moves the contact points to where the forces are tangent; returns the largest move, rad, and
+    /// a wheel that the cable would leave at these forces. During the iteration that may be
+    /// temporary (a span that is still too slack hangs clear of the wheel's side), so such a cable
+    /// is left in contact at one point between the two directions.
     fn update_wheel_contacts(&mut self) -> (f64, Option<usize>) {
         let (mut largest, mut lifted) = (0.0, None);
         for k in self.pulleys() {
@@ -124,7 +126,7 @@ impl PulleyNetwork {
             let [before, after] = self.forces[k];
             let clockwise = self.clockwise_at(k, &wheel);
             let mut contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
-            // Where nothing holds it, its force leads the way.
+            // Without an anchor beyond it, the force gives the direction.
             let [arrive, leave] = self.passing(k);
             let through_centre = turn_through_centre(clockwise, arrive.unwrap_or(before), leave.unwrap_or(after));
             let mut turn = angle_near(arc(contact[0], contact[1], clockwise), through_centre);
@@ -171,12 +173,12 @@ pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
     }
 }
 
-/// Friction over a wheel that adds less than this part of the tension adds evenly: the difference
-/// is its square, and the quotient of two small numbers is not formed.
+/// Relative change of tension by friction over a wheel below which the change is taken as linear
+/// along the arc: the difference is of second order, and no quotient of two small numbers is
+/// formed.
 const EVEN_FRICTION_FRACTION: f64 = 1e-6;
 
-/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and
-/// what friction adds.
+/// Tension at a fraction of the arc, N: weight and wind from the first contact on, and friction.
 #[must_use]
 pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], fraction: f64) -> f64 {
     let (first, last) = (before.norm(), after.norm());
@@ -185,7 +187,7 @@ pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], f
     let angle = start + fraction * turn(wheel, before);
     let carried = |n: Vec2| material.body.dot(&(n - wheel.contact[0])) * wheel.radius / stretch;
     let rubbed = last - first + carried(wheel.contact[1]);
-    // Coulomb friction adds in proportion to what the tension is already: T e^{mφ}.
+    // Coulomb friction grows in proportion to the tension: T e^{mφ}.
     let whole = (first + rubbed) / first;
     let even = !(whole > 0.0 && whole.is_finite() && (whole - 1.0).abs() > EVEN_FRICTION_FRACTION);
     let share = if even { fraction } else { (whole.powf(fraction) - 1.0) / (whole - 1.0) };

@@ -1,5 +1,5 @@
-//! The friction of pulleys remembers where it held the cable; the memory begins with a balance,
-//! with the answer of another model or with that of another mesh.
+//! The friction of pulleys remembers where it held the cable. This module starts that memory from a
+//! balance, from the answer of another model or from that of another mesh, and updates it.
 
 use crate::math::{larger, perp};
 use crate::model::fem::free::pulley_balance::PulleyNetwork;
@@ -8,17 +8,17 @@ use crate::model::fem::free::stations::Restraint;
 use crate::model::spans::contact::{CableProperties, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
-/// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
+/// Distance from a wheel within which a node of an answer lies on it, as a fraction of its radius.
 const ON_WHEEL: f64 = 1e-9;
 
 impl PulleyNetwork {
-    /// The cable as the law of wheels sees it.
+    /// The properties of the cable that the law of wheels needs.
     pub fn cable_properties(&self) -> CableProperties {
         let m = &self.material;
         CableProperties { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
     }
 
-    /// True if friction at a pulley remembers.
+    /// True if a pulley has friction, and so a memory.
     pub fn rubs(&self) -> bool {
         self.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.friction > 0.0))
     }
@@ -43,8 +43,8 @@ impl PulleyNetwork {
         }
     }
 
-    /// Begins the memory of every pulley with an answer of another model; false where that does not
-    /// say enough.
+    /// Begins the memory of every pulley with an answer of another model; false if that does not
+    /// hold enough.
     pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
         let on = self.cable_properties();
         let mut found = Vec::new();
@@ -81,7 +81,7 @@ impl PulleyNetwork {
         true
     }
 
-    /// A pulley that remembers nothing yet, where the layout has it.
+    /// A pulley without memory yet, at the place that the layout gives it.
     fn blank(&self, k: usize) -> Option<PulleyState> {
         let wheel = self.wheel(k)?;
         let station = &self.layout.stations[k];
@@ -99,7 +99,8 @@ impl PulleyNetwork {
         })
     }
 
-    /// True if another network has the same pulleys; then their memory is taken over.
+    /// Takes over the friction memory of another network; returns false if it does not have the
+    /// same pulleys.
     pub fn remember_from(&mut self, other: &Self) -> bool {
         let support = |n: &Self, k: usize| n.layout.stations[k].support;
         let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
@@ -111,7 +112,7 @@ impl PulleyNetwork {
         same
     }
 
-    /// Takes the state after a step into the memory of friction.
+    /// Stores the state after a step in the friction memory.
     pub fn commit_friction(&mut self) {
         let on = self.cable_properties();
         let mut pulley_states = std::mem::take(&mut self.pulley_states);
@@ -125,7 +126,7 @@ impl PulleyNetwork {
         self.pulley_states = pulley_states;
     }
 
-    /// The ends of the cable on a wheel, as its friction remembers them.
+    /// The ends of the cable on a wheel, from its friction memory.
     pub(super) fn ends_at(&self, k: usize, r: &PulleyState) -> WheelEnds {
         WheelEnds { place: r.angles, material: r.material, tension: self.forces[k].map(|f| f.norm()) }
     }

@@ -1,20 +1,20 @@
 //! Newton's method balances all pulleys with friction together: run-on and run-off angles of the
 //! wheels and the material on them.
 //!
-//! The unknowns at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the
-//! material s₁, s₂ there; at a point only the material. The spans between follow from these
-//! (`span`), so the equations are few:
+//! The unknowns at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the arc
+//! lengths s₁, s₂ there; at a pulley without a radius only the arc length. The spans between follow
+//! from these (`span`), so the equations are few:
 //!
 //! ```text
 //! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::contact::wheel_friction`)
 //! point    holds: s = s_old,    slides with m: ln(T₂/T₁) = m·turn
 //! ```
 //!
-//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has
-//! moved against its friction since the last step *at points fixed to the wheel*. The middle of the
-//! arc is no such point: it wanders by half the radius times what the directions turn, which is
-//! more than a stiff cable gives by, so that friction could be found the other way round. Newton
-//! with a line search for one set of modes, then the modes are asked.
+//! Slip is complementary to friction: a pulley that sticks lies within its friction cone, and one
+//! that slides has moved against its friction since the last step *at points fixed to the wheel*.
+//! The middle of the arc is no such point: it moves by half the radius times the turn of the
+//! directions, which is more than a stiff cable stretches, so friction could get the wrong sign.
+//! Newton's method with a line search solves one set of modes; then the modes are checked.
 
 use crate::numerics::backtrack;
 use nalgebra::{DMatrix, DVector};
@@ -25,27 +25,29 @@ use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState, Unknown};
 use crate::model::fem::free::stations::{Restraint, Station};
 
-/// Newton steps for one set of modes. Measured: 2 to 8.
+/// Maximum number of Newton steps for one set of modes. Measured: 2 to 8.
 const MAX_STEPS: usize = 40;
-/// Halvings of one step.
+/// Maximum number of halvings of one step.
 const MAX_HALVINGS: usize = 14;
-/// Sets of modes for each pulley.
+/// Maximum number of sets of modes, per pulley.
 const MAX_MODES: usize = 12;
-/// The equations are solved when none is off by more than this part: of a tension, an angle, and of
-/// [`MATERIAL`] of the cable.
+/// Greatest residual of solved equations: relative for a tension, in rad for an angle, and relative
+/// to [`MATERIAL`] times the cable's length for an arc length.
 const RESIDUAL_TOLERANCE: f64 = 1e-13;
-/// The same where no step makes it smaller, as in `network`.
+/// As above if no step makes the residual smaller, as in `pulley_balance`.
 const RESIDUAL_LIMIT: f64 = 1e-8;
-/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by
-/// tension alone; less: by material.
+/// Fraction of the cable's length whose error counts as much as an error of the whole tension.
+/// Larger: steps are judged by tension alone; smaller: by material.
 const MATERIAL: f64 = 0.01;
-/// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
+/// Greatest turn of an end round its wheel in a step, rad: with more it could come out on the other
+/// side.
 const MOST_TURN: f64 = 0.5;
-/// Part of what lies between two stations that a step may take.
+/// Fraction of the cable between two stations that a step may take.
 const STEP_ROOM_FRACTION: f64 = 0.4;
-/// Part of the cone or the length by which a mode is left: how many roundings.
+/// Excess over the friction cone or the length at which a mode changes, in roundings.
 const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
-/// A point pulley's cone (in ln T) and the part of the cable that is no slip: rounding.
+/// Round-off of the friction cone of a pulley without a radius (in ln T), and of its slip as a
+/// fraction of the cable.
 const CONE_ROUNDING: f64 = 1e-12;
 const STEP_TOLERANCE: f64 = 1e-13;
 /// Entries that a pulley changes: two indices and a force each.
@@ -54,14 +56,14 @@ type ForceEntries = Vec<(usize, usize, Vec2)>;
 /// The equations of all pulleys at a state.
 struct Equations {
     residual: DVector<f64>,
-    /// By the unknowns, with the forces frozen.
+    /// Derivatives by the unknowns, with the forces frozen.
     own: DMatrix<f64>,
-    /// By the force beside a station: row, station, side, slope.
+    /// Derivatives by the force beside a station: row, station, side, slope.
     by_force: Vec<(usize, usize, usize, Vec2)>,
 }
 
 impl PulleyNetwork {
-    /// Finds the balance of all pulleys from what they remember; the memory itself stays.
+    /// Finds the balance of all pulleys from their memory, which does not change.
     ///
     /// # Errors
     /// The reason why there is none.
@@ -72,7 +74,7 @@ impl PulleyNetwork {
         let most = MAX_MODES * pulleys.len();
         for round in 0..most {
             let solved = self.newton_on_pulleys(&pulleys);
-            // One at a time after a while: together they may change in circles.
+            // After some rounds only one mode changes at a time: together they may cycle.
             let changed = self.change_modes(&pulleys, round >= most / 2);
             match (solved, changed) {
                 (Ok(()), false) => {
@@ -91,7 +93,7 @@ impl PulleyNetwork {
         Err(Failure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
     }
 
-    /// Lays the stations where the unknowns are and solves the spans between.
+    /// Moves the stations to the unknowns and solves the spans between them.
     fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             let station: &mut Station = &mut self.layout.stations[k];
@@ -129,7 +131,7 @@ impl PulleyNetwork {
             let unit_vectors = [before / before.norm(), after / after.norm()];
             match &mut r.friction {
                 FrictionState::Wheel(w) => {
-                    // Rows and unknowns in the order of `Unknown`.
+                    // Rows and unknowns are in the order of `Unknown`.
                     for side in 0..2 {
                         let ([t, n], u) = (w.directions(r.angles[side]), unit_vectors[side]);
                         let (i, off) = (row + 2 * side, cross(t, u));
@@ -192,7 +194,7 @@ impl PulleyNetwork {
             } else if unknown == Unknown::Angle(side)
                 && let (FrictionState::Wheel(w), Some(wheel)) = (&r.friction, self.wheel(k))
             {
-                // The end of the span goes along the cable, dx/dp = R t.
+                // The end of the span moves along the cable, dx/dp = R t.
                 let moved = w.directions(r.angles[side])[0] * wheel.radius * if side == 0 { 1.0 } else { -1.0 };
                 let stiffness = self.spans[i].span_response.compliance.try_inverse();
                 [stiffness.map_or(Vec2::repeat(f64::NAN), |s| s * moved); 2]
@@ -205,7 +207,7 @@ impl PulleyNetwork {
         out
     }
 
-    /// The whole derivative of the equations, and the slopes of the forces by each unknown.
+    /// The total derivative of the equations, and the derivatives of the forces by each unknown.
     fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<ForceEntries>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
@@ -256,7 +258,8 @@ impl PulleyNetwork {
         if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
     }
 
-    /// The longest part of a step that keeps the order of the stations and the side of the wheels.
+    /// The greatest fraction of a step that keeps the order of the stations and the side of the
+    /// wheels.
     fn longest_step(&self, pulleys: &[usize], step: &DVector<f64>) -> f64 {
         let (mut alpha, mut column) = (1.0, 0);
         let stations = &self.layout.stations;
@@ -304,7 +307,7 @@ impl PulleyNetwork {
         }
     }
 
-    /// Asks every pulley whether it holds or slides; true where one changed.
+    /// Checks for every pulley whether it sticks or slides; true if one changed.
     fn change_modes(&mut self, pulleys: &[usize], one: bool) -> bool {
         let on = self.cable_properties();
         let mut changed = false;
@@ -325,7 +328,8 @@ impl PulleyNetwork {
                         PointFriction::Holds if over > CONE_ROUNDING => {
                             PointFriction::Slides(*friction * ratio.signum())
                         }
-                        // With m = +μ material goes on to the side after: less of it lies before.
+                        // With m = +μ material moves to the side after the pulley, so less of it
+                        // lies before.
                         PointFriction::Slides(m)
                             if m * slid > 0.0 && slid.abs() > STEP_TOLERANCE * self.layout.length =>
                         {
@@ -344,7 +348,8 @@ impl PulleyNetwork {
         changed
     }
 
-    /// Adds to small changes of the forces beside the stations what the pulleys do about them.
+    /// Adds the response of pulleys with friction to small changes of the forces beside the
+    /// stations.
     pub fn let_rubbing_follow(&mut self, changes: &mut [[Vec2; 2]]) {
         let pulleys = self.pulleys();
         let e = self.equations(&pulleys);

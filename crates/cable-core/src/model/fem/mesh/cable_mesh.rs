@@ -1,17 +1,18 @@
-//! A mesh cuts a cable into bars.
+//! A mesh divides a cable into bars.
 
 use std::sync::Arc;
 
 use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
-use crate::model::fem::mesh::mass::Spread;
+use crate::model::fem::mesh::mass_matrix::Spread;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;
 use crate::problem::Problem;
 
-/// A direction prescribed at a node; it bends the bars on both sides of the node, each by itself.
+/// A direction prescribed at a node. The bars on both sides of the node are bent against it, each
+/// by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clamp {
     /// The node.
@@ -20,10 +21,10 @@ pub struct Clamp {
     pub direction: Vec2,
 }
 
-/// A cable cut into bars.
+/// A cable divided into bars.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// The tuned constants by which it is solved.
+    /// The tuned constants with which it is solved.
     pub tuning: Arc<Tuning>,
     /// Unstretched arc length of each node at rest temperature, m, increasing.
     pub arc_length: Vec<f64>,
@@ -31,7 +32,7 @@ pub struct Mesh {
     pub rest_length: Vec<f64>,
     /// True if each node is held in place.
     pub held: Vec<bool>,
-    /// Directions prescribed.
+    /// The prescribed directions.
     pub clamps: Vec<Clamp>,
     /// The corner, post or pulley of each sliding node; None: the node moves with the material.
     pub sliding: Vec<Option<SlidingNode>>,
@@ -41,14 +42,14 @@ pub struct Mesh {
     pub axial_stiffness: f64,
     /// EI, N·m²; 0 = no bending.
     pub bending_stiffness: f64,
-    /// Difference of its mass from that lumped at its nodes.
+    /// Difference of its mass matrix from the lumped one.
     pub spread: Spread,
 }
 
 impl Mesh {
-    /// Cuts a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m,
-    /// increasing, the ends among them) and even bars in between. All nodes are free. `spreads`:
-    /// whether its mass is spread over the bars.
+    /// Divides a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m,
+    /// increasing, with both ends) and even bars in between. All nodes are free. If `spreads`, its
+    /// mass is spread over the bars.
     #[must_use]
     pub fn new(problem: &Problem, tuning: Arc<Tuning>, breaks: &[f64], segments: usize, spreads: bool) -> Self {
         let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
@@ -82,8 +83,8 @@ impl Mesh {
         problem.linear_density * self.tributary_length(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
     }
 
-    /// Becomes a copy without new memory where there is room; `slides`: whether there can be
-    /// sliding nodes to copy.
+    /// Becomes a copy of `other`, reusing its memory where possible. `slides` is false if there can
+    /// be no sliding nodes to copy.
     pub fn copy_from(&mut self, other: &Self, slides: bool) {
         let Self { tuning, arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
         self.tuning.clone_from(tuning);
@@ -107,7 +108,7 @@ impl Mesh {
         self.arc_length.len()
     }
 
-    /// True if nothing resists bending.
+    /// True if the cable has no bending stiffness.
     #[inline]
     #[must_use]
     pub fn is_flexible(&self) -> bool {
@@ -120,13 +121,13 @@ impl Mesh {
         if self.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH }
     }
 
-    /// The end that node `k` makes for the bars beside it.
+    /// Node `k` as the end of the bars beside it: a point, or the round of a sliding node.
     #[must_use]
     pub fn end(&self, k: usize, x: &[Vec2]) -> BarEnd {
         self.sliding[k].as_ref().map_or_else(|| BarEnd::point(x[k]), |s| s.end)
     }
 
-    /// The way of bar `e`.
+    /// The path of bar `e`.
     #[inline]
     #[must_use]
     pub fn path(&self, e: usize, x: &[Vec2]) -> TangentPath {
@@ -143,14 +144,14 @@ impl Mesh {
         if self.sliding[e].is_none() && self.sliding[e + 1].is_none() { [x[e], x[e + 1]] } else { self.path(e, x).ends }
     }
 
-    /// Features that the ends of bar `e` run round.
+    /// The obstacle features round which the ends of bar `e` run.
     #[inline]
     #[must_use]
     pub fn rounds(&self, e: usize) -> [Option<usize>; 2] {
         [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(SlidingNode::feature))
     }
 
-    /// True if a node moves with the material and nothing prescribes where it is.
+    /// True if a node moves with the material and its position is not prescribed.
     #[inline]
     #[must_use]
     pub fn is_free(&self, k: usize) -> bool {
@@ -163,9 +164,9 @@ impl Mesh {
         Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
     }
 
-    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature, and what
-    /// of them is spread), m: weight, wind and what momentum a node has are this times their value
-    /// per metre.
+    /// Tributary arc length of a node, m: half of the bars beside it at rest temperature, corrected
+    /// by the spread mass. Weight, wind and momentum of a node are this times their value per
+    /// metre.
     #[must_use]
     pub fn tributary_length(&self, node: usize) -> f64 {
         let s = &self.arc_length;
@@ -191,7 +192,7 @@ impl Mesh {
         }
     }
 
-    /// True if a bar in the place of node `k` is nearly the way it lies now.
+    /// True if a single bar in the place of node `k` would nearly follow the present path.
     pub(in crate::model::fem) fn runs_straight(&self, k: usize, x: &[Vec2]) -> bool {
         self.turn(k, x).abs() < self.tuning.remesh.removed_turn_rad
     }
@@ -201,7 +202,7 @@ impl Mesh {
         (self.arc_length[a] - self.arc_length[b]).abs()
     }
 
-    /// The lesser tension of two bars of these lengths over unstretched lengths, N.
+    /// The smaller tension of two bars with these ratios of length to unstretched length, N.
     pub(in crate::model::fem) fn lesser_tension(&self, [a, b]: [f64; 2]) -> f64 {
         let strain = if b < a { b - 1.0 } else { a - 1.0 };
         if strain > 0.0 { self.axial_stiffness * strain } else { 0.0 }
@@ -213,7 +214,7 @@ impl Mesh {
         (0..self.rest_length.len()).map(tension).fold(0.0, |most, t| if t > most { t } else { most })
     }
 
-    /// Lets the material slide through the sliding nodes, m of arc length each.
+    /// Lets the material slide through the sliding nodes by an arc length (m) at each.
     pub(in crate::model::fem) fn slide(&mut self, slide: &[f64]) {
         for (s, by) in self.arc_length.iter_mut().zip(slide) {
             *s += by;
@@ -230,7 +231,7 @@ impl Mesh {
         self.sliding.iter().flatten().find(|s| s.slide_over == SlideOver::Pulley(support)).map(|s| s.end.center)
     }
 
-    /// True if the cable slides through any node.
+    /// True if there is any sliding node.
     pub(in crate::model::fem) fn slides_anywhere(&self) -> bool {
         self.sliding.iter().any(Option::is_some)
     }
@@ -246,7 +247,7 @@ impl Mesh {
         self.sliding.insert(k, sliding);
     }
 
-    /// Takes node `k` out.
+    /// Removes node `k`.
     pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
         self.spread.clear();
         self.arc_length.remove(k);
@@ -257,7 +258,8 @@ impl Mesh {
     }
 }
 
-/// Even bars for a stretch of `length` out of `whole` when the whole is to have about `segments`.
+/// Number of bars for a stretch of `length` if a cable of length `whole` is to have about
+/// `segments`.
 #[must_use]
 pub fn bars_between(length: f64, whole: f64, segments: usize) -> usize {
     let share = (segments as f64 * length / whole).round();

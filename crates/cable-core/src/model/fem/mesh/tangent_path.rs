@@ -8,13 +8,13 @@
 //! D = l t + ρ perp(t),   l = √(D² − ρ²),   angle(t) = angle(D) − atan2(ρ, l)
 //! P = r₁β₁ + l + r₂β₂,   β₁ = σ₁(angle(n₁) − α₁),   β₂ = σ₂(α₂ − angle(n₂))
 //! ```
-//! where α is the angle at which a round's material is counted. Whatever the rounds, ∂P/∂(end
-//! point) = ∓t and ∂²P/∂(end point)² = (I − t tᵀ)/l: the arc pays out what the straight part takes
-//! up.
+//! where α is the angle of a round's mark. For any rounds ∂P/∂(end point) = ∓t and ∂²P/∂(end
+//! point)² = (I − t tᵀ)/l: the arc pays out what the straight part takes up.
 
 use crate::math::{Vec2, cross, perp};
 
-/// Rounds with centres nearer than this part of their radius are one and the same.
+/// Distance of the centres of two rounds below which they are the same round, as a fraction of
+/// their radius.
 const COINCIDENT_CENTRE_FRACTION: f64 = 1e-9;
 
 /// One end of a bar.
@@ -24,22 +24,22 @@ pub struct BarEnd {
     pub center: Vec2,
     /// Radius, m; 0 = a point.
     pub radius: f64,
-    /// Direction from the centre at which material is counted, a unit vector.
+    /// Direction from the centre to the mark, at which material is counted; a unit vector.
     pub mark: Vec2,
     /// +1 where the cable runs counter-clockwise, −1 clockwise.
     pub sense: f64,
 }
 
 impl BarEnd {
-    /// A plain point.
+    /// An end without a radius.
     #[inline]
     #[must_use]
     pub fn point(at: Vec2) -> Self {
         Self { center: at, radius: 0.0, mark: Vec2::x(), sense: 1.0 }
     }
 
-    /// ∫r ds over the arc from the mark on through an angle (rad; negative: back), m². Its length
-    /// counts negative where the angle times its direction does.
+    /// ∫r ds (m²) over the arc from the mark through an angle (rad; negative: backwards), with r
+    /// measured from the centre. The integral is negative for negative angles.
     #[must_use]
     pub fn arc(&self, angle: f64) -> Vec2 {
         let (sin, cos) = (0.5 * self.sense * angle).sin_cos();
@@ -48,7 +48,7 @@ impl BarEnd {
     }
 }
 
-/// The way from one end to the other.
+/// The path from one end to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TangentPath {
     /// Whole length P, m.
@@ -70,7 +70,7 @@ pub fn angle_between(a: Vec2, b: Vec2) -> f64 {
 }
 
 impl TangentPath {
-    /// The way between two points.
+    /// The path between two points.
     #[inline]
     #[must_use]
     pub fn line(a: Vec2, b: Vec2) -> Self {
@@ -79,7 +79,7 @@ impl TangentPath {
         Self { length, straight: length, direction, ends: [a, b], arcs: [0.0; 2] }
     }
 
-    /// The way between two ends.
+    /// The path between two ends.
     #[must_use]
     pub fn between(a: &BarEnd, b: &BarEnd) -> Self {
         let d = b.center - a.center;
@@ -95,7 +95,7 @@ impl TangentPath {
         let straight = if square > 0.0 { square.sqrt() } else { 0.0 };
         let far = d.norm();
         let direction = if far > 0.0 {
-            // t = (l D − ρ perp(D))/D², of unit length also where the straight part has vanished.
+            // t = (l D − ρ perp(D))/D² has unit length even if the straight part has vanished.
             let t = d * straight - perp(d) * rho;
             let size = t.norm();
             if size > 0.0 { t / size } else { Vec2::x() }
@@ -110,7 +110,7 @@ impl TangentPath {
         Self { length, straight, direction, ends, arcs }
     }
 
-    /// Along one round, from mark to mark.
+    /// The path along one round, from mark to mark.
     fn round(a: &BarEnd, b: &BarEnd) -> Self {
         let turn = a.sense * angle_between(a.mark, b.mark);
         let turn = if turn < 0.0 { turn + std::f64::consts::TAU } else { turn };

@@ -1,23 +1,23 @@
-//! The active set predicts the contacts that a Newton step is about to make.
+//! This module predicts the contacts that a Newton step is about to make: the active set of the
+//! step.
 //!
 //! The barrier acts only at gaps below d̂. A Newton step that ignores farther obstacles runs into
-//! them, is cut where the first node would touch, and the next step runs into the next node: where
-//! a cable lands on the ground a step took as many iterations as nodes landed. Therefore contacts
-//! that the step δ would carry past their landing gap g* become constraints, and the step is solved
-//! again:
+//! them and is cut where the first node would touch; the next step is cut at the next node. A cable
+//! that landed on the ground took as many iterations as nodes landed. Therefore contacts that the
+//! step δ would carry past their landing gap g* become constraints, and the step is solved again:
 //! ```text
 //! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point
 //! ```
-//! with the violated constraints as stiff springs, added until there are no more. r is what the gap
-//! changes beside its slope (`stop`), taken at the step found last: a bar that slides along a
-//! corner turns, and straight on it would run into the corner however much its gap opens at first
-//! (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
-//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher,
-//! "Second order corrections for non-differentiable optimization", Lecture Notes in Mathematics
-//! 912, 1982). Without it a taut cable that a hand draws round a corner goes a hundredth of its way
-//! in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
-//! downhill; with r it may not, and the step without constraints is then taken as far as it is
-//! free.
+//! with the violated constraints as stiff springs, added until none is violated. r is the change of
+//! the gap beyond first order (`gap_constraint`), evaluated at the last step found: a bar that
+//! slides along a corner also turns, and to first order it would run into the corner however much
+//! its gap opens at first (a second-order correction: N. Maratos, "Exact penalty function
+//! algorithms for finite dimensional and control optimization problems", thesis, University of
+//! London, 1978; R. Fletcher, "Second order corrections for non-differentiable optimization",
+//! Lecture Notes in Mathematics 912, 1982). Without it a taut cable that is dragged round a corner
+//! moves a hundredth of its way in each iteration. With r = 0 the step δ = 0 satisfies every
+//! constraint, so the constrained step goes downhill. With r it may not, and then the step without
+//! constraints is taken as far as it is free.
 
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
@@ -35,11 +35,11 @@ pub struct PredictedContacts {
     order: SortedNodes,
     right: Vec<f64>,
     step: Vec<f64>,
-    /// The direction before contacts ahead were looked at.
+    /// The direction before contacts were predicted.
     pub(in crate::model::fem) plain: Vec<f64>,
 }
 
-/// The linear equations of a Newton iteration, pinned at held nodes.
+/// The linear equations of a Newton iteration, with the held nodes fixed.
 pub(in crate::model::fem) struct Equations<'a> {
     /// Gradient and Hessian.
     pub system: &'a mut System,
@@ -50,7 +50,7 @@ pub(in crate::model::fem) struct Equations<'a> {
 }
 
 impl PredictedContacts {
-    /// Room for a mesh of so many nodes that each touch one thing.
+    /// Allocates room for a mesh of so many nodes with one contact each.
     #[must_use]
     pub fn new(nodes: usize) -> Self {
         Self {
@@ -64,18 +64,18 @@ impl PredictedContacts {
         }
     }
 
-    /// Keeps the right side of the equations before they are solved in place.
+    /// Stores the right-hand side before the equations are solved in place.
     pub fn keep(&mut self, right: &[f64]) {
         self.right.clear();
         self.right.extend_from_slice(right);
     }
 
-    /// The right side that was kept.
+    /// The stored right-hand side.
     pub fn kept(&self) -> &[f64] {
         &self.right
     }
 
-    /// Stops each node of a step at its landing gap, whatever its neighbours do.
+    /// Stops each node of a step at its landing gap, independently of its neighbours.
     pub(in crate::model::fem) fn stop(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &mut [f64]) {
         let StepContext { mesh, contacts, .. } = *step;
         self.find_contacts(step, x, direction);
@@ -90,15 +90,17 @@ impl PredictedContacts {
         }
     }
 
-    /// Finds all that each bar could touch if it went as far as in this step, whichever way.
+    /// Finds everything that each bar could touch if it moved as far as in this step, in any
+    /// direction.
     fn find_contacts(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let reach = |e: usize| contacts.barrier.reach + longest(direction.get(2 * e..2 * e + 4).unwrap_or(direction));
         contacts.search.find(problem, mesh, x, reach, &mut self.touches);
     }
 
-    /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the
-    /// step that ran into them. Where that fails `direction` stays as it is.
+    /// Solves again with the predicted contacts as constraints. The held nodes of `system` are
+    /// fixed, and `direction` is the step that ran into the contacts. If the solve fails,
+    /// `direction` stays as it is.
     pub(in crate::model::fem) fn solve(
         &mut self,
         context: &StepContext<'_>,
@@ -180,7 +182,7 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use crate::math::Vec2;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::step_potential::Workspace;
     use crate::model::fem::settings::ContactTuning;
     use crate::model::fem::stepper::Stepper;
     use crate::model::{Inertia, Settings};
@@ -190,7 +192,7 @@ mod tests {
     const STEP: f64 = 1.0 / 240.0;
 
     /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s
-    /// downwards: it lands all along its length in the next step, here sooner and there later.
+    /// downwards: it lands all along its length in the next step, at slightly different instants.
     fn about_to_land() -> Stepper {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };

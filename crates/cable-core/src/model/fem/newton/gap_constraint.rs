@@ -1,4 +1,4 @@
-//! A gap constraint is a contact that a Newton step may not come nearer to.
+//! A gap constraint keeps a Newton step from closing a gap beyond a given least gap.
 
 use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::{Vec2, cross, larger};
@@ -14,26 +14,26 @@ enum Pivot {
     Node(usize),
 }
 
-/// One contact ahead.
+/// One predicted contact.
 #[derive(Clone, Copy, Debug)]
 pub struct GapConstraint {
-    /// Nodes and their parts of the gap's slope; those of part 0 count for nothing.
+    /// Nodes and their weights in the gradient of the gap; unused entries have weight 0.
     shares: [(usize, f64); 3],
     normal: Vec2,
     /// Gap now, m.
     pub gap: f64,
-    /// Gap that is left, m.
+    /// Least gap that a step may leave, m.
     pub least: f64,
-    /// First node of a bar whose inside touches, and what.
+    /// First node of a bar that touches between its nodes, and what it touches.
     bar: Option<(usize, Pivot)>,
-    /// Spring that holds it, N/m.
+    /// Stiffness of the spring that holds it, N/m.
     stiffness: f64,
-    /// Way of the gap that it is held to, m; None as long as nothing holds it.
+    /// Change of the gap to which it is held, m; None while it is inactive.
     held_to: Option<f64>,
 }
 
 impl GapConstraint {
-    /// The contact of an obstacle.
+    /// Makes the constraint of a contact with an obstacle.
     pub fn of(touch: &ContactPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
         let next = touch.node + usize::from(touch.on_segment);
@@ -50,7 +50,7 @@ impl GapConstraint {
         }
     }
 
-    /// A contact of the cable with itself.
+    /// Makes the constraint of a contact of the cable with itself.
     pub fn of_own(pair: &SelfPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let inside = pair.fraction > 0.0 && pair.fraction < 1.0;
         let shares = pair.shares();
@@ -65,16 +65,16 @@ impl GapConstraint {
         }
     }
 
-    /// Opening of the gap in a step by its slope, m.
+    /// Opening of the gap in a step to first order, m.
     fn opening(&self, step: &[f64]) -> f64 {
         let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
         self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
     }
 
-    /// Opening of the gap beyond that, m: a bar that turns while it slides along a corner comes
-    /// nearer to it.
+    /// Opening of the gap beyond first order, m: a bar that turns while it slides along a corner
+    /// comes nearer to it.
     ///
-    /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
+    /// With e = b − a the distance of p from the line is ± e × (p − a)/|e| for any step.
     fn bend(&self, x: &[Vec2], step: &[f64]) -> f64 {
         let Some((bar, pivot)) = self.bar else { return 0.0 };
         let gone = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
@@ -94,8 +94,9 @@ impl GapConstraint {
         (then - now) * now.signum() - self.opening(step)
     }
 
-    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows
-    /// what the step bends. Returns whether the matrix changed, and whether anything did.
+    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; the target of an
+    /// active one follows the second-order opening. Returns whether the matrix changed, and whether
+    /// anything changed.
     pub fn hold(
         &mut self,
         system: &mut System,
@@ -112,7 +113,7 @@ impl GapConstraint {
         }
         let mut way = self.least - self.gap - bend;
         for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.held[s.0]) {
-            // A held node goes to its target; a sliding node stays.
+            // A held node moves to its target; a sliding node stays.
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);
@@ -137,7 +138,7 @@ impl GapConstraint {
     }
 }
 
-/// Spring of a constraint at these nodes, N/m.
+/// Stiffness of the spring of a constraint at these nodes, N/m.
 fn stiffness(mesh: &Mesh, system: &System, shares: &[(usize, f64)]) -> f64 {
     let at = |&(k, part): &(usize, f64)| {
         if part == 0.0 { 0.0 } else { system.hessian.get(2 * k, 2 * k) + system.hessian.get(2 * k + 1, 2 * k + 1) }
@@ -164,7 +165,8 @@ mod tests {
     }
 
     proptest! {
-        /// Slope and bend together are all of what the gap of a bar changes, however it moves.
+        /// The first-order opening and the rest together are the exact change of a bar's gap, for
+        /// any motion.
         #[test]
         fn a_gap_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
             let post = Shape::Circle { center_m: [0.35, -0.2], radius_m: 0.1 };
@@ -180,14 +182,14 @@ mod tests {
             let before = touch(&x).unwrap();
             prop_assume!(touch(&then).is_some());
             let after = touch(&then).unwrap();
-            // The gap has no sign: what is crossed is left to the sweep.
+            // The gap has no sign: crossings are left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
             let stop = GapConstraint::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
 
-        /// The same where the cable meets itself.
+        /// The same holds for contacts of the cable with itself.
         #[test]
         fn a_gap_of_its_own_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
             let d = mesh(Vec::new());

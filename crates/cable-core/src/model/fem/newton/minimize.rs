@@ -1,48 +1,22 @@
-//! This solver minimises the energy of one implicit step by Newton's method with a banded factor
-//! and steps that cross nothing.
-//!
-//! ```text
-//! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
-//! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without
-//! inertia), and, where the cable can touch nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each
-//! bar (see `mass`). Damping of a bar with time constant τ is a second bar of stiffness EA τ a
-//! whose rest length is the one predicted.
+//! This solver minimises the potential of one implicit step by Newton's method, with a banded
+//! factor and steps that cross no obstacle.
+//! The potential itself is summed in `step_potential`.
 
-use crate::contact::barrier::Barrier;
-use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
-use crate::linalg::{BandFactor, FactorError, solve_coupled};
-use crate::math::{Mat2, Vec2, larger, smaller};
-use crate::model::fem::mesh::{Mesh, SlidingNode};
-use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
-use crate::model::fem::newton::mixed_iterate::MixedIterate;
-use crate::model::fem::system::contact::self_contact;
-use crate::model::fem::system::{
-    ContactPair, Converged, Coupling, Failure, FailureCause, SelfContactLaws, StepContext, StepInput, System, Unknowns,
-    WORK_MAGNITUDE_FRACTION, WorkBudget, add_barrier, add_floor, add_friction, bar_energy, node_scale,
-};
-
-/// Energies are trusted to this part of the sum of their magnitudes.
-pub(in crate::model::fem) const ENERGY_NOISE: f64 = 1e-13;
-
-/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
-/// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
-/// be.
-const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// Rounding of a gap, part of the gap, above which its force is not known: the force of a barrier
-/// goes with 1/gap. Smaller: cables squeezed by 1e6 N fail; larger: steps are taken for balanced by
-/// a force that is rounding alone (1e13 N in one of 600 violent scenes).
-const MAX_GAP_ROUNDING_FRACTION: f64 = 1e-3;
+use crate::linalg::solve_coupled;
+use crate::math::{Mat2, Vec2, larger};
+use crate::model::fem::mesh::Mesh;
+use crate::model::fem::newton::active_set::Equations;
+use crate::model::fem::newton::step_potential::{ENERGY_NOISE, Residual, Workspace};
+use crate::model::fem::system::{Converged, Failure, FailureCause, StepContext, StepInput, Unknowns, node_scale};
 
 /// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
-/// cut short, and the next are cut shorter; larger: it outlives its need, and iterations creep.
-/// A choice, tuned on no campaign, as are the five below.
+/// cut, and the next steps are cut more; larger: it is kept too long, and iterations creep. A
+/// choice, tuned on no campaign, as are the five below.
 const LONG_STEP_FRACTION: f64 = 0.5;
 
-/// Fraction of a Newton step below which a shift that was asked for grows. Smaller: iterations are
-/// spent on short steps; larger: steps that would do are made slow.
+/// Fraction of a Newton step below which an existing shift grows. Smaller: iterations are spent on
+/// short steps; larger: good steps are made short.
 const SHORT_STEP_FRACTION: f64 = 0.1;
 
 /// Factor of the shift after a long step. Smaller: the shift is lost at once and has to be found
@@ -53,282 +27,38 @@ const SHIFT_DECREASE: f64 = 0.25;
 /// factorisations until it is; larger: steps shorter than they need to be.
 const SHIFT_INCREASE: f64 = 4.0;
 
-/// Part of the first shift below which it becomes 0. Smaller: a few more iterations with a shift
-/// that has no effect; larger: the last iterations lose the shift while they need it.
+/// Fraction of the first shift below which the shift becomes 0. Smaller: a few more iterations with
+/// a shift that has no effect; larger: the last iterations lose the shift while they need it.
 const MIN_SHIFT_FRACTION: f64 = 1e-3;
 
-/// Growth of the shift over the first one at which no direction is said to lead down. Smaller:
-/// cables fail that would have found one; larger: more assemblies before a failure.
+/// Growth of the shift over the first one at which the search for a descent direction is given up.
+/// Smaller: cables fail that would have found one; larger: more assemblies before a failure.
 const MAX_SHIFT_GROWTH: f64 = 1e12;
 
-/// First shift (N/m, by the scale of a node) from which that growth counts where none was asked
-/// for. Smaller and larger: as of the growth.
+/// Least first shift (N/m, times the scale of a node) from which that growth counts. Smaller and
+/// larger: as for the growth.
 const MIN_FIRST_SHIFT: f64 = 1e-6;
 
-/// Times the shift grows until the matrix is definite: 4^40 covers all of double precision.
-/// Smaller: folded cables fail; larger: nothing.
+/// Maximum number of times that the shift grows until the matrix is definite: 4^40 covers all of
+/// double precision. Smaller: folded cables fail; larger: nothing.
 const MAX_SHIFT_TRIES: usize = 40;
 
-/// Fraction of a step below which it counts as a failed push of a support. Smaller: a support that
-/// is stuck is pushed longer; larger: one is said to be stuck that comes on.
+/// Fraction of a step below which the push of a support counts as failed. Smaller: a stuck support
+/// is pushed longer; larger: a support that still advances counts as stuck.
 const SHORT_PUSH_FRACTION: f64 = 0.5;
-
-/// The unbalanced force at the worst node.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::model::fem) struct Residual {
-    /// N.
-    pub(in crate::model::fem) force: f64,
-    pub(in crate::model::fem) node: usize,
-    /// In parts of what is accepted there.
-    pub(in crate::model::fem) excess: f64,
-    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one
-    /// force left at a node.
-    drift: f64,
-}
-
-/// Rounding of contact forces: a gap is known to the rounding of coordinates only.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::fem) struct Rounding {
-    /// Rounding of the largest force by its stiffness, N.
-    pub(in crate::model::fem) noise: f64,
-    /// The force that opening the gap by its rounding relieves, N, where it is more than the
-    /// tolerance; nothing where a gap is lost in its rounding: a step in motion that had come to
-    /// such a gap was taken for balanced, with 2e11 N of contact and nothing to hold them.
-    relief: f64,
-    /// True if a gap is lost in its rounding.
-    gap_is_lost: bool,
-    /// Unbalanced force accepted in any case, N.
-    tolerance: f64,
-}
-
-impl Rounding {
-    /// Counts a contact with a gap (m), its stiffness (N/m), and the rounding of its gap (m).
-    fn add(&mut self, barrier: &Barrier, gap: f64, stiffness: f64, rounding: f64) {
-        let noise = stiffness * rounding;
-        self.noise = larger(self.noise, noise);
-        self.gap_is_lost |= rounding > MAX_GAP_ROUNDING_FRACTION * gap;
-        if self.gap_is_lost {
-            self.relief = 0.0;
-        } else if noise > self.tolerance {
-            // The barrier is convex: what is relieved is no more than that.
-            self.relief = larger(self.relief, barrier.relief(gap, rounding));
-        }
-    }
-}
-
-/// Contacts of the cable with itself, in the minimisation.
-#[derive(Debug, Default)]
-pub struct SelfContactWork {
-    /// Pairs of the last assembly.
-    pub(in crate::model::fem) pairs: Vec<SelfPair>,
-    pub(in crate::model::fem) order: SortedNodes,
-    /// Entries of the Hessian outside its band.
-    pub(in crate::model::fem) coupling: Coupling,
-}
-
-/// Memory of the minimisation.
-#[derive(Debug)]
-pub struct Workspace {
-    pub(in crate::model::fem) system: System,
-    pub(in crate::model::fem) factor: BandFactor,
-    pub(in crate::model::fem) direction: Vec<f64>,
-    pub(in crate::model::fem) trial: Unknowns,
-    /// The contacts of the last assembly.
-    pub(in crate::model::fem) touches: Vec<ContactPair>,
-    pub(in crate::model::fem) magnitude: f64,
-    /// Rounding of contact forces in the last assembly.
-    pub(in crate::model::fem) rounding: Rounding,
-    /// Targets of held nodes, or the points where they had to stop, m.
-    pub(in crate::model::fem) goal: Vec<Vec2>,
-    pub(in crate::model::fem) self_contact: SelfContactWork,
-    pub(in crate::model::fem) predicted_contacts: PredictedContacts,
-    pub(in crate::model::fem) mixed: MixedIterate,
-    /// Iterations times nodes that may still be spent.
-    pub(in crate::model::fem) work_left: WorkBudget,
-}
 
 /// The start of a line search.
 #[derive(Clone, Copy, Debug)]
 struct Descent {
-    /// Φ, J.
+    /// Value of Φ, J.
     value: f64,
-    /// Slope of the energy along the direction, J.
+    /// Slope of Φ along the direction, J.
     slope: f64,
-    /// Held nodes are still on the way to their targets: that may cost energy.
+    /// True if held nodes are still moving to their targets, which may raise the energy.
     supports_move: bool,
 }
 
 impl Workspace {
-    /// Room for a mesh.
-    ///
-    /// # Errors
-    /// `TooLarge` when there is no memory for it.
-    pub fn new(mesh: &Mesh) -> Result<Self, FactorError> {
-        let system = System::new(mesh);
-        let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
-        Ok(Self {
-            direction: vec![0.0; 2 * mesh.nodes()],
-            trial: Unknowns { positions: vec![Vec2::zeros(); mesh.nodes()], slides: vec![0.0; mesh.nodes()] },
-            touches: Vec::with_capacity(mesh.nodes()),
-            magnitude: 0.0,
-            rounding: Rounding::default(),
-            goal: Vec::new(),
-            self_contact: SelfContactWork::default(),
-            predicted_contacts: PredictedContacts::new(mesh.nodes()),
-            mixed: MixedIterate::new(mesh.nodes()),
-            work_left: WorkBudget::Unlimited,
-            system,
-            factor,
-        })
-    }
-
-    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds
-    /// it.
-    #[must_use]
-    pub fn gradient_at(&self, node: usize) -> Vec2 {
-        self.system.gradient_at(node)
-    }
-
-    /// Number of nodes it has room for.
-    #[must_use]
-    pub fn nodes(&self) -> usize {
-        self.trial.positions.len()
-    }
-
-    /// Φ with gradient and Hessian at unknowns.
-    pub(in crate::model::fem) fn assemble(
-        &mut self,
-        step: &StepContext<'_>,
-        unknowns: &Unknowns,
-        curvature: Curvature,
-    ) -> f64 {
-        let StepContext { problem, mesh, contacts, input } = *step;
-        let x = &unknowns.positions;
-        let mut touches = std::mem::take(&mut self.touches);
-        contacts.find(problem, mesh, x, &mut touches);
-        let s = &mut self.system;
-        s.hessian.clear();
-        s.gradient.fill(0.0);
-        let mut round = Rounding { tolerance: input.stopping.tolerance, ..Rounding::default() };
-        // The undamped Newton does not use the energy, so its round-off is not estimated.
-        let measured = self.mixed.carried.is_empty();
-        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.mixed.carried);
-        self.magnitude = size;
-        if !input.inertial.coupling.is_empty() {
-            value += add_coupling(s, input, x);
-        }
-        if mesh.bending_stiffness > 0.0 {
-            value += s.add_bending(mesh, x, curvature);
-            if input.losses.bending > 0.0 {
-                value += s.add_bends(mesh, input.losses.bending, Some(&input.supports.start), x, curvature);
-            }
-        }
-        self.magnitude += value.abs();
-        for i in 0..x.len() {
-            let (k, scale) = (input.inertial.stiffness[i], node_scale(input, i));
-            let (kinetic, work) = if let Some(node) = &mesh.sliding[i] {
-                let away = unknowns.slides[i] - input.inertial.predicted_slide[i];
-                let lightens = input.inertial.momentum_flux[i] * (node.factor - 1.0);
-                s.gradient[2 * i] += scale * (k * away - lightens);
-                s.hessian.add(2 * i, 2 * i, scale * k);
-                (0.5 * k * away * away, lightens * unknowns.slides[i])
-            } else {
-                let away = x[i] - input.inertial.predicted[i];
-                if measured {
-                    self.magnitude +=
-                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.loads.force[i].norm()) * x[i].norm();
-                }
-                s.add_gradient(i, (away * k - input.loads.force[i]) * scale);
-                s.hessian.add_diagonal(2 * i, k * scale);
-                // Work is measured from the start of the step, so that its size is that of the
-                // change.
-                (0.5 * k * away.norm_squared(), input.loads.force[i].dot(&(x[i] - input.supports.start[i])))
-            };
-            value += scale * (kinetic - work);
-            self.magnitude += scale * (kinetic + work.abs());
-        }
-        for touch in &touches {
-            let scale = input.scale.get(touch.node).copied().unwrap_or(node_scale(input, touch.node));
-            let (energy, stiffness) = add_barrier(s, mesh, touch, scale, contacts, x, curvature);
-            value += energy;
-            let rounding = GAP_ROUNDING * x[touch.node].norm();
-            round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
-        }
-        value += add_friction(s, mesh, input, contacts, &self.mixed.branches, x);
-        value += add_floor(s, mesh, input, contacts, unknowns);
-        self.touches = touches;
-        if contacts.self_contacts.shape.is_on() {
-            contacts.self_contacts.shape.pairs(
-                x,
-                &mesh.arc_length,
-                contacts.barrier.reach,
-                &mut self.self_contact.order,
-                &mut self.self_contact.pairs,
-            );
-            self.self_contact.coupling.clear();
-            let laws = SelfContactLaws {
-                self_contacts: &contacts.self_contacts,
-                barrier: &contacts.barrier,
-                slip: contacts.tuning.slip_m,
-            };
-            let (energy, size) = self_contact::add(
-                &mut self.system,
-                &mut self.self_contact.coupling,
-                laws,
-                &self.self_contact.pairs,
-                x,
-                curvature,
-            );
-            value += energy;
-            self.magnitude += size;
-            for pair in &self.self_contact.pairs {
-                let stiffness = contacts.barrier.at(pair.gap_m).curvature;
-                round.add(&contacts.barrier, pair.gap_m, stiffness, GAP_ROUNDING * x[pair.node].norm());
-            }
-        }
-        self.rounding = round;
-        value
-    }
-
-    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many
-    /// times: the tolerance, or where contact forces are known no better their rounding. At rest
-    /// what is left at the nodes of a stretch adds up to a force of its own.
-    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, input: &StepInput) -> Residual {
-        let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
-        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
-        // where an outline squeezes the cable.
-        let hidden = if input.inertial.moves && !input.supports.has_moving_outline {
-            self.rounding.relief
-        } else {
-            self.rounding.noise
-        };
-        let known = smaller(hidden, input.stopping.max_noise);
-        let accepted = larger(input.stopping.tolerance, known);
-        let mut drift = Vec2::zeros();
-        for node in 0..mesh.nodes() {
-            if mesh.held[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
-                drift = Vec2::zeros();
-                continue;
-            }
-            let left = self.system.gradient_at(node) / node_scale(input, node);
-            let slides = mesh.sliding[node].is_some();
-            let r = if slides { left.x.abs() } else { left.norm() };
-            let mut most = worst.drift;
-            let mut counts = r;
-            if !input.inertial.moves {
-                drift = if slides { Vec2::zeros() } else { drift + left };
-                let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
-                (most, counts) = (larger(adds_up, most), larger(r, adds_up));
-            }
-            let excess = counts / accepted;
-            if !(excess <= worst.excess) && !worst.excess.is_nan() {
-                worst = Residual { force: r, node, excess, drift: most };
-            }
-            worst.drift = most;
-        }
-        worst
-    }
-
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
     pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], shift: f64) -> bool {
         let s = &mut self.system;
@@ -380,10 +110,9 @@ impl Workspace {
         self.direction.iter().all(|d| d.is_finite())
     }
 
-    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it is where it got to.
+    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it holds the last iterate.
     ///
-    /// # Errors
-    /// With the worst node and its unbalanced force.
+    /// # Errors The worst node and its unbalanced force.
     pub(in crate::model::fem) fn minimise_by_line_search(
         &mut self,
         step: &StepContext<'_>,
@@ -402,8 +131,7 @@ impl Workspace {
                 return failed(FailureCause::EnergyNotFinite);
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
-            // A support that squeezes the cable harder than numbers can tell has come as far as it
-            // can.
+            // A support that squeezes the cable beyond round-off has come as far as it can.
             let squeezed = left && input.supports.may_lag && self.rounding.noise > input.stopping.tolerance;
             if squeezed {
                 self.goal.clone_from(&unknowns.positions);
@@ -426,20 +154,9 @@ impl Workspace {
             }
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
-            // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, input, &unknowns.positions, shift) {
-                let mut tries = 0;
-                loop {
-                    self.assemble(step, unknowns, Curvature::Clipped);
-                    if self.solve(mesh, input, &unknowns.positions, shift) {
-                        break;
-                    }
-                    shift = grow(shift, input);
-                    tries += 1;
-                    if tries > MAX_SHIFT_TRIES {
-                        return failed(FailureCause::TangentIndefinite);
-                    }
-                }
+            // Fixing the held nodes overwrites the Hessian only, so the gradient stays valid.
+            if !self.solve(mesh, input, &unknowns.positions, shift) && !self.solve_shifted(step, unknowns, &mut shift) {
+                return failed(FailureCause::TangentIndefinite);
             }
             if input.inertial.moves {
                 self.predict_contacts(step, unknowns);
@@ -451,14 +168,7 @@ impl Workspace {
             match self.search(step, unknowns, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
-                    if fraction > LONG_STEP_FRACTION {
-                        shift *= SHIFT_DECREASE;
-                        if shift < MIN_SHIFT_FRACTION * input.stopping.shift {
-                            shift = 0.0;
-                        }
-                    } else if fraction < SHORT_STEP_FRACTION && input.stopping.shift > 0.0 {
-                        shift = grow(shift, input);
-                    }
+                    shift = shift_after(fraction, shift, input);
                     if left && fraction < SHORT_PUSH_FRACTION {
                         pushes += 1;
                         if pushes > mesh.tuning.newton.max_pushes && !input.supports.may_lag {
@@ -469,7 +179,7 @@ impl Workspace {
                     }
                 }
                 None => {
-                    // At the noise of the energy there is nothing left to gain.
+                    // Below the round-off of the energy no step can be judged.
                     if enough {
                         return Ok(done);
                     }
@@ -483,12 +193,27 @@ impl Workspace {
         }
     }
 
+    /// Solves without the terms of the Hessian that can be negative, and with a growing `shift`;
+    /// false if the matrix does not become positive definite.
+    fn solve_shifted(&mut self, step: &StepContext<'_>, unknowns: &Unknowns, shift: &mut f64) -> bool {
+        let StepContext { mesh, input, .. } = *step;
+        for _ in 0..=MAX_SHIFT_TRIES {
+            self.assemble(step, unknowns, Curvature::Clipped);
+            if self.solve(mesh, input, &unknowns.positions, *shift) {
+                return true;
+            }
+            *shift = grow(*shift, input);
+        }
+        false
+    }
+
     /// Slope of Φ along the direction, J.
     pub(in crate::model::fem) fn slope(&self) -> f64 {
         self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
     }
 
-    /// Finds the direction again if something is in its way; returns how much of it is free.
+    /// Computes the direction again with predicted contacts if obstacles are in its way; returns
+    /// the free fraction of it.
     pub(in crate::model::fem) fn predict_contacts(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
         let free = self.step_bound_from_assembly(step, unknowns, 1.0);
         if free >= step.mesh.tuning.newton.free_step_fraction {
@@ -510,8 +235,8 @@ impl Workspace {
         self.step_bound_from_assembly(step, unknowns, 1.0)
     }
 
-    /// Moves `unknowns` along the direction as far as is free and lowers Φ; None if nothing does.
-    /// Returns Φ and the part of the step taken; the system is assembled there.
+    /// Moves `unknowns` along the direction as far as it is free and lowers Φ. Returns Φ and the
+    /// fraction taken, where the system is assembled; None if no fraction lowers Φ.
     fn search(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns, descent: Descent) -> Option<(f64, f64)> {
         let StepContext { mesh, input, .. } = *step;
         let Descent { value, slope, supports_move } = descent;
@@ -548,41 +273,20 @@ impl Workspace {
     }
 }
 
-/// Adds gradient and Hessian of the inertia that nodes lose by being coupled over the bars (see
-/// `mass`); returns the energy, J.
-#[inline(never)]
-fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
-    let mut value = 0.0;
-    for (e, (coupling, chord)) in input.inertial.coupling.iter().enumerate() {
-        let (late, k) = (x[e + 1] - x[e] - chord, coupling * input.scale[e]);
-        s.add_gradient(e, late * k);
-        s.add_gradient(e + 1, late * -k);
-        s.hessian.add_spring(2 * e, [-k, 0.0, -k]);
-        value -= 0.5 * k * late.norm_squared();
+/// The shift after a step of which a fraction was taken: it falls after a long one, and grows after
+/// a short one.
+fn shift_after(fraction: f64, shift: f64, input: &StepInput) -> f64 {
+    if fraction > LONG_STEP_FRACTION {
+        let fallen = shift * SHIFT_DECREASE;
+        if fallen < MIN_SHIFT_FRACTION * input.stopping.shift { 0.0 } else { fallen }
+    } else if fraction < SHORT_STEP_FRACTION && input.stopping.shift > 0.0 {
+        grow(shift, input)
+    } else {
+        shift
     }
-    value
 }
 
 fn grow(shift: f64, input: &StepInput) -> f64 {
     let least = if input.stopping.shift > 0.0 { input.stopping.shift } else { 1.0 };
     if shift > 0.0 { SHIFT_INCREASE * shift } else { least }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Steps were taken for balanced by 1e13 N of contact at gaps of 1e-16 m.
-    #[test]
-    fn issue_016_a_gap_lost_in_its_rounding_hides_no_force() {
-        let barrier = Barrier { reach: 1e-4, stiffness: 10.0 };
-        let of = |gap: f64| {
-            let mut rounding = Rounding { tolerance: 1e-4, ..Rounding::default() };
-            rounding.add(&barrier, gap, barrier.at(gap).curvature, 1e-15);
-            rounding
-        };
-        let (narrow, lost) = (of(1e-10), of(1e-13));
-        assert!(narrow.relief > 0.0 && !narrow.gap_is_lost, "{narrow:?}");
-        assert!(lost.gap_is_lost && lost.relief == 0.0, "{lost:?}");
-    }
 }

@@ -1,54 +1,56 @@
-//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns,
-//! without line search.
+//! This solver takes a step in contact by a mixed Newton method, with the forces of the bars as
+//! additional unknowns and without line search.
 //!
-//! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that
-//! the stiffness across a bar is that of the tension to come and not of a bar stretched for a
-//! moment: the iterations no longer grow with the number of bars. The energy may rise on the way,
-//! so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen,
-//! "The watchdog technique for forcing convergence in algorithms for constrained optimization",
-//! Mathematical Programming Study 16, 1982). Only gaps are watched, and that none becomes so small
-//! that its force drowns in rounding: nothing else keeps a node from creeping up to an obstacle by
-//! a part of its gap in every iteration. What has not converged after a few iterations is left to
-//! the minimiser, from the same start. Where the cable meets itself the minimiser goes first, and
-//! the undamped Newton is tried where it finds nothing.
+//! As in [`crate::model::fem::newton::mixed_free`] a bar's force Q satisfies its own linear
+//! equation, so the stiffness across a bar follows the tension of the solution and not that of a
+//! temporarily stretched bar: the number of iterations no longer grows with the number of bars. The
+//! energy may rise during the iteration, so it is not tested (a watchdog: R. Chamberlain, M.
+//! Powell, C. Lemarechal, H. Pedersen, "The watchdog technique for forcing convergence in
+//! algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
+//! are limited, and none may become so small that its force is lost in round-off: nothing else
+//! keeps a node from approaching an obstacle by a fraction of its gap in every iteration. A step
+//! that has not converged after a few iterations is left to the minimiser, from the same start. If
+//! the cable touches itself, the minimiser is tried first, and the undamped Newton method if the
+//! minimiser fails.
 
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2, larger};
 use crate::model::fem::mesh::Mesh;
-use crate::model::fem::newton::minimize::{ENERGY_NOISE, Workspace};
+use crate::model::fem::newton::step_potential::{ENERGY_NOISE, Workspace};
 use crate::model::fem::system::{
     ContactSet, Converged, Failure, PlainBar, StepContext, StepInput, Unknowns, bar_energy,
 };
 
-/// Strain that counts as none.
+/// Strain below which a bar counts as unstretched.
 const ROUNDING: f64 = 1e-12;
 
-/// Iterations above which an answer is asked whether its energy is below that of its start. Fewer:
-/// two assemblies more in steps that converge at once. More: another local minimum is believed. Of
-/// 89 489 undamped solves in 100 violent scenes none that took more than one iteration ended above
-/// its start by more than supports gave; scene 20330 has one that did, after 25.
+/// Number of iterations above which the energy of an answer is compared with that of its start.
+/// Smaller: two more assemblies in steps that converge quickly; larger: another local minimum is
+/// accepted. Of 89 489 undamped solves in 100 violent scenes none that took more than one iteration
+/// ended above its start by more than the work of the supports; scene 20330 has one that did,
+/// after 25.
 const MAX_UNCHECKED_ITERATIONS: usize = 8;
 
-/// Iterations after which a residual that has grown by more than [`MAX_RESIDUAL_GROWTH`] is not
-/// believed to come down. Fewer: solves are given up that first throw a bar far; more: those that
-/// never converge are paid for. In a capstan of 30 bars 803 of 1440 steps never do, thousands of
-/// times as far off as they began.
+/// Number of iterations after which a solve whose residual has grown by more than
+/// [`MAX_RESIDUAL_GROWTH`] is given up. Smaller: solves that first move a bar far are given up;
+/// larger: time is spent on those that never converge. In a capstan of 30 bars 803 of 1440 steps do
+/// not converge, with residuals thousands of times the first one.
 const MIN_ITERATIONS: usize = 6;
 
 /// See [`MIN_ITERATIONS`].
 const MAX_RESIDUAL_GROWTH: f64 = 100.0;
 
-/// Part of the sliding at which friction changes from holding to slipping that counts as none: of
-/// friction as much.
+/// Slide that counts as round-off, as a fraction of the slide at which friction changes from stick
+/// to slip; the same fraction holds for the friction force.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
-/// The reaction of a solve to a cable that comes within reach of itself.
+/// The reaction of a solve to a cable that comes within the barrier's reach of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum SelfTouch {
-    /// It gives up.
+    /// The solve is given up.
     Avoid,
-    /// It goes on.
+    /// The solve goes on.
     Allow,
 }
 
@@ -92,9 +94,9 @@ impl Workspace {
         done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
     }
 
-    /// The unknowns at the end of a step; None where this does not find it, the unknowns then as it
-    /// was or not far from it. Unless that is allowed the cable must not come within reach of
-    /// itself on the way.
+    /// Solves for the unknowns at the end of a step; returns None if that fails, with `unknowns`
+    /// then as before or not far from that. Unless `self_touch` allows it, the cable must not come
+    /// within reach of itself during the iteration.
     fn undamped_newton(
         &mut self,
         step: &StepContext<'_>,
@@ -114,15 +116,15 @@ impl Workspace {
         done
     }
 
-    /// True if Φ is greater at `unknowns` than where the step began, by more than supports can have
-    /// given. No descent from the start leads there: the iteration found another local minimum. (A
-    /// cable of 100 N that was whipped round the edge of a beam had 2.9 kN and four
-    /// times the kinetic energy at the end of such a step.)
+    /// True if Φ is greater at `unknowns` than where the step began, by more than the work of the
+    /// supports. No descent from the start leads there: the iteration found another local minimum.
+    /// (A cable of 100 N that was whipped round the edge of a beam had 2.9 kN and four times the
+    /// kinetic energy at the end of such a step.)
     fn raises_energy(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> bool {
         let begun = std::mem::take(&mut self.mixed.begun);
         let at_start = self.assemble(step, &begun, Curvature::Exact);
         let noise = ENERGY_NOISE * self.magnitude.abs();
-        // The system stays assembled at the answer, whose gradient is read as reactions.
+        // The system stays assembled at the answer, because its gradient gives the reactions.
         let value = self.assemble(step, unknowns, Curvature::Exact);
         let noise = noise + ENERGY_NOISE * self.magnitude.abs();
         let held = (0..step.mesh.nodes()).filter(|&k| step.mesh.held[k]);
@@ -131,7 +133,7 @@ impl Workspace {
         value > at_start + larger(work, 0.0) + noise
     }
 
-    /// To where the step began.
+    /// Sets `unknowns` to the start of the step.
     fn go_back(&self, unknowns: &mut Unknowns) {
         unknowns.positions.clone_from(&self.mixed.begun.positions);
         unknowns.slides.clone_from(&self.mixed.begun.slides);
@@ -147,8 +149,8 @@ impl Workspace {
         }
     }
 
-    /// Moves unknowns that is still where the step began to where its speed carries it, as far as
-    /// nothing is in the way.
+    /// Moves `unknowns` from the start of the step to the positions that its velocities predict, as
+    /// far as the way is free.
     fn move_on(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns) {
         let StepContext { mesh, input, .. } = *step;
         if unknowns.positions != input.begins() {
@@ -229,10 +231,10 @@ impl Workspace {
         None
     }
 
-    /// Solves for the direction again where bars that push make the matrix indefinite: with less
-    /// and less of their push in it, until it is definite. The minimiser leaves out all of it, but
-    /// that matrix is far from the equations, and its steps oscillate. Returns false where no part
-    /// helps; the system is pinned then, and its values are lost.
+    /// Solves for the direction again if compressed bars make the matrix indefinite: the geometric
+    /// stiffness of their compression is reduced until the matrix is definite. (The minimiser drops
+    /// it entirely, but that matrix is far from the equations, and its steps oscillate.) Returns
+    /// false if no reduction helps; then the values of the system are lost.
     fn reduce_compression(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         if !self.self_contact.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
@@ -270,8 +272,8 @@ impl Workspace {
         false
     }
 
-    /// True if the bars are on the branches that they are taken to be on, and friction holds and
-    /// slips where it is taken to.
+    /// True if every bar and every friction contact is on the branch (taut or slack, stick or slip)
+    /// that the step assumed.
     fn flags_hold(&self, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.friction_contacts.iter().zip(&self.mixed.branches);
         let slip = contacts.slip;
@@ -282,7 +284,7 @@ impl Workspace {
             })
     }
 
-    /// Moves unknowns and pulls by a part of the direction.
+    /// Moves unknowns and bar forces by a fraction of the direction.
     fn walk(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns, part: f64) {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
@@ -297,7 +299,7 @@ impl Workspace {
         self.place(mesh, unknowns, part);
     }
 
-    /// Moves unknowns by a part of the direction.
+    /// Moves unknowns by a fraction of the direction.
     fn place(&self, mesh: &Mesh, unknowns: &mut Unknowns, part: f64) {
         for k in 0..mesh.nodes() {
             let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
@@ -323,7 +325,7 @@ mod tests {
 
     const STEP: f64 = 1.0 / 240.0;
 
-    /// A cable of 6 m let go `tilt` (m) askew above rough ground, thrown down and about.
+    /// A cable of 6 m released with a tilt (m) above rough ground, thrown down and sideways.
     fn falling(tilt: f64, waves: &[f64]) -> Stepper {
         let mut scene = catalog::hanging_span();
         let points_m = (0..=40).map(|k| [-4.0 + 0.4 * f64::from(k), 0.05 * f64::from(k * 7 % 5)]).collect();
@@ -345,7 +347,7 @@ mod tests {
         d
     }
 
-    /// A cable of 10 m let go at both ends above a floor, cut into so many bars.
+    /// A cable of 10 m with so many bars, released at both ends above a floor.
     fn dropped(height: f64, bars: usize) -> Stepper {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
@@ -360,11 +362,11 @@ mod tests {
         d
     }
 
-    /// Landing nodes are thrown together along the floor with forces of kN: where friction was not
-    /// found by branches, 14 of these steps went to and fro until the minimiser was asked. A step
-    /// in which a node lands is balanced twice, as friction follows the normal forces of its own
-    /// step: 565 iterations and 28 steps of a dozen or more. (495 and 17 where slack bars resisted
-    /// as strongly as taut ones do; below 380 and none where friction was that of the step before.)
+    /// Landing nodes are thrown together along the floor with forces of kN. Without branches of
+    /// friction 14 of these steps cycled until the minimiser took over. A step in which a node
+    /// lands is balanced twice, as friction follows the normal forces of its own step: 565
+    /// iterations and 28 steps of a dozen or more. (495 and 17 if slack bars resist as strongly as
+    /// taut ones; below 380 and none with the friction of the step before.)
     #[test]
     fn a_landing_front_is_found_without_the_minimiser() {
         let mut d = dropped(1.0, 100);
@@ -378,7 +380,8 @@ mod tests {
         assert!(long < 34 && whole < 660, "{whole} {long}");
     }
 
-    /// Chance decides which steps the undamped Newton does not solve; over many drops it does not.
+    /// Chance decides which steps the undamped Newton method does not solve, so the test counts
+    /// over many drops.
     #[test]
     fn bars_that_buckle_where_they_land_take_few_iterations() {
         let (mut whole, mut long) = (0, 0);
@@ -393,15 +396,15 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 13 444 and 250, since slack bars give way: where the nodes of a front are
-        // thrown together, which bars buckle is found by the minimiser. With slack bars that
-        // resisted as taut ones 7087 and 10.
+        // Measured: 13 444 and 250, because slack bars give way: where the nodes of a landing front
+        // are thrown together, the minimiser finds which bars buckle. With slack bars that resisted
+        // like taut ones: 7087 and 10.
         assert!(whole < 16_000 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
-        /// The equations are those of the minimiser: so is the answer, wherever both have one.
+        /// The equations are those of the minimiser, so the answers agree wherever both have one.
         #[test]
         fn the_pose_is_that_of_the_minimiser(tilt in -0.5f64..0.5, waves in prop::collection::vec(-1.0f64..1.0, 3)) {
             let mut d = falling(tilt, &waves);
@@ -423,7 +426,7 @@ mod tests {
                 d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
             }
             println!("{compared} compared, {touching} of them in contact, {worst:e} m off");
-            // A hundred times the tolerance would be 1e-7 m off.
+            // A hundred times the tolerance would move it by 1e-7 m.
             prop_assert!(worst < 2e-8 && compared >= 60 && touching >= 15, "{} {} {}", compared, touching, worst);
         }
     }

@@ -1,48 +1,48 @@
-//! This solver takes one implicit step of a flexible cable that can touch nothing, with the pulls
-//! of the bars as unknowns.
+//! This solver takes one implicit step of a flexible cable that can touch nothing, with the forces
+//! of the bars as additional unknowns.
 //!
-//! With positions alone, a node moved across its bars by δ lengthens them by δ²/2l, which a stiff
-//! bar answers with EA δ²/2l²: the finer the mesh, the more iterations (6, 18 and 47 a step at 100,
-//! 1000 and 10 000 bars). Carried as unknowns, the pulls Q change only as the linear equations say,
-//! and the count stays at 2 to 4:
+//! With positions alone, moving a node across its bars by δ lengthens them by δ²/2l, which adds a
+//! force EA δ²/2l² in a stiff bar: the finer the mesh, the more iterations (6, 18 and 47 a step at
+//! 100, 1000 and 10 000 bars). If the bar forces Q are unknowns, they change only by the linear
+//! equations, and the count stays at 2 to 4:
 //! ```text
 //! mᵢ a² (x − x̃) − f + Σ ± Q t = 0,     Q = k (P − L) + c (P − P̂),     k = EA/L,  c = EA τ a/L or that of `loss`
 //! [A + Bᵀ(k + c)B] δx = −(residual with Q of the present lengths),     Q ← Q(P) + (k + c) t·δ(x₂ − x₁)
 //! A = m a² + Q/P (I − t tᵀ)
 //! ```
-//! with the mass m as it is spread over the bars (see `mass`). (Q < 0 is taken for 0 where the
-//! matrix is not positive definite with it.) The same matrix as Newton in positions but for the Q
-//! in it (the multiplier, as in the augmented Lagrangian methods: R. Glowinski and P. Le
+//! with the mass m spread over the bars (see `mass_matrix`). (Q < 0 is replaced by 0 in the matrix
+//! if that is not positive definite otherwise.) The matrix is that of Newton's method in positions
+//! except for Q (the multiplier, as in augmented Lagrangian methods: R. Glowinski and P. Le
 //! Tallec, *Augmented Lagrangian and operator-splitting methods in nonlinear mechanics*, SIAM
-//! 1989). It is block tridiagonal and needs no general sparse factor. Where this fails (a cable
-//! that is slack and stiff at once, say) the minimiser of contact steps takes over from the same
-//! start.
+//! 1989). It is block tridiagonal and needs no general sparse factorisation. If this method fails
+//! (for a cable that is both slack and stiff, say), the minimiser of contact steps takes over from
+//! the same start.
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::{BarBranch, Converged, PlainBar, StepInput, Unknowns, bar_energy};
 
-/// Roundings of a coordinate that a bar's length may be off by.
+/// Round-off of a bar's length, in units of the round-off of a coordinate.
 const ROUNDING: f64 = 16.0;
 
 /// A symmetric 2×2 matrix: xx, xy, yy.
 type Symmetric = [f64; 3];
 
-/// Memory of the solver; a copy of the model makes its own.
+/// Working memory of the solver; a copy of the model allocates its own.
 #[derive(Debug, Default)]
 pub struct MixedFreeSolver {
-    /// Pull of each bar, N.
+    /// Force of each bar as an unknown, N.
     pull: Vec<f64>,
-    /// Pull of each bar as long as it is, N.
+    /// Force of each bar at its present length, N.
     present: Vec<f64>,
-    /// The branch of the law of each bar on which it is.
+    /// The branch of its material law on which each bar is.
     branch: Vec<BarBranch>,
     /// (k + c) and t of each bar.
     hold: Vec<(f64, Vec2)>,
-    /// Unbalanced force on each node with the pulls carried, N.
+    /// Unbalanced force on each node with the unknown bar forces, N.
     gradient: Vec<Vec2>,
-    /// Diagonal blocks, and those between the nodes of each bar, N/m.
+    /// Diagonal blocks, and the blocks that couple the nodes of each bar, N/m.
     diagonal: Vec<Symmetric>,
     between: Vec<Symmetric>,
     step: Vec<Vec2>,
@@ -59,13 +59,14 @@ impl Clone for MixedFreeSolver {
 struct EquilibriumResidual {
     /// Largest unbalanced force of a free node, N.
     force: f64,
-    /// Largest difference between a bar's pull carried and that of its length, beyond rounding, N.
+    /// Largest difference between a bar's unknown force and that of its length, beyond round-off,
+    /// N.
     pull: f64,
 }
 
 impl MixedFreeSolver {
-    /// Finds the unknowns at the end of a step; None (and the unknowns as it was) where it does not
-    /// converge.
+    /// Finds the unknowns at the end of a step; returns None, with `unknowns` as before, if it does
+    /// not converge.
     pub fn solve(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns) -> Option<Converged> {
         self.start.clone_from(&unknowns.positions);
         self.make_room(mesh);
@@ -76,8 +77,8 @@ impl MixedFreeSolver {
         done
     }
 
-    /// Unbalanced force on a node after a solve, N: on a held one minus the force of the cable on
-    /// what holds it.
+    /// Unbalanced force on a node after a solve, N; at a held node it is minus the force of the
+    /// cable on its support.
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         self.gradient.get(node).copied().unwrap_or_default()
@@ -123,8 +124,8 @@ impl MixedFreeSolver {
         None
     }
 
-    /// The pulls with which the step begins: nearer to those it ends with than those of bars moved
-    /// on each by itself.
+    /// Sets the first bar forces of the step: nearer to those at its end than the forces of the
+    /// predicted positions.
     fn begin(&mut self, mesh: &Mesh, input: &StepInput) {
         for (e, (pull, branch)) in self.pull.iter_mut().zip(&mut self.branch).enumerate() {
             let (p, l) = ((input.supports.start[e + 1] - input.supports.start[e]).norm(), mesh.rest_length[e]);
@@ -133,8 +134,8 @@ impl MixedFreeSolver {
         }
     }
 
-    /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the
-    /// present lengths (the right side) into `step`.
+    /// Assembles the gradient with the unknown bar forces into `gradient`, the matrix into the
+    /// blocks, and the right-hand side (with the forces of the present lengths) into `step`.
     fn assemble(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], curvature: Curvature) -> EquilibriumResidual {
         for i in 0..x.len() {
             let (k, away) = (input.inertial.stiffness[i], x[i] - input.inertial.predicted[i]);
@@ -177,8 +178,8 @@ impl MixedFreeSolver {
         balance
     }
 
-    /// Block elimination from the first node on: D ← D − C D₋⁻¹ C, then back. False where a block
-    /// is not positive definite.
+    /// Block elimination from the first node on, D ← D − C D₋⁻¹ C, and back substitution. False if
+    /// a block is not positive definite.
     fn factor_and_solve(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         let n = x.len();
         for k in 0..n {
@@ -198,7 +199,8 @@ impl MixedFreeSolver {
         }
         for k in 0..n {
             if k > 0 {
-                // C is symmetric here: C D⁻¹ C and C D⁻¹ r with the inverse kept in place of D.
+                // C is symmetric here. The inverse of D is stored in place of D, for C D⁻¹ C and C
+                // D⁻¹ r.
                 let (c, inverse) = (self.between[k - 1], self.diagonal[k - 1]);
                 let [m00, m01, m10, m11] = product(&c, &inverse);
                 self.diagonal[k][0] -= m00 * c[0] + m01 * c[1];
@@ -227,7 +229,8 @@ impl MixedFreeSolver {
         true
     }
 
-    /// Moves the nodes and the pulls by the step, or by the part of it that moves no node too far.
+    /// Moves the nodes and the bar forces by the step, or by the fraction of it that moves no node
+    /// too far.
     fn walk(&mut self, mesh: &Mesh, input: &StepInput, x: &mut [Vec2]) {
         let mut longest = 0.0;
         for s in &self.step {
@@ -260,7 +263,7 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::step_potential::Workspace;
     use crate::model::fem::stepper::Stepper;
     use crate::model::fem::system::StepContext;
     use crate::model::{Inertia, Settings};
@@ -281,8 +284,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
-        /// The equations are those of the minimiser: so is the answer, for any history, and the
-        /// forces on what holds it.
+        /// The equations are those of the minimiser, so the answer and the support forces agree for
+        /// any history.
         #[test]
         fn the_pose_is_that_of_the_minimiser(
             log_stiffness in 4.0f64..7.0, loose in any::<bool>(), waves in prop::collection::vec(-1.0f64..1.0, 6), a in 300.0f64..700.0,

@@ -1,21 +1,21 @@
-//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some
-//! cable stays beside sliding nodes.
+//! The step bound limits a Newton step: no node moves too far, no obstacle is crossed, and some
+//! cable remains beside sliding nodes.
 
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
 use crate::model::fem::mesh::{BarEnd, TangentPath};
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_potential::Workspace;
 use crate::model::fem::system::{StepContext, StepInput, Unknowns, longest};
 
 impl Workspace {
-    /// The part of the direction in which no node moves too far.
+    /// The greatest fraction of the direction with which no node moves too far.
     pub(in crate::model::fem) fn max_step_fraction(&self, input: &StepInput) -> f64 {
         let largest = longest(&self.direction);
         if largest > input.stopping.max_move { input.stopping.max_move / largest } else { 1.0 }
     }
 
-    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some
-    /// cable between sliding nodes and their neighbours.
+    /// The greatest part of the direction (at most `fraction`) that crosses no obstacle and leaves
+    /// some cable between sliding nodes and their neighbours.
     pub(in crate::model::fem) fn ccd_step_bound(
         &mut self,
         step: &StepContext<'_>,
@@ -79,9 +79,9 @@ impl Workspace {
         )
     }
 
-    /// The same from where the system was assembled last. A step shorter than every gap leaves,
-    /// whichever way it goes, is free: nearly all last iterations are, and sweeps of every bar cost
-    /// as much as the rest of one.
+    /// The same bound, from the positions of the last assembly. A step shorter than the smallest
+    /// gap is free in any direction. This holds for nearly all last iterations, where sweeps of
+    /// every bar would cost as much as the rest of the iteration.
     pub(in crate::model::fem) fn step_bound_from_assembly(
         &mut self,
         step: &StepContext<'_>,
@@ -111,8 +111,8 @@ mod tests {
     use crate::scene::{Obstacle, Shape, Support, catalog};
     use proptest::prelude::*;
 
-    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be
-    /// sliding nodes, which are always looked at.
+    /// A cable that lies in a shallow dip with both ends released. Convex corners would have
+    /// sliding nodes, which are always checked.
     fn lying() -> Stepper {
         let mut scene = catalog::hanging_span();
         let points_m = vec![[-4.0, 0.0], [3.0, -0.1], [11.0, 0.1]];
@@ -133,7 +133,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
-        /// A path that counts as free without a look is free when it is looked at.
+        /// A step that counts as free without a sweep is also free by the sweep.
         #[test]
         fn a_short_way_is_free(seed in prop::collection::vec(-0.5f64..0.5, 122), down in 0.0f64..1.0) {
             let mut d = lying();

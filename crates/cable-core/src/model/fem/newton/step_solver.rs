@@ -1,5 +1,5 @@
-//! A step that is set up is solved: by the solver of free cables where the cable can touch nothing,
-//! else by that of contact, until friction and normal forces agree.
+//! This module solves a step that is set up: without contact if the cable can touch nothing, else
+//! with contact, until friction and normal forces agree.
 
 use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::larger;
@@ -13,22 +13,22 @@ impl SolverMemory {
         self.memory.0.as_ref().map_or(&[], |memory| &memory.touches)
     }
 
-    /// Those of the cable with itself.
+    /// The contacts of the cable with itself in that step.
     pub(in crate::model::fem) fn own_contacts(&self) -> &[SelfPair] {
         self.memory.0.as_ref().map_or(&[], |memory| &memory.self_contact.pairs)
     }
 
-    /// The present unknowns moved on at its velocities for `h` (s), where nothing can be in the
-    /// way. Newton then starts nearer by a factor of the step, and what it leaves is smaller and
-    /// not always on the same side.
+    /// The present unknowns extrapolated with the velocities by `h` (s), if nothing can be in the
+    /// way. Newton's method then starts nearer to the solution by a factor of the step, and its
+    /// remaining error is smaller and not always of the same sign.
     pub(in crate::model::fem) fn predicted_unknowns(&mut self, cable: &CableState, h: f64) -> Unknowns {
         let mut unknowns = self.present_unknowns(cable);
         for (k, (x, v)) in unknowns.positions.iter_mut().zip(&cable.motion.velocities).enumerate() {
             if cable.mesh.is_free(k) {
                 *x += v * h;
             } else if cable.mesh.held[k] {
-                // Short bars beside a support would have to turn by large angles if it stayed
-                // behind.
+                // If a support stayed behind, short bars beside it would have to turn by large
+                // angles.
                 *x = cable.input.supports.target[k];
             }
         }
@@ -40,9 +40,9 @@ impl SolverMemory {
         }
     }
 
-    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its
-    /// start an impact would rub in the step after it, by a force that is no longer there: up to
-    /// nine times the cone, along the cable.
+    /// Minimises until friction follows the normal forces of this step. With the normal forces at
+    /// its start, the friction of an impact would act one step late, by a force that no longer
+    /// exists: up to nine times the friction cone, along the cable.
     pub(in crate::model::fem) fn minimise_with_friction(
         &mut self,
         cable: &mut CableState,
@@ -67,11 +67,11 @@ impl SolverMemory {
         Ok(done)
     }
 
-    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is
-    /// part of the step, not found out after it.
+    /// Minimises until the law of friction holds at every sliding node: stick-slip states and
+    /// friction are part of the step's solution, not updated after it.
     ///
-    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
-    /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
+    /// All wrong stick-slip states are changed at once as long as their number falls; then one at a
+    /// time (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
     /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
     fn minimise_with_stick_slip(
         &mut self,
@@ -110,7 +110,7 @@ impl SolverMemory {
         unknowns
     }
 
-    /// Minimises the energy of the step that is set up, from unknowns.
+    /// Minimises the potential of the step that is set up, starting from `unknowns`.
     pub(in crate::model::fem) fn minimise(
         &mut self,
         cable: &mut CableState,
@@ -126,7 +126,7 @@ impl SolverMemory {
                 cable.meshing.was_contact_free = true;
                 return Ok(done);
             }
-            // It would have met something: from the start again, with contact.
+            // The cable would have met something: solve again from the start, with contact.
             *unknowns = self.present_unknowns(cable);
         }
         let mut memory = match self.memory.0.take() {

@@ -1,10 +1,10 @@
-//! This check finds whether the cable, as a mesh has it, runs through obstacles.
+//! This check finds whether the bars of a mesh run through obstacles.
 //!
 //! The step search is collision-free by construction (`contact/sweep.rs`). This check covers the
 //! two cases that it does not: bars that change when a node is inserted, moved or removed beside a
 //! corner, and adopted states. A bar that is tangent to the round of a corner is always nearer to
-//! the corner's edges than the barrier's reach at that end; there the tangent point must not lie
-//! over an edge.
+//! the corner's edges than the barrier's reach at that end, so there the check is that the tangent
+//! point does not lie over an edge.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded, perp, smaller};
@@ -26,17 +26,17 @@ pub(in crate::model::fem) struct IntersectionCheck<'a> {
 }
 
 impl<'a> IntersectionCheck<'a> {
-    /// Of a cable as it lies.
+    /// The check of a cable in its present state.
     pub(in crate::model::fem) fn of(cable: &'a CableState) -> Self {
         Self::at(cable, &cable.motion.positions)
     }
 
-    /// Of a cable at positions `x` (m).
+    /// The check of a cable at positions `x` (m).
     pub(in crate::model::fem) fn at(cable: &'a CableState, x: &'a [Vec2]) -> Self {
         Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, positions: x }
     }
 
-    /// Of the cable of a step at positions `x` (m).
+    /// The check of the cable of a step at positions `x` (m).
     pub(in crate::model::fem) fn among(step: &StepContext<'a>, x: &'a [Vec2]) -> Self {
         Self { problem: step.problem, mesh: step.mesh, reach: step.contacts.barrier.reach, positions: x }
     }
@@ -46,15 +46,15 @@ impl<'a> IntersectionCheck<'a> {
         self.way_is_clear(&self.mesh.path(e, self.positions), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
-    /// Returns whether every bar between two nodes that move is clear of obstacles. The place of
-    /// supports is the scene's business.
+    /// Returns whether every bar between two free nodes is clear of obstacles. The positions of
+    /// supports are given by the scene.
     pub(in crate::model::fem) fn cuts_nothing(&self) -> bool {
         let moves = |k: usize| self.mesh.sliding[k].is_some() || self.mesh.is_free(k);
         (0..self.mesh.rest_length.len()).all(|e| !(moves(e) && moves(e + 1)) || self.is_clear(e))
     }
 
-    /// True if the cable meets or leaves the round of a corner where that is over one of the
-    /// corner's edges: it has folded back and would run through the edge.
+    /// True if the cable meets or leaves the round of a corner over one of the corner's edges: it
+    /// has folded back and would run through the edge.
     pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let meets = [self.mesh.path(k - 1, self.positions).ends[1], self.mesh.path(k, self.positions).ends[0]];
@@ -62,7 +62,7 @@ impl<'a> IntersectionCheck<'a> {
     }
 
     /// True if a point on the round of a corner lies over one of the corner's edges, nearer to it
-    /// than `least` (parts of the barrier's reach): a way that is tangent there runs through the
+    /// than `least` (a fraction of the barrier's reach): a path tangent there runs through the
     /// edge.
     pub(in crate::model::fem) fn is_over_an_edge(&self, node: &SlidingNode, p: Vec2, least: f64) -> bool {
         let geometry = self.problem.world.geometry();
@@ -75,8 +75,8 @@ impl<'a> IntersectionCheck<'a> {
         into.into_iter().flatten().any(|(t, n)| from.dot(&t) > 0.0 && from.dot(&n).abs() < least)
     }
 
-    /// True if the straight part of a way between two nodes meets nothing, nor the edges of the
-    /// corners it is tangent to.
+    /// True if the straight part of a path between two nodes is clear of obstacles, and of the
+    /// edges of the corners to which it is tangent.
     pub(in crate::model::fem) fn way_is_clear(&self, way: &TangentPath, nodes: [Option<&SlidingNode>; 2]) -> bool {
         if matches!(nodes, [Some(a), Some(b)] if a.opposes(b)) {
             return false;
@@ -88,7 +88,7 @@ impl<'a> IntersectionCheck<'a> {
         }) && geometry.is_clear(way.ends, self.mesh.tuning.remesh.min_gap_reaches * self.reach, rounds)
     }
 
-    /// True if the straight way past node `k` meets nothing.
+    /// True if the straight path without node `k` is clear of obstacles.
     pub(in crate::model::fem) fn clear_without(&self, k: usize) -> bool {
         if self.problem.world.is_empty() {
             return true;
@@ -98,8 +98,8 @@ impl<'a> IntersectionCheck<'a> {
         self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
     }
 
-    /// A bar tangent to a corner or circle that runs through something: with all others watched by
-    /// the search of the step, proof that the cable crosses nothing.
+    /// A bar that is tangent to a corner or circle and runs through an obstacle. All other bars are
+    /// checked by the step bound, so if there is none, the cable crosses nothing.
     pub(in crate::model::fem) fn crossing(&self) -> Option<usize> {
         let (mesh, geometry) = (self.mesh, self.problem.world.geometry());
         (0..mesh.rest_length.len()).find(|&e| {
@@ -111,14 +111,14 @@ impl<'a> IntersectionCheck<'a> {
             }
             let way = mesh.path(e, self.positions);
             let over = (0..2).any(|j| nodes[j].is_some_and(|s| self.is_over_an_edge(s, way.ends[j], 0.0)));
-            // The scene answers for the places of supports and pulleys.
+            // The positions of supports and pulleys are given by the scene.
             let own = (0..2).all(|j| slides(nodes[j]) || mesh.is_free(e + j));
             over || (own && !geometry.is_clear(way.ends, 0.0, mesh.rounds(e)))
         })
     }
 
-    /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is
-    /// left to the rest to come.
+    /// Returns an error if a node is inside an obstacle. A bar that only cuts off a corner is
+    /// mended by the following equilibrium.
     pub(in crate::model::fem) fn refuse_buried(&self) -> Result<(), SolveError> {
         let (mesh, x, world) = (self.mesh, self.positions, &self.problem.world);
         if world.is_empty() {
@@ -132,7 +132,7 @@ impl<'a> IntersectionCheck<'a> {
             at_m: x[k],
         };
         for k in (0..mesh.nodes()).filter(|&k| mesh.is_free(k)) {
-            // However deep inside.
+            // Any depth counts.
             if let Some(gap) = world.signed_gap(x[k], f64::INFINITY).filter(|g| g.gap_m <= 0.0) {
                 return Err(buried(k, gap.obstacle, -gap.gap_m));
             }
@@ -140,8 +140,8 @@ impl<'a> IntersectionCheck<'a> {
         Ok(())
     }
 
-    /// The sliding node of an obstacle that the cable turns round the wrong way by more than
-    /// `wrong` (rad), or runs through beside: there a corner would have to pull.
+    /// A sliding node on an obstacle round which the cable turns the wrong way by more than `wrong`
+    /// (rad), or beside which it runs through the obstacle: the corner would have to pull there.
     pub(in crate::model::fem) fn pulled_corner(&self, wrong: f64) -> Option<usize> {
         (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
             self.mesh.sliding[k].is_some_and(|node| {
@@ -153,7 +153,7 @@ impl<'a> IntersectionCheck<'a> {
     }
 
     /// Distance at which the cable runs round a corner or circle, m: the reach of the barrier, but
-    /// no more than that of an end of the cable that is fixed on that round.
+    /// at most the distance of an end of the cable that is fixed on that round.
     pub(in crate::model::fem) fn clearance(&self, feature: usize) -> f64 {
         let reach = self.reach;
         let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };

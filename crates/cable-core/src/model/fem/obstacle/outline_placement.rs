@@ -1,20 +1,17 @@
-//! The outline of a robot moves among the obstacles of a cable, from where it is to where it is
-//! led.
+//! This module moves the outline of a robot along its path, and the cable out of its way.
 //!
-//! Within a step it stands where it will be at the end of it. What it moved into is pushed out of
-//! its way first, and the step is worked out from there: histories, inertia and anchors stay those
-//! of where the cable was, so what pushes is the barrier and nothing else. The place to begin from
-//! is found in three parts:
-//! - bars near the outline go with it as if they were a part of it, so none of them is passed;
-//! - gaps g of the nodes and bars that went, to what stands and to the outline, that would be lost
-//!   are given back: with u the way from where each was (for the outline: from where it went with
-//!   it), one after the other until
+//! Within a step the outline stands where it will be at the end of the step. The cable is moved out
+//! of its way first, as the start of the iteration only: history, inertia and friction anchors are
+//! unchanged, so the barrier alone provides the contact force. That start is found in three parts:
+//! - bars near the outline move with it as if they were part of it, so it passes none of them;
+//! - gaps g of the moved nodes and bars to fixed obstacles and to the outline are restored, one
+//!   after the other, until with the displacement u (for gaps to the outline: relative to it)
 //!   ```text
 //!   n·u ≥ −(1 − κ) g
 //!   ```
-//! - the way there is swept, past what stands as seen from the ground and past the outline as seen
-//!   from it: where it is not free the outline goes half as far, and where it cannot go at all it
-//!   stays.
+//! - the motion is swept, past fixed obstacles in the frame of the ground and past the outline in
+//!   its own frame. If it is not free, the outline moves half as far, and if it cannot move at all,
+//!   it stays.
 
 use std::sync::Arc;
 
@@ -30,15 +27,15 @@ use crate::model::fem::system::{ContactPair, OutlineMotion, StepContext};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
-/// A way of the outline that counts as none, m.
+/// Displacement of the outline below which it stands still, m.
 const STANDS_M: f64 = 1e-12;
 
-/// A lack of a gap that counts as none, m.
+/// Lack of a gap below which the gap counts as restored, m.
 const NONE: f64 = 1e-13;
 
 /// Returns whether a segment that moves evenly stays clear of an edge because its ends stay on one
-/// side of the edge's line. For a cable that is drawn along the ground this decides at once, where
-/// the sweep advances by one gap's width at a time.
+/// side of the edge's line. For a cable that is dragged along the ground this test decides at once,
+/// whereas the sweep advances by one gap at a time.
 fn is_passed_by(geometry: &Geometry, part: ObstaclePart, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
     let Some(body) = geometry.bodies().get(part.body) else { return false };
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
@@ -46,7 +43,7 @@ fn is_passed_by(geometry: &Geometry, part: ObstaclePart, from: [Vec2; 2], to: [V
     heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
 }
 
-/// Puts the outline where it is led at once, whatever lies there; returns whether it moved.
+/// Moves the outline to its target at once, even into the cable; returns whether it moved.
 pub(in crate::model::fem) fn put_outline(cable: &mut CableState) -> bool {
     let Some(to) = cable.outline.as_ref().map(|r| r.to.1) else { return false };
     let moves = cable.motion.placement != Some(to);
@@ -57,7 +54,7 @@ pub(in crate::model::fem) fn put_outline(cable: &mut CableState) -> bool {
     moves
 }
 
-/// The obstacles with the outline where the motion has it.
+/// Places the outline among the obstacles at the pose of the motion.
 pub(in crate::model::fem) fn place_outline(cable: &mut CableState) {
     cable.contacts.outline_motion = None;
     if let (Some(outline), Some(at)) = (&cable.outline, cable.motion.placement) {
@@ -67,13 +64,13 @@ pub(in crate::model::fem) fn place_outline(cable: &mut CableState) {
     }
 }
 
-/// Moves the outline and nothing else.
+/// Moves the outline only.
 fn move_outline(cable: &mut CableState, outline_motion: &OutlineMotion) {
     cable.motion.placement = Some(outline_motion.to);
     place_outline(cable);
 }
 
-/// Sets the input of a step from one time to another (s), the outline where it will then be.
+/// Sets the input of a step from one time to another (s), with the outline at its end pose.
 pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
     prepare_step(cable, times, dragged);
     let (Some(outline), Some(from)) = (&cable.outline, cable.motion.placement) else { return };
@@ -108,7 +105,7 @@ fn hitch(problem: &Problem, mesh: &Mesh, meshing: &Meshing) -> Option<usize> {
     mesh.held[node].then_some(node)
 }
 
-/// Puts the hitch where it is on the outline. Returns whether it can come along.
+/// Moves the hitch to its place on the outline. Returns whether it can follow.
 fn hitch_on(cable: &mut CableState, outline_motion: &OutlineMotion) -> bool {
     let (Some(k), Some(outline)) = (hitch(&cable.problem, &cable.mesh, &cable.meshing), &cable.outline) else {
         return true;
@@ -120,8 +117,8 @@ fn hitch_on(cable: &mut CableState, outline_motion: &OutlineMotion) -> bool {
     }
     let far = |p: Vec2| (p - on_it).norm();
     let now = cable.input.supports.start[k];
-    // One that was stopped by a wall stays there until the robot is as far from it as it may be
-    // left behind.
+    // A hitch that was stopped by a wall stays there until its distance from the robot reaches the
+    // allowed lag.
     let gap =
         |p: Vec2| cable.problem.world.signed_gap(p, cable.problem.radius).map_or(cable.problem.radius, |g| g.gap_m);
     if far(now) <= cable.mesh.tuning.outline.max_hitch_lag_m && gap(cable.input.supports.target[k]) < gap(now) {
@@ -131,7 +128,7 @@ fn hitch_on(cable: &mut CableState, outline_motion: &OutlineMotion) -> bool {
         || far(now) <= (now - outline_motion.from.place(outline.shape.hitch)).norm()
 }
 
-/// Force of the cable on the outline, and the rest of the path on which the outline was led.
+/// Force of the cable on the outline, and the part of its path that is left.
 pub(in crate::model::fem) fn outline_report(cable: &CableState) -> Option<RobotContact> {
     let (outline, at) = (cable.outline.as_ref()?, cable.motion.placement?);
     let left = outline.shape.max_displacement(&at, &outline.to.1);
@@ -153,15 +150,15 @@ struct OutlineStep<'a> {
 }
 
 impl<'a> OutlineStep<'a> {
-    /// That of a cable whose input is set; None without an outline.
+    /// The outline's step for a cable whose input is set; None without an outline.
     fn of(cable: &'a CableState, motion: OutlineMotion) -> Option<Self> {
         let outline = cable.outline.as_ref()?;
         let hitch = hitch(&cable.problem, &cable.mesh, &cable.meshing);
         Some(Self { step: cable.step_context(), outline, motion, hitch })
     }
 
-    /// Positions of the nodes out of the way of the outline; `ends` are those of the bars before it
-    /// moved. None where they cannot.
+    /// Positions of the nodes out of the way of the outline; `ends` are the ends of the bars before
+    /// it moved. None if there are none.
     fn positions_clear_of_it(&self, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let way = self.outline.shape.max_displacement(&self.motion.from, &self.motion.to);
         let near: Vec<bool> = ends
@@ -191,7 +188,7 @@ impl<'a> OutlineStep<'a> {
         self.is_free_way(ends, &x, &near).then_some(x)
     }
 
-    /// True if a bar is nearer to the outline than `within`, m.
+    /// True if a bar is nearer to the outline than `within` (m).
     fn is_near(&self, [a, b]: [Vec2; 2], within: f64) -> bool {
         let geometry = self.step.problem.world.geometry();
         let Some(body) = geometry.bodies().last() else { return false };
@@ -201,7 +198,7 @@ impl<'a> OutlineStep<'a> {
             .any(|k| body.edges.get(k).is_some_and(|e| segment_segment(a, b, e.from, e.to) < reach))
     }
 
-    /// Gives back the gaps that were lost; see the module.
+    /// Restores the gaps that were lost, as the module describes.
     fn restore_gaps(&self, within: f64, x: &mut [Vec2]) {
         let (mesh, start) = (self.step.mesh, &self.step.input.supports.start);
         let gone: Vec<Vec2> = start.iter().map(|p| self.motion.carried(*p)).collect();
@@ -243,14 +240,14 @@ impl<'a> OutlineStep<'a> {
         }
     }
 
-    /// The part of a gap that the sweep asks for: half of what is given back, so that rounding
+    /// The fraction of a gap that the sweep requires: half of the restored one, so that round-off
     /// stops nothing.
     fn swept_gap_fraction(&self) -> f64 {
         0.5 * self.step.mesh.tuning.outline.kept_gap_fraction
     }
 
-    /// True if the cable passes nothing on the way to `x`: neither a fixed obstacle nor, seen from
-    /// the moving outline, the outline.
+    /// True if the cable crosses nothing on the way to `x`: no fixed obstacle and, in the frame of
+    /// the moving outline, not the outline.
     fn is_free_way(&self, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (self.step.mesh, self.step.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);

@@ -1,14 +1,15 @@
-//! The mesh adapts between steps: sliding nodes come and go, and nodes beside them make room.
+//! This module adapts the mesh between steps: sliding nodes come and go, and nodes beside them make
+//! room.
 //!
 //! After every accepted step
-//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the
-//!   barrier reaches, so nothing jumps);
+//! - a sliding node that no longer presses on its corner is removed or becomes a material node (the
+//!   round is as far out as the barrier reaches, so nothing jumps);
 //! - a corner or circle that presses on a bar or a node gets a sliding node;
 //! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them),
 //!   passed ones lose theirs;
-//! - bars that grew too long are cut, nodes that came too near a sliding one are taken out.
+//! - bars that grew too long are divided, nodes that came too near a sliding one are removed.
 //!
-//! Material, place and momentum of what stays are left as they are.
+//! Material, position and momentum of the remaining nodes do not change.
 
 use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
@@ -21,29 +22,29 @@ use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
 
-/// Arc of a bar on its rounds below which it is unwound, rad: its tangent points have passed each
-/// other. Nearer to 0: bars that graze a round are not cut; farther: one that runs backwards is. A
-/// choice, tuned on no campaign, as are the two below.
+/// Arc of a bar on its rounds below which it counts as unwound, rad: its tangent points have passed
+/// each other. Nearer to 0: bars that graze a round are not divided; farther: a bar that runs
+/// backwards is. A choice, tuned on no campaign, as are the two below.
 const UNWOUND_ARC: f64 = -0.1;
-/// Straight part of a bar that is cut, in the longest allowed length. Smaller: bars that lie on a
-/// round are cut beside it; larger: long bars between rounds stay.
+/// Least straight part of a bar that is divided, as a fraction of the longest allowed length.
+/// Smaller: bars that lie on a round are divided beside it; larger: long bars between rounds stay.
 const MIN_CUT_STRAIGHT: f64 = 0.8;
-/// Part of the straight stretch at either end in which a bar is not cut. Smaller: pieces too short
-/// for their neighbours; larger: pieces less even than they could be.
+/// Fraction of the straight part at either end in which a bar is not divided. Smaller: pieces too
+/// short for their neighbours; larger: pieces less even than possible.
 const UNCUT_END_FRACTION: f64 = 0.1;
 
-/// The effect of a change of the mesh.
+/// The effects of an adaptation of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::fem) struct Remeshed {
-    /// The cable runs over other corners and rounds.
+    /// True if the cable now runs over other corners and rounds.
     pub(in crate::model::fem) sliding_nodes: bool,
-    /// Its bars are not those that were balanced.
+    /// True if its bars are not those that were balanced.
     pub(in crate::model::fem) bars: bool,
-    /// Material went from bar to bar as marks on rounds were moved.
+    /// True if material moved from bar to bar because marks on rounds were moved.
     pub(in crate::model::fem) marks: bool,
 }
 
-/// Adapts the mesh to what the cable runs over, without inertia or with it.
+/// Adapts the mesh to the corners and rounds that the cable runs over, without inertia or with it.
 pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) -> Remeshed {
     let rests = inertia == Inertia::QuasiStatic;
     if cable.contacts.self_contacts.shape.is_on() {
@@ -52,9 +53,9 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
     let mut changed = remove_sliding_nodes(cable, &[], rests);
     let taken = add_sliding_nodes(cable, rests);
     if !taken.is_empty() {
-        // A node that took hold may lift its neighbour off. Itself it waits for a step where
-        // inertia does not count: it took over weight of the nodes beside it, which under a
-        // corner pulls it away until they have moved.
+        // A new sliding node may lift its neighbour off. At rest it is not itself removed before
+        // the next step: it took over weight of the nodes beside it, which under a corner pulls it
+        // away until they have moved.
         remove_sliding_nodes(cable, if rests { &taken } else { &[] }, rests);
         changed = true;
     }
@@ -71,8 +72,8 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
     Remeshed { sliding_nodes: changed, bars, marks: moved }
 }
 
-/// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether
-/// there were any.
+/// Removes the sliding nodes that press on nothing, except those on `kept`; returns whether there
+/// were any.
 fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool) -> bool {
     let mut changed = false;
     let mut k = 1;
@@ -105,7 +106,7 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
     changed
 }
 
-/// A node that moves with its material becomes a sliding one.
+/// Turns a material node into a sliding node.
 fn pin_down(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
     attribute_to(cable, sliding.slide_over, |d| make_sliding(d, k, arc_length, sliding));
 }
@@ -129,12 +130,12 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
     cable.contacts.floor_slip[k] = floor_friction::as_slide(cable.contacts.floor_slip[k], along);
 }
 
-/// A sliding node becomes one that moves with its material: something else is in the way of a
-/// bar in its place.
+/// Turns a sliding node into a material node, because a bar in its place would meet another
+/// obstacle.
 ///
-/// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie
-/// where they lay. The material there is not that of its mark, unless that was in the middle of
-/// the arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
+/// It is placed where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars
+/// keep their lines. Its material is not that of the mark, unless that was in the middle of the
+/// arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
 /// broke it.)
 pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bool {
     match cable.mesh.sliding.get(k).copied().flatten() {
@@ -226,7 +227,7 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     taken
 }
 
-/// Takes out plain nodes in the way of a new sliding node.
+/// Removes material nodes in the way of a new sliding node.
 fn clear_around(cable: &mut CableState, k: usize) {
     let near = cable.mesh.tuning.remesh.min_bar * cable.even();
     let straight = |d: &CableState, e: usize| d.mesh.path(e, &d.motion.positions).straight;
@@ -246,9 +247,9 @@ fn clear_around(cable: &mut CableState, k: usize) {
     }
 }
 
-/// Cuts long bars beside sliding nodes and takes out nodes that came too near to one.
+/// Divides long bars beside sliding nodes and removes nodes that came too near to one.
 ///
-/// Returns whether there was anything to do.
+/// Returns whether anything changed.
 pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
     let even = cable.even();
     let mut changed = false;
@@ -284,8 +285,8 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
             && path.straight > MIN_CUT_STRAIGHT * cable.mesh.tuning.remesh.max_bar * even
             && !unwound
         {
-            // Even pieces, the straight part permitting; beside a sliding node the odd piece is
-            // its.
+            // Pieces are even if the straight part permits; beside a sliding node the odd piece is
+            // the one next to it.
             let slides = [e, e + 1].map(|k| cable.mesh.sliding[k].is_some());
             let part = match slides {
                 [false, true] => even,

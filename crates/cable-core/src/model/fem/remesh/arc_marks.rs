@@ -1,4 +1,5 @@
-//! Marks are the places on a round at which its material is counted.
+//! This module moves, adds and removes marks: the places on a round at which the material of
+//! sliding nodes is counted.
 
 use crate::math::smaller;
 use crate::model::fem::mesh::{BarEnd, SlidingNode, rotate};
@@ -6,15 +7,17 @@ use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, attribute_to};
 
-/// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
+/// Smallest change of a mark that is made, m, so that a cable at rest stays the same to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;
 
-/// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
+/// Logarithm of the ratio of two tensions below which the next term of the series (x³/720) is
+/// round-off.
 const SERIES_LOG_RATIO: f64 = 1e-4;
 
-/// Moves the mark of a round with one node to where the arc is strained as a whole as friction
-/// would strain it: in its middle where nothing rubs. In motion the material between the old
-/// mark and the new one is that of the bar that it leaves, whose strain stays.
+/// Moves the mark of a round with one node to the place where the arc has the same total strain as
+/// under evenly mobilised friction: its middle if there is no friction. In motion the material
+/// between the old and the new mark comes from the bar that the mark leaves, whose strain does not
+/// change.
 pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> bool {
     let mut moved = false;
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
@@ -53,7 +56,7 @@ pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> 
     moved
 }
 
-/// Turns the mark of a node by an angle (rad), past material (m).
+/// Turns the mark of a node by an angle (rad), past an arc length `material` (m).
 fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     let Some(node) = cable.mesh.sliding[k] else { return };
     let turned =
@@ -67,7 +70,7 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     cable.motion.previous_positions[k] = cable.motion.positions[k];
 }
 
-/// Gives long arcs more marks and takes away those that the tangent has passed.
+/// Gives long arcs more marks and removes those that the tangent has passed.
 pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
     let even = cable.even();
     let mut changed = false;
@@ -81,8 +84,8 @@ pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
         let shared = [k - 1, k + 1].map(|j| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
         let x = &cable.motion.positions;
         let arcs = [cable.mesh.path(k - 1, x).arcs[1], cable.mesh.path(k, x).arcs[0]];
-        // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
-        // what friction holds is known between marks only.
+        // On a large round the marks of a cable at rest are as far apart as nodes elsewhere,
+        // because friction is resolved only from mark to mark.
         let spacing = if rests {
             smaller(0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
         } else {
@@ -122,9 +125,9 @@ fn add_mark(cable: &mut CableState, k: usize, side: usize, angle: f64) {
     insert(cable, bar + 1, arc_length, Some(SlidingNode { end: BarEnd { mark, ..node.end }, ..node }));
 }
 
-/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other
-/// behind it the arc is as long as with a tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u
-/// ≤ 1:
+/// The fraction f of an arc before its mark. With the tension T₁ of the bar before the mark and T₂
+/// of the bar after it, the arc is then as long as with a tension whose logarithm changes evenly,
+/// T₁ e^{−xu}, 0 ≤ u ≤ 1:
 /// ```text
 /// f T₁ + (1 − f) T₂ = T₁ (1 − e^{−x})/x,   x = ln T₁/T₂,      f = 1/x − 1/(eˣ − 1)
 /// ```

@@ -1,5 +1,5 @@
-//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do
-//! not change.
+//! An edit inserts a node into a mesh or removes one; material, position and momentum of the
+//! remaining nodes do not change.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::SlidingNode;
@@ -7,7 +7,7 @@ use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, MovingMass, NodeMotion, attribute_to};
 use crate::model::fem::system::contact::floor_friction;
 
-/// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
+/// Inserts a node at an arc length (m) between nodes `k` − 1 and `k`.
 pub(in crate::model::fem) fn insert(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
     let beside = [k - 1, k].into_iter().find_map(|j| cable.mesh.sliding.get(j).copied().flatten());
     match sliding.or(beside) {
@@ -33,7 +33,7 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     let earlier =
         |j: usize| if mesh.sliding[j].is_some() { t * -m.previous_slide_rates[j] } else { m.previous_velocities[j] };
     let v_before = earlier(k - 1) * (1.0 - part) + earlier(k) * part;
-    // The floor does to it what it does to its neighbours.
+    // The floor acts on it as on its neighbours.
     let slid = |j: usize| {
         let slid = cable.contacts.floor_slip[j];
         if mesh.sliding[j].is_some() { floor_friction::as_move(slid, t) } else { slid }
@@ -60,7 +60,7 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     renumber(cable, |node| Some(if node >= k { node + 1 } else { node }));
 }
 
-/// Takes node `k` out.
+/// Removes node `k`.
 pub(in crate::model::fem) fn remove(cable: &mut CableState, k: usize) {
     match cable.mesh.sliding.get(k).copied().flatten() {
         Some(node) => attribute_to(cable, node.slide_over, |d| take_out(d, k)),
@@ -68,8 +68,8 @@ pub(in crate::model::fem) fn remove(cable: &mut CableState, k: usize) {
     }
 }
 
-/// Takes a node out that moves with its material. Its neighbours, where they are free, go on with
-/// its momentum, now and before.
+/// Removes a material node. Its free neighbours take over its momentum, of the present and of past
+/// steps.
 fn remove_plain(cable: &mut CableState, k: usize) {
     let beside = [k - 1, k + 1].map(|j| cable.mesh.sliding.get(j).copied().flatten());
     let Some(round) = beside.into_iter().flatten().next() else { return merge(cable, k) };
@@ -126,7 +126,7 @@ fn take_out(cable: &mut CableState, k: usize) {
     });
 }
 
-/// Gives nodes their new numbers wherever they are named: None is one that is gone.
+/// Gives nodes their new numbers wherever they are stored; None stands for a removed node.
 fn renumber(cable: &mut CableState, change: impl Fn(usize) -> Option<usize>) {
     cable.meshing.renumber(&change);
     for clamp in &mut cable.mesh.clamps {
@@ -135,7 +135,7 @@ fn renumber(cable: &mut CableState, change: impl Fn(usize) -> Option<usize>) {
     cable.contacts.renumber(change);
 }
 
-/// Takes the plain nodes out that would lie on a round, between two material points (m).
+/// Removes the material nodes between two arc lengths (m) that would lie on a round.
 pub(in crate::model::fem) fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {

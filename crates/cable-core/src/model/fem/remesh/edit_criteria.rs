@@ -1,4 +1,4 @@
-//! The criteria decide where sliding nodes come and go: they read a cable and change nothing.
+//! These criteria decide where sliding nodes are inserted and removed; they change nothing.
 
 use crate::contact::Gap;
 use crate::math::{bounded, perp};
@@ -7,22 +7,23 @@ use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::state::{CableState, Meshing, NodalMotion};
 use crate::model::fem::system::{StepContext, load_scale};
 
-/// Least part of the material between two nodes on each side of a node put between them.
+/// Least fraction of the material between two nodes on each side of a node inserted between them.
 const LEAST_PART: f64 = 1e-3;
 
-/// The shares of two bars in their material where their paths change.
+/// The division of the material of two bars when their paths change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MaterialShare {
-    /// Part of the first.
+    /// Fraction of the first bar.
     pub(super) first: f64,
-    /// Growth of the strain of stretched bars; less than zero: the slack that is left.
+    /// Growth of the strain of stretched bars; if negative, the slack that is left.
     added_strain: f64,
 }
 
 impl MaterialShare {
-    /// Ways (m), how much each bar is stretched (length over unstretched length), and the
-    /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
-    /// for that from what is slack; where that is not enough both are stretched by as much more.
+    /// Divides the material from the new path lengths (m), the stretch of each bar (length over
+    /// unstretched length), and the unstretched length of both (m). A stretched bar keeps its
+    /// strain and takes the material it needs from a slack one; if that is not enough, the strain
+    /// of both grows equally.
     pub(super) fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
         let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
         let sum = needs[0] + needs[1];
@@ -35,8 +36,8 @@ impl MaterialShare {
     }
 }
 
-/// The parts of a cable that the criteria read: its mesh among obstacles, how that was divided, and
-/// how it moves.
+/// The parts of a cable that the criteria read: its mesh among obstacles, its division, and its
+/// motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Criteria<'a> {
     step: StepContext<'a>,
@@ -45,7 +46,7 @@ pub(super) struct Criteria<'a> {
 }
 
 impl<'a> Criteria<'a> {
-    /// Those of a cable as it is.
+    /// The criteria for the present state of a cable.
     pub(super) fn of(cable: &'a CableState) -> Self {
         Self { step: cable.step_context(), meshing: &cable.meshing, motion: &cable.motion }
     }
@@ -59,8 +60,8 @@ impl<'a> Criteria<'a> {
         self.meshing.even(self.step.problem.length)
     }
 
-    /// True if a sliding node on an obstacle is pulled away from it, or is in the way of a node
-    /// that has to pass.
+    /// True if a sliding node on an obstacle is pulled away from it, or blocks a node that has to
+    /// pass.
     pub(super) fn lifts_off(&self, k: usize) -> bool {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let Some(node) = mesh.sliding[k] else { return false };
@@ -84,9 +85,9 @@ impl<'a> Criteria<'a> {
                 && turn < 2.0 * mesh.tuning.remesh.max_left_half_turn_rad)
     }
 
-    /// The share of the material between two nodes of a cable in motion where a sliding node comes
-    /// between them; None where the cable is not taut, pulled by less than what its own speed
-    /// across, hitting something, would make of it, or where the node would stretch it.
+    /// The division of the material between two nodes of a cable in motion by a sliding node
+    /// between them. None if the node would stretch the cable, or if the cable is not taut: its
+    /// tension is less than what an impact at its own transverse speed would cause.
     pub(super) fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<MaterialShare> {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let ways = [
@@ -111,7 +112,8 @@ impl<'a> Criteria<'a> {
         (tension > impact && self.may_change(tension, &share)).then_some(share)
     }
 
-    /// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
+    /// True if turning a sliding node into a material node does not change the tension of a cable
+    /// in motion.
     pub(super) fn settles_unstretched(&self, k: usize) -> bool {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
@@ -127,7 +129,7 @@ impl<'a> Criteria<'a> {
             )
     }
 
-    /// True if a change of the mesh adds so little to a tension (N) that it does not show.
+    /// True if a change of the mesh adds a negligible amount to a tension (N).
     fn may_change(&self, tension: f64, share: &MaterialShare) -> bool {
         let StepContext { problem, mesh, .. } = self.step;
         let weight = load_scale(problem).0 * problem.length;
@@ -136,8 +138,8 @@ impl<'a> Criteria<'a> {
             < tuning.max_tension_change * (tension + tuning.weight_fraction * weight)
     }
 
-    /// True if a sliding node between two nodes would bend the cable the right way and its bars
-    /// would meet nothing.
+    /// True if a sliding node between two nodes would bend the cable in the right sense and its
+    /// bars would meet nothing.
     pub(super) fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let paths = [
@@ -151,7 +153,7 @@ impl<'a> Criteria<'a> {
         } else {
             sliding.end.sense * angle_between(paths[0].direction, paths[1].direction)
         };
-        // Nor may it turn a neighbour the wrong way.
+        // It must not turn a neighbour the wrong way either.
         let beside = |k: usize, arc: f64, e: usize, j: usize| {
             mesh.sliding[k].is_none_or(|s| {
                 s.feature().is_none()
@@ -166,8 +168,8 @@ impl<'a> Criteria<'a> {
             && (0..2).all(|j| self.intersections().way_is_clear(&paths[j], nodes[j]))
     }
 
-    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
-    /// length and itself.
+    /// The sliding node that is needed where a corner or circle presses on a bar or node, with its
+    /// bar and its arc length (m).
     pub(super) fn sliding_node_for(
         &self,
         node: usize,
@@ -190,12 +192,12 @@ impl<'a> Criteria<'a> {
         let path = mesh.path(bar, x);
         let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
-        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
-        // away from it hits it with a node.
+        // A cable folded back on itself at an obstacle runs round it in neither sense, and one that
+        // is bent away from it hits it with a node.
         if !on_segment && (along.norm() < mesh.tuning.remesh.fold_direction_sum || mesh.turn(node, x) * sense < 0.0) {
             return None;
         }
-        // Seen from beyond the bar the cable must bend round the corner, and be taut.
+        // Seen from the nodes beyond the bar, the cable must bend round the corner and be taut.
         let first = bar.saturating_sub(1);
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
@@ -205,7 +207,7 @@ impl<'a> Criteria<'a> {
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
         let near = mesh.tuning.remesh.removed_distance * self.even();
-        // The ends of a cable and what hangs on it stay clear of corners.
+        // Ends of the cable and its loads stay clear of corners.
         let from_start = fraction * (s[1] - s[0]);
         let from_end = (1.0 - fraction) * (s[1] - s[0]);
         if (from_start < near && !self.meshing.removable(mesh, bar))

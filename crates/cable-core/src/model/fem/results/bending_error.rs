@@ -1,4 +1,5 @@
-//! The tension of a stiff cable that bends round something is off by what sliding nodes leave out.
+//! This module estimates the error of the tension of a stiff cable, because sliding nodes carry no
+//! moment.
 
 use crate::energy::bending::turn;
 use crate::math::larger;
@@ -6,11 +7,12 @@ use crate::model::fem::results::forces::bar_tensions;
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::ContactPair;
 
-/// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
-/// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
-/// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
-/// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
-/// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
+/// Error of the tension of a stiff cable where it bends round obstacles and pulleys, relative to
+/// the greatest tension, and the arc length (m) where it is greatest. A sliding node carries no
+/// moment: the tension there is off by EI/2ρ² if the cable lies on the round, and by at most T(1 −
+/// cos ½φ), φ its turn, if it touches in a point. At a material node that turns by ψ the normal
+/// force of a contact can have any direction within the turn, which makes an error along the cable
+/// of ½ψ times the force.
 pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let tension = bar_tensions(cable, x);
@@ -35,7 +37,7 @@ pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
         take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), t.node);
     }
     for t in touches.iter().filter(|t| t.on_segment) {
-        // The next node the cable could have touched with.
+        // The neighbouring nodes could have touched instead.
         let ends = [t.node, t.node + 1].into_iter().filter(|&k| k > 0 && k + 1 < mesh.nodes());
         for k in ends {
             let bend = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction);

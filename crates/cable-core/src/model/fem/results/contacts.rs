@@ -1,4 +1,5 @@
-//! Contacts that are neighbours on one obstacle are one report, and so is each round.
+//! This module reports contacts: neighbouring contacts with one obstacle are one report, and so is
+//! each round.
 
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger};
@@ -48,7 +49,7 @@ pub(super) fn contacts(
             let half = (x[end.node] - x[end.next]) * 0.5;
             (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
         } else {
-            // Only its end lies there.
+            // Only the end of the cable lies there.
             let mut c = ContactReport {
                 obstacle: name.to_owned(),
                 x_m: x[end.node].x,
@@ -89,29 +90,29 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[k - 1]),
             ..ContactReport::default()
         };
-        // A wrap slips when all of it does: one place that holds is enough for the cable to stay.
+        // A wrap slips only if all of it slips: one place that sticks is enough to hold the cable.
         let (mut push, mut turn, mut slips, mut samples) = (Vec2::zeros(), 0.0, true, Vec::new());
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
             let [before, after] = load.tension;
-            // The law of friction holds between the pulls along the bars: what hangs across them is
-            // the cable's own weight, and what the floor takes of what slides here is not the
-            // round's.
+            // The law of friction relates the pulls along the bars: the transverse part of the
+            // force is the cable's own weight, and the floor's friction on the sliding cable does
+            // not belong to the round.
             let at_rest = BalancedTensions { pull: load.at_round(), turn: load.turn, momentum_flux: 0.0 };
             let acts = node.balanced.unwrap_or(at_rest);
             let [a, b] = acts.pull;
             let floor = load.floor[1];
             let over = RoundFloorFriction::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
-            // A bar that would push lies slack there.
+            // A compressed bar counts as slack there.
             let pressed = larger(mean * acts.turn, 0.0);
             r.normal_n += pressed;
             push += node.end.mark * pressed;
             turn += load.turn;
-            // Without friction what they differ by is weight alone.
+            // Without friction the two tensions differ by weight alone.
             r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };
             slips &= !node.sticks();
-            // The round's own arc on either side of the node is of the contact.
+            // The arc of the round on either side of the node belongs to the contact.
             let lap = |e: usize, side: usize| {
                 let stretch = d.mesh.thermal_stretch * (1.0 + load.tension[side] / d.problem.axial_stiffness);
                 node.end.radius * d.mesh.path(e, x).arcs[1 - side] / stretch
@@ -135,7 +136,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
 }
 
 /// Force of a round on the cable at a sliding node, N: the change of the internal force, less the
-/// momentum that is carried over in a second, without the part of the floor.
+/// momentum flux and the force of the floor.
 fn round_force(load: &SlidingNodeLoad, momentum_flux: f64) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
@@ -156,8 +157,7 @@ fn report(
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // The force on a node that stays, over a round or as an end that lies, belongs to that round or
-    // end.
+    // The contact force on a sliding node or on a lying end is reported with that round or end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lying_ends.iter().flatten().any(|l| l.node == k);
     let part = |t: &ContactPair| {
         let [a, b] = t.shares();
@@ -188,7 +188,7 @@ fn report(
     };
     let unit = if normal.norm() > 0.0 { normal.normalize() } else { first.pair.gap.normal };
     let middle = (a + b) * 0.5;
-    // Summed bar by bar: a wrap may go round more than once.
+    // The turn is summed bar by bar, because a wrap may go round more than once.
     let turned: f64 = (before..after)
         .filter(|&e| d.mesh.sliding[e + 1].is_none())
         .map(|e| turn(d.mesh.path(e, x).direction, d.mesh.path(e + 1, x).direction))

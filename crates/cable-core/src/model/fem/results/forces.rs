@@ -1,5 +1,5 @@
-//! Forces in the cable, and those that the ground and loads exert on its ends and nodes, follow
-//! from a state.
+//! This module computes the forces in the cable, and those of ground and loads on its ends and
+//! nodes, from a state.
 
 use crate::contact::friction;
 use crate::energy::bending::turn;
@@ -9,8 +9,7 @@ use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 use crate::model::fem::time::loss_memory;
 
-/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
-/// zero.
+/// Tension in the middle of the straight part of each bar, N; it may be negative in a stiff cable.
 pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
@@ -41,25 +40,25 @@ pub(super) struct LyingEnd {
     pub node: usize,
     pub next: usize,
     pub obstacle: usize,
-    /// Along the cable, unit vector.
+    /// Unit vector along the cable.
     pub along: Vec2,
     pub normal: Vec2,
-    /// On the cable, N.
+    /// Force on the cable, N.
     pub force: Vec2,
 }
 
-/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on
-/// a free end, else that of the middle plus what acts on the half between. On the ground what acts
-/// on the half is guessed from the next node. With it what the ground does to the halves that lie
-/// along an edge.
+/// Tension force (N) at the start of the first bar and at the end of the last: at a free end the
+/// load there, else the force in the middle of the bar plus the forces on the half bar between. On
+/// the ground these are estimated from the next node. The second value is the force of the ground
+/// on half bars that lie along an edge.
 pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<LyingEnd>; 2]) {
     let n = x.len();
     let mut lying_ends = [None, None];
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // The ground carries the normal force there, and friction a part: at the tip itself no
-            // more than its cone.
+            // The ground carries the normal force there, and friction a part of the tangential
+            // force, within the friction cone.
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
@@ -76,21 +75,23 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.tributary_length(next));
         let force = middle + (body + grounded) * sign;
-        // A cable that lies on an edge up to its end presses on the edge alone; the barrier's width
-        // would tilt the last bar.
+        // A cable that lies on an edge up to its end is pressed along the edge's normal; the gap
+        // within the barrier would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
-        // No more than what presses: beyond that the support is pulled off the edge.
+        // The lift is at most the pressing force; with more the support would be pulled off the
+        // edge.
         let pressed = larger(grounded.dot(&ground.normal), 0.0);
         let tilt = force.dot(&ground.normal) * sign;
         let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
-        // The next node presses more by what the tilt lifts here, and rubs more: with less normal
-        // force this half rubs less.
+        // The next node presses more by the force that the tilt lifts here and has more friction;
+        // this half has less normal force and less friction.
         let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
-        // The ground carries the normal force of a point mass as well: its node tells.
+        // The ground also carries the normal force of a point mass; the force on its node includes
+        // it.
         lying_ends[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| LyingEnd {
             node,
             next,
@@ -107,8 +108,8 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lying_ends)
 }
 
-/// The load on a free end, N; None for other nodes, and where a point mass moves, whose inertia
-/// pulls as well.
+/// The load on a free end, N; None for other nodes, and for a moving point mass, whose inertia acts
+/// as well.
 fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
@@ -130,10 +131,9 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     sum
 }
 
-/// Sum of all forces on a cable that no support holds, N: weight, loads, and what obstacles and
-/// floor do to it. Between its bars nothing is left, whatever their tension: this has none of the
-/// rounding of their forces, and tells what slides from what rests where each node alone is let off
-/// with a little.
+/// Sum of all external forces on a cable that no support holds, N: weight, loads, obstacles and
+/// floor. Internal forces cancel, so the sum has none of their round-off; it distinguishes a
+/// sliding cable from a resting one although each node alone may have a small unbalanced force.
 pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
@@ -193,7 +193,7 @@ pub(super) fn moments(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
 }
 
-/// Shear force of bar e, N: what balances the moments at its nodes.
+/// Shear force of bar e, N, which balances the moments at its nodes.
 pub(super) fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
     let (Some(before), Some(after)) = (moments.get(e), moments.get(e + 1)) else { return Vec2::zeros() };
     let path = mesh.path(e, x);

@@ -1,4 +1,4 @@
-//! These modules read the answer out of a state.
+//! These modules make the answer from a state.
 //!
 //! | room | content |
 //! |---|---|
@@ -7,7 +7,7 @@
 //! | `nodes.rs`, `supports.rs`, `contacts.rs`, `self_contact.rs` | those parts of the answer |
 //! | `points_on_round.rs` | the points that draw the cable round a corner, post or pulley |
 //! | `weighted_capstan.rs` | the tension along a round between those at its ends |
-//! | `bending_error.rs` | the part of the error that is bending round obstacles |
+//! | `bending_error.rs` | the error of tension by neglected moments at rounds |
 
 pub(in crate::model::fem) mod bending_error;
 mod contacts;
@@ -26,14 +26,14 @@ use crate::model::fem::state::CableState;
 use crate::model::fem::time::loss_memory;
 use crate::solution::{Assumptions, CableSolution};
 
-/// The answer of a cable at this instant: that of the last step as it was balanced, else that of
-/// the mesh as it is.
+/// The answer of a cable at this instant: that of the last step on the mesh on which it was
+/// balanced, else that of the present mesh.
 #[must_use]
 pub fn solution(cable: &CableState) -> CableSolution {
     cable.answers.stepped.as_ref().map_or_else(|| solution_now(cable), |s| CableSolution::clone(s))
 }
 
-/// The answer with the mesh as it is.
+/// The answer on the present mesh.
 fn solution_now(d: &CableState) -> CableSolution {
     let (problem, x, v) = (&d.problem, &d.motion.positions, &d.motion.velocities);
     let tension = bar_tensions(d, x);
@@ -54,14 +54,14 @@ fn solution_now(d: &CableState) -> CableSolution {
     }
 }
 
-/// Keeps the answer of a step before the first change of its mesh.
+/// Stores the answer of a step before the first change of its mesh.
 pub(in crate::model::fem) fn keep_answer(cable: &mut CableState) {
     if cable.answers.keeps && cable.answers.kept.is_none() {
         cable.answers.kept = Some(Box::new(solution_now(cable)));
     }
 }
 
-/// Reads the tension at each node, as [`nodes::nodes`] has it.
+/// Stores the tension at each node, with the values of [`nodes::nodes`].
 pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     let mut gauged = std::mem::take(&mut cable.answers.gauged);
     let x = &cable.motion.positions;

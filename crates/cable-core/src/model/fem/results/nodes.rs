@@ -1,5 +1,5 @@
-//! The nodes of an answer are those of the mesh, with points on the rounds that sliding nodes lie
-//! on.
+//! This module makes the nodes of an answer: those of the mesh, with points on the rounds of
+//! sliding nodes.
 
 use crate::math::Vec2;
 use crate::model::fem::results::forces::{curvature_at, half, moments, shear};
@@ -51,12 +51,12 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
             k => bar(k) + d.input.loads.body * half(d, k, 1, x),
         };
-        // A round that reaches to the node within a step ends there.
+        // A round that reaches up to the node within one point ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
             out.pop();
         }
         let node = node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force));
-        // Relaxation branches pull beside what the strain makes.
+        // Relaxation branches add their forces to that of the strain.
         let beside = if k == 0 { 0..1 } else { k - 1..if k + 1 < n { k + 1 } else { k } };
         let count = beside.len() as f64;
         let by_branches =

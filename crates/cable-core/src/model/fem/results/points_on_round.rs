@@ -1,9 +1,9 @@
-//! The cable round a corner, post or pulley is drawn by points, from where it meets the round, or
-//! from halfway to the sliding node before, to where it leaves it, or halfway to the next.
+//! This module makes the points that draw the cable round a corner, post or pulley: from where it
+//! meets the round (or halfway from the sliding node before) to where it leaves it (or halfway to
+//! the next one).
 //!
-//! Their tension is what the weight of the cable makes of it, and friction that is mobilised
-//! evenly; where no friction leads from the tension at one end to that at the other it goes
-//! straight between them.
+//! Their tensions follow from the weight of the cable and evenly mobilised friction. If no
+//! mobilised friction connects the tensions at both ends, the tension is interpolated linearly.
 
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
@@ -13,21 +13,21 @@ use crate::model::fem::results::weighted_capstan::WeightedCapstan;
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::RoundFloorFriction;
 
-/// Nodes on a round: one at least every so many radians.
+/// Greatest angle between two nodes on a round, rad.
 const ARC_STEP: f64 = 0.13;
 
-/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight
-/// on the round over the tension.
+/// Number of iterations that find where a sagging cable leaves a round: each reduces the error by
+/// the ratio of the weight on the round to the tension.
 const SAG_ROUNDS: usize = 4;
 
-/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and
-/// leaves a round sooner or later than straight, which makes it rδ³/6 longer at an angle δ. More:
-/// of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
-/// away from the round that is drawn.
+/// Excess of the drawn path over its material, as a fraction of the diameter, where a sagging bar
+/// leaves a round by an angle δ sooner or later than a straight one, which makes it rδ³/6 longer.
+/// Larger: for slack bars, whose sag is not known, more cable is drawn than there is; smaller: the
+/// force leads away from the drawn round.
 const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
-/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were
-/// longer than their material.
+/// Fraction of the length by which chords are shorter than their arc that goes to the bars beside
+/// the round. Larger: they became longer than their material.
 const CHORD_CORRECTION_FRACTION: f64 = 0.8;
 
 /// A point of the cable on a round.
@@ -35,9 +35,9 @@ pub(super) struct OnRound {
     pub arc_length: f64,
     pub at: Vec2,
     pub tension: f64,
-    /// Internal force just beyond it, N.
+    /// Internal force just after it, N.
     pub force: Vec2,
-    /// Length of a metre of arc length.
+    /// Stretched length of a metre of arc length.
     pub stretch: f64,
 }
 
@@ -71,9 +71,9 @@ struct Round<'a> {
     node: &'a SlidingNode,
     load: &'a SlidingNodeLoad,
     paths: [TangentPath; 2],
-    /// True if the node before, or that beyond, lies on the same round.
+    /// True if the node before it, or the node after it, lies on the same round.
     shared: [bool; 2],
-    /// Length of a metre of arc length before and beyond.
+    /// Stretched length of a metre of arc length before and after the node.
     stretch: [f64; 2],
 }
 
@@ -82,45 +82,46 @@ impl<'a> Round<'a> {
         let mesh = &cable.mesh;
         let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
         let shared = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
-        // The slack of a bar hangs or lies beside the round: on it the cable is taut.
+        // The slack of a bar hangs or lies beside the round; on the round the cable is taut.
         let stretch = [0, 1].map(|j| {
             larger(paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]), mesh.thermal_stretch)
         });
         Self { cable, k, node, load, paths, shared, stretch }
     }
 
-    /// The unit vector out of the round at an angle.
+    /// The outward unit normal at an angle.
     fn normal(&self, turned: f64) -> Vec2 {
         let (mark, sense) = (self.node.end.mark, self.node.end.sense);
         let (sin, cos) = (sense * turned).sin_cos();
         Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
     }
 
-    /// Forces in the cable where it meets and leaves the round, at angles from the node, N: the
-    /// stretches between have their own weight.
+    /// Forces in the cable where it meets and leaves the round, at angles from the node, N; they
+    /// include the weight of the cable between.
     fn forces_at_ends(&self, arcs: [f64; 2]) -> [Vec2; 2] {
         let (body, radius) = (self.cable.input.loads.body, self.node.end.radius);
         [0, 1].map(|j| self.load.force[j] - body * (arcs[j] * radius / self.stretch[j] * [-1.0, 1.0][j]))
     }
 
-    /// The angle by which a bar on side `j` sags on to the round, or bulges away from it, from the
-    /// turn of its force to that of its path.
+    /// The angle by which a bar on side `j` sags on to the round, or bulges away from it: the angle
+    /// between its force and its path.
     fn sag(&self, j: usize, from: Vec2, to: Vec2) -> f64 {
         let (sense, radius) = (self.node.end.sense, self.node.end.radius);
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
         let drawn = !self.shared[j] && longer <= PATH_EXCESS_DIAMETERS * 2.0 * self.cable.problem.radius;
-        // A bar that bulges away from the round leaves it sooner; drawn straight it would cut it.
+        // A bar that bulges away from the round leaves it sooner; drawn straight it would cut into
+        // the round.
         if drawn { larger(sag, -arc_nodes::early_leave(radius, self.cable.problem.radius)) } else { 0.0 }
     }
 
-    /// The angles before and beyond the node over which the cable lies on the round. It leaves
-    /// where its force does: what sags turns further round than the straight bar that stands for
-    /// it, and has less weight beyond.
+    /// The angles before and after the node over which the cable lies on the round. It leaves the
+    /// round where its force is tangent: a sagging cable turns further round than its straight bar,
+    /// and has less weight beyond.
     fn wrapped_arcs(&self) -> [f64; 2] {
         let (paths, radius) = (&self.paths, self.node.end.radius);
         let straight = [paths[0].arcs[1], paths[1].arcs[0]];
-        // The nearer half of the bar at most: the rest hangs from the node beyond.
+        // At most the nearer half of the bar counts: the rest hangs from the node beyond.
         let room = [0, 1].map(|j| larger(0.5 * (paths[j].length / radius - straight[j]), 0.0));
         let mut sagged = straight;
         for _ in 0..SAG_ROUNDS {
@@ -129,21 +130,21 @@ impl<'a> Round<'a> {
             // A bar that bulges away may leave at the mark of the round, but not before.
             sagged = [0, 1].map(|j| larger(straight[j] + smaller(sags[j], room[j]), smaller(straight[j], 0.0)));
         }
-        // As far round as it would run into an edge beside a corner it does not sag.
+        // It does not sag so far round that it would run into an edge beside the corner.
         let clear = |turned: f64| {
             let at = self.node.end.center + self.normal(turned) * radius;
             !IntersectionCheck::of(self.cable).is_over_an_edge(self.node, at, 0.0)
         };
         let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
         let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
-        // A last mark that the cable has come off, to be taken out after the step, is drawn with
-        // the round up to it.
+        // A last mark that the cable has left, and that will be removed after the step, is drawn
+        // with the round up to it.
         let came_off = before + after <= 0.0 && (self.shared[0] || self.shared[1]);
         if came_off { [before, after].map(|arc| larger(arc, 0.0)) } else { [before, after] }
     }
 
-    /// The one point of a cable that has come off: it runs straight past the round, near to where
-    /// its two tangents meet. Drawn by way of the mark it would cut it.
+    /// The single point of a cable that has come off the round: it runs straight past, near the
+    /// point where its two tangents meet. Drawn through the mark it would cut into the round.
     fn point_off(&self, [before, after]: [f64; 2]) -> OnRound {
         let (mesh, radius) = (&self.cable.mesh, self.node.end.radius);
         let turned = if radius > 0.0 { 0.5 * (after - before) } else { 0.0 };
@@ -166,10 +167,10 @@ impl<'a> Round<'a> {
         let stretch = self.stretch[usize::from(turned > 0.0)];
         let normal = self.normal(turned);
         let tension = tensions.at(self, f, normal);
-        // The floor's friction of half of what lies beside a point acts at it, as it does at a node
-        // of the cable.
+        // Half of the floor's friction on the chords beside a point acts at it, as at a node of the
+        // cable.
         let beyond = if i < count { tension - 0.5 * tensions.floor / count } else { tension - self.load.floor[2] };
-        // Beyond the last point the cable has the force with which it leaves.
+        // After the last point the cable has the force with which it leaves the round.
         let leaves = i >= count && !self.shared[1] && tensions.capstan.is_some();
         let (tension, force) =
             if leaves { (tensions.ends[1], tensions.forces[1]) } else { (tension, perp(normal) * (sense * beyond)) };
@@ -177,11 +178,10 @@ impl<'a> Round<'a> {
         OnRound { arc_length, at: self.node.end.center + normal * radius, tension, force, stretch }
     }
 
-    /// Gives the bars beside the round the material that chords leave over. Friction on the round
-    /// strains what lies there otherwise than the straight part beyond, which has its own tension.
-    /// And what sags on to the round, or comes from inside its gap, comes and goes by a longer way
-    /// than the bar: by as much as chords are shorter than their arc the round has material to
-    /// spare.
+    /// Gives the bars beside the round the excess material of its chords. Friction gives the arc
+    /// another strain than the straight part beyond, which has its own tension. A cable that sags
+    /// on to the round, or lies inside its gap, has a longer path than the bar; the chords, which
+    /// are shorter than their arc, leave that much material.
     fn share_chord_excess(&self, points: &mut [OnRound], whole: f64, count: f64, x: &[Vec2], tension: &[f64]) {
         let (mesh, stretch, radius) = (&self.cable.mesh, self.stretch, self.node.end.radius);
         let half = 0.5 * whole / count;
@@ -205,9 +205,11 @@ impl<'a> Round<'a> {
 
 /// The course of the tension along a round, and the number of chords that draw it.
 struct RoundTension {
-    /// Angle from where the cable meets the round to its node, and the whole angle, rad.
+    /// Angle from the point where the cable meets the round to its node, rad.
     before: f64,
+    /// Angle over which the cable lies on the round, rad.
     whole: f64,
+    /// Number of chords that draw it.
     count: f64,
     /// Forces in the cable where it meets and leaves the round, N.
     forces: [Vec2; 2],
@@ -215,7 +217,7 @@ struct RoundTension {
     ends: [f64; 2],
     /// Friction of the floor of a plan view on the round, N.
     floor: f64,
-    /// Normal where the cable meets the round.
+    /// Outward normal where the cable meets the round.
     first: Vec2,
     over_floor: Option<RoundFloorFriction>,
     capstan: Option<WeightedCapstan>,
@@ -229,14 +231,14 @@ impl RoundTension {
         let [a, b] = [0, 1].map(|j| if round.shared[j] { tension[k + j - 1] } else { forces[j].norm() });
         let chords = arc_nodes::parts(radius, whole, cable.problem.radius) as f64;
         let count = larger((whole / ARC_STEP).ceil(), chords);
-        // The forces of the floor before and after the round are not the round's.
+        // The friction of the floor before and after the round does not belong to the round.
         let [f0, floor, f2] = round.load.floor;
         let [a, b] = [a - f0, b + f2];
         let first = round.normal(-before);
         let load =
             [perp(first) * sense, first].map(|v| cable.input.loads.body.dot(&v) * radius / cable.mesh.thermal_stretch);
-        // Where the weight of a bar hangs over the round, it comes or goes at an angle to its
-        // tangent and presses at that one point.
+        // If the weight of a bar hangs over the round, the cable meets or leaves the round at an
+        // angle to its tangent and presses at that point.
         let tangents = [-before, after].map(|turned| perp(round.normal(turned)) * sense);
         let kinks = [angle_between(forces[0], tangents[0]), angle_between(tangents[1], forces[1])];
         let kinks = [0, 1].map(|j| if round.shared[j] { 0.0 } else { larger(sense * kinks[j], 0.0) });
@@ -265,11 +267,10 @@ impl RoundTension {
     }
 }
 
-/// Spreads the material of an arc as the tension along it strains it; how much of it there is on
-/// the whole stays.
+/// Spreads the material of an arc by the strain of the tension along it; its total does not change.
 fn strain_evenly(points: &mut [OnRound], axial_stiffness: f64) {
     let [Some(begins), Some(ends)] = [points.first(), points.last()].map(|p| p.map(|p| p.arc_length)) else { return };
-    // Chords of one round are equally long: their material goes by their strain alone.
+    // Chords of one round have equal lengths, so their material depends on their strain alone.
     let slackness = |p: &[OnRound]| 1.0 / (1.0 + 0.5 * (p[0].tension + p[1].tension) / axial_stiffness);
     let whole: f64 = points.windows(2).map(slackness).sum();
     if !(whole > 0.0 && whole.is_finite()) {

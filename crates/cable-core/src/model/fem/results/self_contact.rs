@@ -1,4 +1,4 @@
-//! The contacts of a cable with itself are reported.
+//! This module reports the contacts of a cable with itself.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -33,8 +33,8 @@ pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[
         }
         if let Some(report) = out.last_mut() {
             let force = pair.normal * load - pair.tangent() * rubbing;
-            // The other side of the contact feels the opposite: the force on the whole cable is
-            // nothing.
+            // The other side of the contact gets the opposite force: the force on the whole cable
+            // is zero.
             for (node, part) in pair.shares() {
                 report.samples.push(ContactSample::new(cable.mesh.arc_length[node], force * part));
             }

@@ -1,4 +1,4 @@
-//! Each support reports where it is and what the cable does to it.
+//! This module reports the position of each support and the force of the cable on it.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::SlideOver;
@@ -7,7 +7,7 @@ use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 use crate::solution::SupportReaction;
 
-/// The force of the cable on a pulley with its tensions and arc length.
+/// The force of the cable on a pulley, with its tensions and its arc length.
 fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
     let slide_over = SlideOver::Pulley(support);
     let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.slide_over == slide_over);
@@ -48,14 +48,15 @@ pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[
             let hand = d.motion.hands[k];
             let reaction = match node {
                 _ if hand.is_some() => d.answers.reaction[node],
-                // A dead load is what hangs there: the cable pulls it the other way; a lump it may
-                // pull faster. Of one that lies the ground takes a part, which is the contact's.
+                // At a dead load the reaction is minus the load; a moving point mass may pull by
+                // more. The ground carries a part of a load that lies on it, and that part is in
+                // the contact's report.
                 _ if !d.mesh.held[node] && on_ground => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
-                // On the ground the end's own share of weight and friction is the ground's, not the
-                // support's.
+                // On the ground the end's own share of weight and friction acts on the ground, not
+                // on the support.
                 0 if on_ground => ends[0],
                 k if k == last && on_ground => -ends[1],
                 _ => d.answers.reaction[node],

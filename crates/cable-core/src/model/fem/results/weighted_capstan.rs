@@ -1,51 +1,52 @@
-//! The tension along a round follows from the tensions at its ends if friction and weight act all
-//! along it.
+//! This module computes the tension along a round from the tensions at its ends, with friction and
+//! weight all along it.
 //!
-//! With b the load per metre, t the direction of the cable, n the outward normal and g the radius
-//! over the stretch, friction that is mobilised evenly, by a coefficient m, makes of the tension T
+//! With b the load per metre, t the direction of the cable, n the outward normal, g the radius over
+//! the stretch and m the evenly mobilised friction coefficient, the tension T obeys
 //!
 //! ```text
 //! dT/dψ = mT − g (b·t + m b·n),      dt/dψ = −n,      dn/dψ = t
 //! T = α b·t + β b·n + C e^{mψ},      α = 2gm/(1+m²),   β = g(m²−1)/(1+m²)
 //! ```
 //!
-//! and m is what leads from the one end to the other. At a kink, where cable that comes with a
-//! tension a turns by an angle h at one point, it presses with a sin h, and a (cos h + m sin h)
-//! leads on. Where |m| is no more than the friction, every piece of the round is within its cone.
-//! (L. Euler, "Remarques sur l'effet du frottement dans l'équilibre", Mémoires de l'académie des
-//! sciences de Berlin 18, 1769, with weight.)
+//! where m is chosen so that T has the given values at both ends. At an angle h at one point, a
+//! cable with the tension a before it presses with a sin h and has a (cos h + m sin h) after it.
+//! If |m| is at most the friction coefficient, every piece of the round is within its friction
+//! cone. (L. Euler, "Remarques sur l'effet du frottement dans l'équilibre", Mémoires de l'académie
+//! des sciences de Berlin 18, 1769, with weight.)
 
 use crate::math::larger;
 use crate::numerics::bisect;
 
-/// Doublings of the coefficient in the search for one that is too large: beyond that no friction
-/// leads from the one tension to the other.
+/// Doublings of the coefficient in the search for an upper bound: beyond that no friction connects
+/// the two tensions.
 const DOUBLINGS: i32 = 12;
-/// Halvings of the interval in which it is.
+/// Halvings of the interval of the coefficient.
 const HALVINGS: usize = 60;
-/// Parts of the turn between which the cable must press on the round.
+/// Number of parts of the turn between which the cable must press on the round.
 const PRESSED_PARTS: u32 = 8;
-/// Force away from the round, of the greater tension, that is rounding.
+/// Force away from the round that counts as round-off, as a fraction of the greater tension.
 const LIFT_ROUNDING: f64 = 1e-9;
-/// Part of the greater tension by which the end of the turn may be missed. Where weight alone would
-/// use up the tension, it depends so steeply on the coefficient that no number leads to the end.
+/// Greatest error of the tension at the end of the turn, as a fraction of the greater tension. If
+/// weight alone would use up the tension, the tension depends so steeply on the coefficient that no
+/// f64 gives the end value.
 const END_TOLERANCE: f64 = 1e-6;
 
 /// The tension of a cable along a round that carries its weight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightedCapstan {
-    /// Tension where it begins, just beyond the point at which it comes on to the round, N.
+    /// Tension at the start of the arc, just after the point at which the cable meets the round, N.
     start: f64,
-    /// Coefficient of the friction that is mobilised; positive where the tension grows by it.
+    /// Mobilised friction coefficient; positive if it makes the tension grow.
     mobilised: f64,
     /// g b·t and g b·n at its start, N.
     load: [f64; 2],
 }
 
 impl WeightedCapstan {
-    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N), where the
-    /// cable begins and ends the turn with a kink (rad); None where no friction leads from the one
-    /// to the other, or only where the round would have to hold the cable.
+    /// The tension between two tensions (N) over a turn (rad), with g b·t and g b·n at its start
+    /// (N); the cable begins and ends the turn with an angle (rad) at a point. None if no friction
+    /// connects the two tensions, or only with a round that would have to pull the cable.
     pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
         let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
         let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
@@ -63,8 +64,8 @@ impl WeightedCapstan {
         Some(with(mobilised)).filter(|found| leads_there && found.presses(turn, LIFT_ROUNDING * scale))
     }
 
-    /// True if the cable presses on the round all along a turn (rad), or is drawn off by no more
-    /// than `rounding` (N).
+    /// True if the cable presses on the round all along a turn (rad), or is pulled off by at most
+    /// `rounding` (N).
     fn presses(&self, turn: f64, rounding: f64) -> bool {
         let [along, outward] = self.load;
         (0..=PRESSED_PARTS).all(|k| {
@@ -89,7 +90,7 @@ impl WeightedCapstan {
 mod tests {
     use super::*;
 
-    /// The law itself, by Runge and Kutta's steps.
+    /// Integrates the differential equation by the Runge–Kutta method.
     fn integrated(start: f64, m: f64, turn: f64, [along, outward]: [f64; 2]) -> f64 {
         const STEPS: usize = 400;
         let h = turn / STEPS as f64;
@@ -124,13 +125,13 @@ mod tests {
         assert!((weightless.mobilised - 1.4f64.ln()).abs() < 1e-14);
     }
 
-    /// The cable rubs at a kink with the same coefficient as along the round.
+    /// At an angle the cable has the same friction coefficient as along the round.
     #[test]
     fn a_kink_at_either_end_takes_its_part_of_the_friction() {
         let (before, after, kinks) = (6.0, 9.0, [0.2f64, 0.3]);
         let found = WeightedCapstan::between([before, after], 0.8, [0.5, -1.0], kinks).expect("friction leads there");
         let [first, last] = [0.0, 0.8].map(|turned| found.at(turned));
-        // Along the tangent and across it at both kinks.
+        // These are the tangential and normal forces at both angles.
         let rubs = [first - before * kinks[0].cos(), after * kinks[1].cos() - last];
         let presses = [before * kinks[0].sin(), after * kinks[1].sin()];
         for (rubs, presses) in rubs.into_iter().zip(presses) {
@@ -140,17 +141,17 @@ mod tests {
         assert!((by_steps - last).abs() < 1e-8 * last, "{by_steps} against {last}");
     }
 
-    /// The cable had -inf N on a post that it was thrown round, as friction was said to come from
-    /// where it is drawn off.
+    /// A cable thrown round a post had -inf N there, because friction was assumed where the cable
+    /// is pulled off.
     #[test]
     fn issue_016_no_friction_comes_from_where_the_cable_is_drawn_off() {
-        // A coefficient of 19 leads from the one to the other by way of -2e9 N.
+        // A coefficient of 19 connects the two through -2e9 N.
         assert!(WeightedCapstan::between([1.2, 7.0], 3.0, [2.0, 1.0], [0.0, 0.3]).is_none());
         assert!(WeightedCapstan::between([2.5, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_some());
     }
 
     /// A cable that was whirled round a post had 4e11 N there in one frame: the coefficient lay
-    /// between two numbers next to each other, of which one led to -1e15 N and the other to 1e15 N.
+    /// between two adjacent f64 numbers, of which one gave -1e15 N and the other 1e15 N.
     #[test]
     fn issue_016_no_friction_leads_where_no_number_does() {
         let found = WeightedCapstan::between([0.770_385, 9.574_502_6], 1.042_254, [2.935_798, 0.685_06], [0.0; 2]);
@@ -159,10 +160,10 @@ mod tests {
 
     #[test]
     fn issue_015_a_tension_that_weight_alone_would_use_up_does_not_bulge_between_the_ends() {
-        // From 45° to the horizontal down a pipe: weight alone would leave 0.1 N of 1.58 N, and the
-        // cable hangs on with 1 N.
+        // The cable goes down a pipe from 45° to the horizontal: weight alone would leave 0.1 N of
+        // 1.58 N, and the cable continues with 1 N.
         let found = WeightedCapstan::between([1.58, 1.008], 0.78, [1.5, -1.5], [0.0; 2]).expect("friction leads there");
-        // A factor on what weight alone leaves had 3.04 N in between.
+        // A factor on the tension that weight alone leaves gave 3.04 N in between.
         let most = (0..=20).map(|k| found.at(0.039 * f64::from(k))).fold(0.0, f64::max);
         assert!((most - 1.5843).abs() < 1e-4, "{most} N");
         assert!((found.mobilised - 0.5333).abs() < 1e-4, "{}", found.mobilised);

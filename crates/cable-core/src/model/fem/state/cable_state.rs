@@ -1,5 +1,5 @@
-//! The state of a cable: its mesh, contacts and history, the loads of the present step, and its
-//! answers. It knows nothing of solvers and of the control of time.
+//! This module holds the state of a cable: its mesh, contacts and history, the loads of the present
+//! step, and its answers. It knows nothing of solvers and of the control of time.
 
 use std::sync::Arc;
 
@@ -33,12 +33,12 @@ pub(in crate::model::fem) struct StepAnswers {
     pub(in crate::model::fem) reaction: Vec<Vec2>,
     /// Supports that were stopped short of their target.
     pub(in crate::model::fem) held_back: Vec<usize>,
-    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it,
-    /// for the next.
+    /// The answer of the last step of an `advance` on the mesh on which it was balanced; the mesh
+    /// is changed after it, for the next step.
     pub(in crate::model::fem) stepped: Option<Box<CableSolution>>,
-    /// True if the answer is kept before the mesh is changed.
+    /// True if the answer is to be stored before the mesh is changed.
     pub(in crate::model::fem) keeps: bool,
-    /// The answer that was kept.
+    /// The stored answer.
     pub(in crate::model::fem) kept: Option<Box<CableSolution>>,
     /// Tension after the last step, on the mesh that it balanced.
     pub(in crate::model::fem) gauged: NodeTensions,
@@ -52,7 +52,7 @@ pub(in crate::model::fem) struct CableState {
     pub(in crate::model::fem) meshing: Meshing,
     pub(in crate::model::fem) contacts: ContactSet,
     pub(in crate::model::fem) motion: NodalMotion,
-    /// Loss of taut bars where the cable can touch nothing.
+    /// Material damping of taut bars, if the cable can touch nothing.
     pub(in crate::model::fem) loss: Loss,
     /// The outline of the robot, if there is one.
     pub(in crate::model::fem) outline: Option<MovingOutline>,
@@ -67,7 +67,7 @@ impl CableState {
         self.contacts.meets_nothing(&self.problem)
     }
 
-    /// Takes the friction of a balanced step over into the memory of the contacts.
+    /// Stores the friction of a balanced step in the memory of the contacts.
     pub(in crate::model::fem) fn commit_contacts(&mut self, unknowns: &Unknowns) {
         self.contacts.commit(&self.problem, &self.mesh, &unknowns.positions, &self.motion.positions, &unknowns.slides);
     }
@@ -86,7 +86,8 @@ impl CableState {
         }
     }
 
-    /// Points to which hands draw supports in a part of the path that is left.
+    /// Interpolates the points to which hands drag supports, for a fraction of the path that is
+    /// left.
     pub(in crate::model::fem) fn interpolate_targets(
         &self,
         hand_targets: &mut Vec<Option<Vec2>>,
@@ -109,14 +110,14 @@ impl CableState {
         Ok(())
     }
 
-    /// `h` (s), or less where a support lets go on the way.
+    /// `h` (s), or the shorter time until a support releases the cable.
     pub(in crate::model::fem) fn until_release(&self, h: f64) -> f64 {
         let now = self.motion.time;
         let releases = self.problem.supports.iter().filter_map(|s| s.release_between(now, now + h));
         releases.fold(h, |least, r| if r - now < least { r - now } else { least })
     }
 
-    /// The place of a node, in the words of the scene.
+    /// The place of a node, in terms of the scene.
     pub(in crate::model::fem) fn place(&self, node: usize) -> Box<Place> {
         let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
         let at = self.motion.positions.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
@@ -154,7 +155,7 @@ impl CableState {
         StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, input: &self.input }
     }
 
-    /// The load of a sliding node as the cable lies now.
+    /// The load of a sliding node at the present positions.
     pub(in crate::model::fem) fn load(&self, k: usize) -> Option<SlidingNodeLoad> {
         self.step_context().load_at(k, &self.motion.positions, None)
     }
@@ -164,7 +165,7 @@ impl CableState {
         self.meshing.even(self.problem.length)
     }
 
-    /// The barrier's stiffness follows the greatest tension: see [`ContactSet::adapt_stiffness`].
+    /// Adapts the barrier's stiffness to the greatest tension: see [`ContactSet::adapt_stiffness`].
     pub(in crate::model::fem) fn adapt_stiffness(&mut self, bounds: [f64; 2], ahead: f64) {
         if !self.meets_nothing() {
             let tension = self.mesh.greatest_tension(&self.motion.positions);
@@ -172,7 +173,7 @@ impl CableState {
         }
     }
 
-    /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
+    /// Adapts the slide at which friction is fully mobilised, for steps without inertia.
     pub(in crate::model::fem) fn adapt_slip(&mut self) {
         let weight = load_scale(&self.problem).0 * self.problem.length;
         let tension = self.mesh.greatest_tension(&self.motion.positions);
@@ -180,7 +181,7 @@ impl CableState {
         self.contacts.set_slip(slip_at_rest(&self.contacts.tuning, &self.problem, force));
     }
 
-    /// True if the cable is in touch with itself.
+    /// True if the cable has contact with itself.
     pub(in crate::model::fem) fn touches_itself(&self) -> bool {
         self.contacts
             .self_contacts
@@ -188,7 +189,7 @@ impl CableState {
             .is_some()
     }
 
-    /// Steps without inertia that keep every support's move below half an element.
+    /// Number of steps without inertia that keep every support's move below half an element.
     pub(in crate::model::fem) fn static_steps(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
         let even = self.even();
         let mut most: f64 = 0.0;

@@ -1,4 +1,4 @@
-//! The energy account sums up the work of each kind of force on a cable since it began to move.
+//! The energy account sums the work of each kind of force on a cable since it began to move.
 
 use crate::solution::{Energy, EnergyAccount};
 
@@ -18,11 +18,11 @@ pub(in crate::model::fem) struct Works {
 /// The account of energy since the cable began to move.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Energies {
-    /// The time at which it began, s; not a number: it has not.
+    /// The time at which it began, s; NaN if it has not begun.
     from: f64,
     /// The energy with which it began.
     began: Energy,
-    /// The energy of the cable as the account knows it.
+    /// The energy of the cable after the last entry.
     pub(in crate::model::fem) stored: Energy,
     works: Works,
     exchanged: f64,
@@ -36,8 +36,9 @@ impl Default for Energies {
 }
 
 impl Energies {
-    /// A step from the time `now` (s) begins; returns the energy that the cable has. Where it may
-    /// have `changed` since the last step, that came with a change of the mesh or of the state.
+    /// Begins a step from the time `now` (s); returns the energy of the cable. If it may have
+    /// `changed` since the last step, the difference is attributed to a change of the mesh or of
+    /// the state.
     pub(in crate::model::fem) fn begin_step(
         &mut self,
         now: f64,
@@ -53,13 +54,13 @@ impl Energies {
         self.stored
     }
 
-    /// A change of the mesh left the cable with this energy.
+    /// Records a change of the mesh that left the cable with this energy.
     pub(in crate::model::fem) fn edit(&mut self, stored: Energy) {
         self.works.edits += stored.total_j() - self.stored.total_j();
         self.stored = stored;
     }
 
-    /// Forces did so much work in a step that left the cable with this energy.
+    /// Adds the work of forces in a step that left the cable with this energy.
     pub(in crate::model::fem) fn add(&mut self, works: &Works, stored: Energy) {
         let mine = &mut self.works;
         mine.supports += works.supports;
@@ -72,8 +73,8 @@ impl Energies {
         self.stored = stored;
     }
 
-    /// The impulses of contacts that were over with the step did so much more work than the forces
-    /// that were counted: the integrator gave the cable that much less.
+    /// Corrects the work of contacts that ended with the step: their impulses did `more` work than
+    /// the counted forces, and the integrator gave the cable that much less.
     pub(in crate::model::fem) fn correct(&mut self, more: &Works) {
         self.works.impacts += more.impacts;
         self.works.friction += more.friction;
@@ -81,19 +82,19 @@ impl Energies {
         self.works.numerical -= more.impacts + more.friction + more.outlines;
     }
 
-    /// Plastic impacts left the cable with this kinetic energy, J.
+    /// Records plastic impacts that left the cable with this kinetic energy, J.
     pub(in crate::model::fem) fn land(&mut self, kinetic_j: f64) {
         self.works.impacts += kinetic_j - self.stored.kinetic_j;
         self.stored.kinetic_j = kinetic_j;
     }
 
-    /// A cable that falls asleep stands still.
+    /// Records that the cable falls asleep, and so stands still.
     pub(in crate::model::fem) fn fall_asleep(&mut self) {
         self.works.numerical -= self.stored.kinetic_j;
         self.stored.kinetic_j = 0.0;
     }
 
-    /// A step is over.
+    /// Ends a step.
     pub(in crate::model::fem) fn end_step(&mut self) {
         let account = self.account();
         let Energy { kinetic_j, gravity_j, stretch_j, bending_j } = account.gained;
@@ -124,7 +125,7 @@ impl Energies {
         }
     }
 
-    /// Up to the time `now` (s), where it has begun and all of it is a number.
+    /// The account up to the time `now` (s); None if it has not begun or is not finite.
     pub(in crate::model::fem) fn report(&self, now: f64) -> Option<EnergyAccount> {
         let account = EnergyAccount { over_s: now - self.from, ..self.account() };
         (account.over_s > 0.0 && account.is_finite()).then_some(account)

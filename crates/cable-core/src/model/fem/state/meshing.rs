@@ -1,4 +1,4 @@
-//! The division of a cable into bars, and the nodes of its supports and loads.
+//! This module holds the division of a cable into bars, and the nodes of its supports and loads.
 
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::ContactPair;
@@ -19,14 +19,15 @@ pub(in crate::model::fem) struct Meshing {
     pub(in crate::model::fem) support_node: Vec<Option<usize>>,
     /// Node of each point load, and its force.
     pub(in crate::model::fem) loads: Vec<(usize, Series)>,
-    /// True if the last step was found to touch nothing but its supports.
+    /// True if the cable touched nothing but its supports in the last step.
     pub(in crate::model::fem) was_contact_free: bool,
-    /// Room for the contacts among which corners are looked for.
+    /// Working memory for the contacts that are searched for corners.
     pub(in crate::model::fem) found: Vec<ContactPair>,
 }
 
 impl Meshing {
-    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
+    /// Shift of the Hessian (N/m): the weight of an element over a tenth of a metre, enough to keep
+    /// slack nodes from wandering.
     pub(in crate::model::fem) fn soft_shift(&self) -> f64 {
         self.bar_weight / 0.1
     }
@@ -36,7 +37,7 @@ impl Meshing {
         length / self.even_bars as f64
     }
 
-    /// True if a node is there for nothing but the mesh.
+    /// True if a node belongs to no support or load, so that it may be removed.
     pub(in crate::model::fem) fn removable(&self, mesh: &Mesh, k: usize) -> bool {
         k > 0
             && k + 1 < mesh.nodes()
@@ -45,7 +46,7 @@ impl Meshing {
             && self.loads.iter().all(|l| l.0 != k)
     }
 
-    /// Gives the nodes of supports and loads their new numbers: None is one that is gone.
+    /// Gives the nodes of supports and loads their new numbers; None stands for a removed node.
     pub(in crate::model::fem) fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
         for node in &mut self.support_node {
             *node = node.and_then(&change);
@@ -55,9 +56,9 @@ impl Meshing {
         }
     }
 
-    /// True if the bend of a cable of a length (m) under a tension (N) is longer than bars are:
-    /// then nodes that move with their material show it, and a sliding node, which carries no
-    /// moment, would leave it out.
+    /// True if the bend of a cable of a length (m) under a tension (N) is longer than its bars:
+    /// then material nodes resolve it, and a sliding node, which carries no moment, would neglect
+    /// it.
     pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, length: f64, tension: f64) -> bool {
         let (stiffness, even) = (mesh.bending_stiffness, length / self.even_bars as f64);
         let least = self.bar_weight + stiffness / (length * length);

@@ -1,5 +1,5 @@
-//! The motion of a cable holds its present positions and velocities, and those of the steps before
-//! that the time integrator looks back to.
+//! This module holds the motion of a cable: its present positions and velocities, and those of
+//! earlier steps that the time integrator uses.
 
 use crate::math::{RigidPose, Vec2};
 use crate::model::fem::state::energy_account::Energies;
@@ -7,27 +7,29 @@ use crate::model::fem::state::momentum_account::Account;
 use crate::model::hand::Hand;
 use crate::model::smoothed_target::SmoothedTarget;
 
-/// Part by which steps may differ and count as even.
+/// Relative difference of step lengths up to which steps count as even.
 const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 
-/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of
-/// velocities reach back. With less of a bar's snap in them chains whose bars rattle gain energy,
-/// half of mgL in a fold of 41 bars.
+/// Number of even steps with all bars in tension before the BDF3 term is used: its differences of
+/// velocities reach back so far. With fewer, the snap of a bar enters them, and chains whose bars
+/// rattle gain energy, half of mgL in a fold of 41 bars.
 const STEPS_BEFORE_BDF3: usize = 3;
 
-/// Positions, velocities and forces with memory at the present instant, and those of the steps
-/// before that the time integrator looks back to.
+/// Positions, velocities and forces with memory at the present instant, and those of earlier steps
+/// that the time integrator uses.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct NodalMotion {
-    /// Position of each node, m; of a sliding one its mark.
+    /// Position of each node, m; for a sliding node that of its mark.
     pub(in crate::model::fem) positions: Vec<Vec2>,
     /// Velocity of each node that moves with its material, m/s.
     pub(in crate::model::fem) velocities: Vec<Vec2>,
-    /// Position and velocity one step ago.
+    /// Position one step ago, m.
     pub(in crate::model::fem) previous_positions: Vec<Vec2>,
+    /// Velocity one step ago, m/s.
     pub(in crate::model::fem) previous_velocities: Vec<Vec2>,
-    /// Position and velocity two steps ago, where the integrator looks so far back.
+    /// Position two steps ago, if the integrator uses it, m.
     pub(in crate::model::fem) older_positions: Vec<Vec2>,
+    /// Velocity two steps ago, if the integrator uses it, m/s.
     pub(in crate::model::fem) older_velocities: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(in crate::model::fem) previous_arc_length: Vec<f64>,
@@ -39,7 +41,8 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) previous_slide_rates: Vec<f64>,
     /// Last step, s; 0 = no history, the next step is implicit Euler.
     pub(in crate::model::fem) step_before: f64,
-    /// Steps as long as the last, one after the other, after each of which all bars pulled.
+    /// Number of successive steps as long as the last, after each of which all bars were in
+    /// tension.
     pub(in crate::model::fem) even_steps: usize,
     pub(in crate::model::fem) followers: Vec<Option<SmoothedTarget>>,
     /// Hands that hold supports by springs.
@@ -54,7 +57,7 @@ pub(in crate::model::fem) struct NodalMotion {
 }
 
 impl NodalMotion {
-    /// Becomes a copy without new memory where there is room.
+    /// Becomes a copy of `other`, reusing its memory where possible.
     pub(in crate::model::fem) fn copy_from(&mut self, other: &Self) {
         let Self {
             positions: x,
@@ -88,8 +91,7 @@ impl NodalMotion {
         (self.account, self.energies) = (other.account, other.energies);
     }
 
-    /// Forgets the steps before the present instant; the arc length of each node is `arc_length`
-    /// (m).
+    /// Forgets the earlier steps; the arc length of each node is `arc_length` (m).
     pub(in crate::model::fem) fn forget(&mut self, arc_length: &[f64]) {
         self.previous_positions.clone_from(&self.positions);
         self.previous_velocities.clone_from(&self.velocities);
@@ -101,7 +103,7 @@ impl NodalMotion {
         (self.account, self.energies) = (Account::unknown(), Energies::default());
     }
 
-    /// True if masses accelerate: it moves, or came here in a step with inertia.
+    /// True if inertia counts: the cable moves, or its last step had inertia.
     pub(in crate::model::fem) fn inertia_counts(&self) -> bool {
         self.step_before > 0.0 || self.velocities.iter().any(|v| v.norm_squared() > 0.0)
     }
@@ -111,8 +113,8 @@ impl NodalMotion {
         (h - self.step_before).abs() <= EVEN_STEP_TOLERANCE * h
     }
 
-    /// Counts a step of `h` (s). Where contact may change what was, or a bar did not pull, it is
-    /// not `smooth`, and history is not looked for so far back.
+    /// Counts a step of `h` (s). If contact may have changed the motion, or a bar was not in
+    /// tension, the step is not `smooth`, and the integrator does not look so far back.
     pub(in crate::model::fem) fn note_step(&mut self, h: f64, smooth: bool) {
         let count = if self.is_even(h) { self.even_steps } else { 0 };
         self.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
@@ -124,7 +126,7 @@ impl NodalMotion {
         self.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h)
     }
 
-    /// Puts a node in before node `k`, at an arc length (m).
+    /// Inserts a node before node `k`, at an arc length (m).
     pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, node: NodeMotion) {
         let half = 0.5 * self.step_before;
         self.positions.insert(k, node.position);
@@ -138,7 +140,7 @@ impl NodalMotion {
         self.previous_arc_length.insert(k, arc_length - slid);
     }
 
-    /// Takes node `k` out.
+    /// Removes node `k`.
     pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
         self.positions.remove(k);
         self.velocities.remove(k);

@@ -1,4 +1,4 @@
-//! The momentum of a cable, and what a change of its mesh does to that.
+//! This module computes the momentum of a cable, and the change of it by a change of the mesh.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, SlideOver};
@@ -8,7 +8,7 @@ use crate::model::fem::state::momentum_account::{CONTACTS, SUPPORTS, kind_of};
 use crate::model::fem::state::motion::NodalMotion;
 use crate::problem::Problem;
 
-/// The masses of a cable and how they move.
+/// The masses of a cable and their motion.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct MovingMass<'a> {
     problem: &'a Problem,
@@ -18,19 +18,19 @@ pub(in crate::model::fem) struct MovingMass<'a> {
 }
 
 impl<'a> MovingMass<'a> {
-    /// Those of a cable.
+    /// The moving masses of a cable.
     pub(in crate::model::fem) fn of(cable: &'a CableState) -> Self {
         let CableState { problem, mesh, meshing, motion, .. } = cable;
         Self { problem, mesh, meshing, motion }
     }
 
-    /// Momentum of cable and lumps, kg m/s.
+    /// Momentum of cable and point masses, kg m/s.
     pub(in crate::model::fem) fn momentum(&self) -> Vec2 {
         let [pulleys, rounds] = self.sliding_momentum();
         self.moved_by(&self.motion.velocities) + pulleys + rounds
     }
 
-    /// The same of the nodes that move with their material, at velocities `v` (m/s).
+    /// Momentum of the material nodes at velocities `v` (m/s), kg m/s.
     pub(in crate::model::fem) fn moved_by(&self, v: &[Vec2]) -> Vec2 {
         let mesh = self.mesh;
         let mut sum = Vec2::zeros();
@@ -48,18 +48,18 @@ impl<'a> MovingMass<'a> {
         sum
     }
 
-    /// The same of the material at sliding nodes: that on pulleys, and that on rounds of obstacles.
+    /// Momentum of the material at sliding nodes, kg m/s: on pulleys, and on rounds of obstacles.
     pub(in crate::model::fem) fn sliding_momentum(&self) -> [Vec2; 2] {
         [SUPPORTS, CONTACTS]
             .map(|kind| self.slid_by(&self.motion.slide_rates, |slide_over| kind_of(slide_over) == kind))
     }
 
-    /// The same of all of it, at rates `w` (m/s) of the arc length.
+    /// Momentum of all material at sliding nodes at rates `w` (m/s) of the arc length, kg m/s.
     pub(in crate::model::fem) fn sliding_momentum_at(&self, w: &[f64]) -> Vec2 {
         self.slid_by(w, |_| true)
     }
 
-    /// Half of it runs each way.
+    /// Half of the material of a sliding node moves along each of its bars.
     fn slid_by(&self, w: &[f64], counts: impl Fn(SlideOver) -> bool) -> Vec2 {
         let mut sum = Vec2::zeros();
         if self.meshing.never_slides {
@@ -79,8 +79,8 @@ impl<'a> MovingMass<'a> {
     }
 }
 
-/// Makes a change of the mesh by which a node begins to slide over something or ends that: what the
-/// change does to the momentum counts as the impulse of that thing.
+/// Makes a change of the mesh by which a node begins or ends to slide over a round, and counts the
+/// change of momentum as an impulse of that round.
 pub(in crate::model::fem) fn attribute_to<R>(
     cable: &mut CableState,
     slide_over: SlideOver,

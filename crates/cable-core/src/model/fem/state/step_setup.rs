@@ -1,4 +1,4 @@
-//! The setup of a step collects forces, targets of supports, and wheels at an instant.
+//! This module sets up a step: forces, targets of supports, and wheels at an instant.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Clamp, SlideOver};
@@ -9,19 +9,19 @@ use crate::model::fem::system::contact::floor_friction;
 use crate::model::smoothed_target::MAX_SPEED;
 use crate::scene::SupportKind;
 
-/// Sets the input anew after a change of the mesh, for what is read off it between steps.
+/// Renews the input after a change of the mesh, for code that reads it between steps.
 pub(in crate::model::fem) fn renew_input(cable: &mut CableState) {
     prepare_input(cable, cable.motion.time, None);
 }
 
-/// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go
-/// where `dragged` says.
+/// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go to the
+/// points `dragged` (m).
 pub(in crate::model::fem) fn prepare_input(cable: &mut CableState, to: f64, dragged: Option<&[Option<Vec2>]>) {
     prepare_step(cable, [to, to], dragged);
 }
 
-/// The same for a step from one time to another (s): a support that holds the cable at its start
-/// holds it to its end.
+/// Sets up a step from one time to another (s): a support that holds the cable at its start holds
+/// it to its end.
 pub(in crate::model::fem) fn prepare_step(
     cable: &mut CableState,
     [from, to]: [f64; 2],
@@ -60,8 +60,8 @@ fn set_forces(cable: &mut CableState, to: f64) {
     }
 }
 
-/// Sets the loads and the target of the node of a support other than a pulley. A dragged one goes
-/// where its hand is, or after it.
+/// Sets the loads and the target of the node of a support other than a pulley. A dragged one
+/// follows its hand.
 fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dragged: Option<Vec2>) {
     let (problem, mesh, input) = (&cable.problem, &mut cable.mesh, &mut cable.input);
     let gravity = problem.gravity();
@@ -79,12 +79,12 @@ fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dra
     let Some((at, _)) = s.place_at(to).filter(|_| s.holds_from(from)) else { return };
     let follower = cable.motion.followers[support];
     let at = follower.map_or(dragged.unwrap_or(at), |f| f.position());
-    // A support that was stopped and is free again catches up no faster than this beyond its own
-    // motion, which is followed exactly.
+    // A support that was stopped and is free again follows its own motion exactly, and catches up
+    // at no more than this speed beyond it.
     let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
     let most = if follower.is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
     let at = if to > from { no_farther_than(cable.motion.positions[node], at, most) } else { at };
-    // A support that a hand holds by a spring is a node that moves.
+    // A support that a hand holds by a spring is a free node.
     if cable.motion.hands[support].is_none() {
         mesh.held[node] = true;
         input.supports.target[node] = stopped_by_obstacles(problem, mesh, cable.motion.positions[node], at);
@@ -115,7 +115,7 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
     }
 }
 
-/// Sets the input to that of a step without inertia, damping and resistance.
+/// Clears inertia, damping and resistance from the input.
 fn clear_inertia_and_loss(cable: &mut CableState) {
     let (mesh, input) = (&cable.mesh, &mut cable.input);
     let n = mesh.nodes();
@@ -140,7 +140,7 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
     input.inertial.momentum_flux.resize(n, 0.0);
 }
 
-/// Sets the greatest friction of a rough floor, and the part of the weight of bars that rests on
+/// Sets the greatest friction of a rough floor, and the fraction of the bars' weight that rests on
 /// the rounds beside them.
 fn set_weight_on_rounds(cable: &mut CableState) {
     let x = std::mem::take(&mut cable.motion.positions);

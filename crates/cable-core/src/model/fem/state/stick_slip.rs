@@ -1,36 +1,36 @@
-//! Each sliding node sticks or slips: this module compares the friction that a solve assumed with
-//! the law at what it found.
+//! Each sliding node sticks or slips. This module compares the friction that a solve assumed with
+//! the law of friction at its solution.
 
 use crate::math::larger;
-use crate::model::fem::mesh::SlidingNode;
+use crate::model::fem::mesh::{SlidingNode, SlidingNodeLoad, StickSlip};
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::Unknowns;
 use crate::model::fem::system::contact::floor_friction;
 
-/// Factors of sliding nodes count as found when they change by less than this.
+/// Relative change of the factors of sliding nodes below which they have converged.
 const SCALE_TOLERANCE: f64 = 1e-9;
 
-/// Forces at a sliding node within this part of each other are equal: tensions of bars are known to
-/// the residual only.
+/// Relative difference below which two forces at a sliding node are equal: tensions of bars are
+/// known only to the residual.
 const EVEN_FORCE: f64 = 1e-7;
 
-/// The difference between the friction that sliding nodes have at unknowns and the friction with
-/// which these were found.
+/// The difference between the friction of sliding nodes at a solution and the friction assumed for
+/// it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) struct StickSlipChanges {
-    /// Nodes that hold where they should slip, or slip where they should hold.
+    /// Number of nodes that stick where they should slip, or slip where they should stick.
     pub(in crate::model::fem) wrong: usize,
-    /// True if what slips has the friction that belongs to its turn, within the tolerance.
+    /// True if every slipping node has the friction of its turn, within the tolerance.
     pub(in crate::model::fem) lawful: bool,
-    /// True if nothing changed by more than rounding.
+    /// True if nothing changed by more than round-off.
     pub(in crate::model::fem) same: bool,
 }
 
 impl StickSlipChanges {
-    /// No node slides.
+    /// No sliding node needs a change.
     pub(in crate::model::fem) const NONE: Self = Self { wrong: 0, lawful: true, same: true };
 
-    /// True if the law holds at every sliding node.
+    /// True if the law of friction holds at every sliding node.
     pub(in crate::model::fem) fn are_lawful(self) -> bool {
         self.wrong == 0 && self.lawful
     }
@@ -39,27 +39,27 @@ impl StickSlipChanges {
 /// The sliding nodes whose friction a round may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum ChangedNodes {
-    /// All whose friction breaks its law.
+    /// All nodes whose friction violates the law.
     All,
-    /// The first of them.
+    /// The first of these nodes.
     One,
 }
 
-/// Slope of the exponent that a node's turn asks for by the one with which it was found, above
-/// which it is not followed. Smaller: rounds creep; larger: far guesses where the two nearly agree.
+/// Greatest slope dE/de used by the secant, with E the exponent of a node's turn and e the exponent
+/// that was assumed. Smaller: rounds creep; larger: far guesses where the two nearly agree.
 const MAX_EXPONENT_SLOPE: f64 = 0.9;
 
-/// The exponents with which sliding nodes were tried last, and those that their turns asked for
-/// then.
+/// The exponents μφ that were last assumed at sliding nodes, and those that their turns then
+/// required.
 ///
-/// The next guess is the secant's (J. F. Steffensen, "Remarks on iteration", Skandinavisk
-/// Aktuarietidskrift 16, 1933, node by node): nearly slack bars hang from a round, and turn over it
-/// by the more the less they pull, so that the exponent itself goes to and fro.
+/// The next guess is that of the secant (J. F. Steffensen, "Remarks on iteration", Skandinavisk
+/// Aktuarietidskrift 16, 1933, node by node). Nearly slack bars hang from a round, and turn over it
+/// by more the smaller their tension is, so plain substitution alternates.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TriedExponents(Vec<Option<[f64; 2]>>);
 
 impl TriedExponents {
-    /// The next exponent of node `k`, which asked for `asked` when tried with `used`.
+    /// The next exponent of node `k`, which required `asked` when it was solved with `used`.
     fn next(&mut self, k: usize, used: f64, asked: f64) -> f64 {
         if self.0.len() <= k {
             self.0.resize(k + 1, None);
@@ -74,11 +74,41 @@ impl TriedExponents {
     }
 }
 
-/// Sets the friction of every sliding node to what its law asks for at unknowns, and returns how
-/// that differs from the friction with which the unknowns were found. `tried` has what was tried in
-/// the rounds of a step before; without it turns change half of the way where one node changes.
+/// The friction that the law requires of a sliding node.
+struct SlipLaw {
+    /// μφ with the turn at the solution.
+    exponent: f64,
+    stick_slip: StickSlip,
+    /// True if the friction of the solution is that of its turn, within the tolerance.
+    lawful: bool,
+}
+
+/// The law of friction at sliding node `k` under a load, after a slide (m) in this step.
+fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNodeLoad, slid: f64) -> SlipLaw {
+    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k]);
+    // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
+    // cable meets the round is a result of the step: when it was tested, friction jumped on and
+    // off, and no state was lawful.)
+    let turn = load.turn_with_inertia(inertia);
+    let momentum_flux = cable.input.inertial.momentum_flux[k];
+    let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
+    let exponent = if presses { node.friction * turn } else { 0.0 };
+    let pulls = load.pull[0].abs() + load.pull[1].abs();
+    let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
+    let stiffness = cable.mesh.axial_stiffness;
+    let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+    let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
+    // The sense of slip follows from the turn, not from a guess of it.
+    let by_turn = SlidingNode { exponent, ..*node };
+    let stick_slip = load.stick_slip(&by_turn, slid, [inertia, momentum_flux, slack], stiffness);
+    SlipLaw { exponent, stick_slip, lawful }
+}
+
+/// Sets the friction of every sliding node by the law of friction at `unknowns`, and returns the
+/// difference from the friction with which they were found. `tried` holds the exponents of earlier
+/// rounds of the step; without it, exponents change by half if one node changes at a time.
 ///
-/// A node that slid the wrong way until its friction was seen to be wrong has not slid at all.
+/// A node that slid the wrong way because of wrong friction counts as not having slid.
 pub(in crate::model::fem) fn update_stick_slip(
     cable: &mut CableState,
     unknowns: &mut Unknowns,
@@ -110,24 +140,8 @@ pub(in crate::model::fem) fn update_stick_slip(
             continue;
         }
         let mut next = node;
-        let inertia =
-            cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
-        // Friction goes to nothing with the tension that it raises, and a bar that would push has
-        // none. (The pull with which the cable comes is a result of the step: with a test of it
-        // friction came and went in one jump, and no state was lawful.)
-        let turn = load.turn_with_inertia(inertia);
-        let momentum_flux = cable.input.inertial.momentum_flux[k];
-        let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
-        let exponent = if presses { node.friction * turn } else { 0.0 };
-        let pulls = load.pull[0].abs() + load.pull[1].abs();
-        let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
-        let stiffness = cable.mesh.axial_stiffness;
-        let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
-        let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
+        let SlipLaw { exponent, stick_slip, lawful } = slip_law(cable, k, &node, &load, unknowns.slides[k]);
         changes.lawful &= lawful;
-        // Which way it slips, if at all, follows from its turn, not from a guess of it.
-        let by_turn = SlidingNode { exponent, ..node };
-        let stick_slip = load.stick_slip(&by_turn, unknowns.slides[k], [inertia, momentum_flux, slack], stiffness);
         next.exponent = match &mut tried {
             Some(tried) if !lawful => tried.next(k, node.exponent, exponent),
             None if one => 0.5 * (node.exponent + exponent),
@@ -139,7 +153,7 @@ pub(in crate::model::fem) fn update_stick_slip(
                 next.stick_slip = stick_slip;
             }
         }
-        next.factor = load.factor(next.stick_slip, next.exponent, stiffness);
+        next.factor = load.factor(next.stick_slip, next.exponent, cable.mesh.axial_stiffness);
         let floor = floor_friction::reaches(&cable.mesh, k, &unknowns.positions, Some(&unknowns.slides));
         next.floor_factor = floor_friction::factor(floor, load.ratio(next.stick_slip, next.exponent));
         if next.sticks() && !node.sticks() {
@@ -157,7 +171,7 @@ pub(in crate::model::fem) fn update_stick_slip(
 mod tests {
     use super::*;
 
-    /// Turns that fall by 0.77 and by 0.9 of what the exponent grows: substitution goes to and fro.
+    /// The turns fall by 0.77 and by 0.9 of the growth of the exponent, so substitution alternates.
     #[test]
     fn issue_016_exponents_that_go_to_and_fro_are_found_in_a_few_rounds() {
         for slope in [-0.77, -0.9, 0.6] {

@@ -1,12 +1,12 @@
-//! The energy that a cable stores, as its nodes and bars have it: lumped masses and what slides
-//! included.
+//! This module computes the energy that the nodes and bars of a cable store, including lumped
+//! masses and sliding material.
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::{Weight, bar_energy, bends_energy};
 use crate::solution::Energy;
 
-/// All of it.
+/// The whole stored energy.
 pub(in crate::model::fem) fn stored_energy(cable: &CableState) -> Energy {
     let (problem, mesh, x) = (&cable.problem, &cable.mesh, &cable.motion.positions);
     let (mut moment, mut stretch_j) = (Vec2::zeros(), 0.0);
@@ -24,13 +24,13 @@ pub(in crate::model::fem) fn stored_energy(cable: &CableState) -> Energy {
     Energy { kinetic_j, gravity_j: gravity_energy(cable, moment, x), stretch_j, bending_j }
 }
 
-/// That of bending at positions `x` (m), J.
+/// Bending energy at positions `x` (m), J.
 pub(in crate::model::fem) fn bending_energy(cable: &CableState, x: &[Vec2]) -> f64 {
     if cable.mesh.is_flexible() { 0.0 } else { bends_energy(&cable.mesh, x) }
 }
 
-/// That of height at positions `x` (m), where the bars have this sum of length times centre (m²),
-/// J.
+/// Energy of height at positions `x` (m), J; `bars` is the sum of length times centre of the bars
+/// (m²).
 pub(in crate::model::fem) fn gravity_energy(cable: &CableState, bars: Vec2, x: &[Vec2]) -> f64 {
     let problem = &cable.problem;
     let moment = cable.mesh.spread.more.iter().zip(x).fold(bars, |sum, (more, x)| sum + x * *more);
@@ -43,8 +43,8 @@ pub(in crate::model::fem) fn gravity_energy(cable: &CableState, bars: Vec2, x: &
     energy
 }
 
-/// That of motion after a step whose rates were `rate` (1/s) times differences, by the inertia of
-/// the step on whose mesh nothing slides, J.
+/// Kinetic energy after a step with velocities `rate` (1/s) times differences, J, from the inertia
+/// of the step; for meshes without sliding nodes.
 pub(in crate::model::fem) fn kinetic_energy_of_step(cable: &CableState, rate: f64) -> f64 {
     let (input, v) = (&cable.input, &cable.motion.velocities);
     let mut sum: f64 = input.inertial.stiffness.iter().zip(v).map(|(inertia, v)| inertia * v.norm_squared()).sum();
@@ -53,14 +53,14 @@ pub(in crate::model::fem) fn kinetic_energy_of_step(cable: &CableState, rate: f6
             sum -= coupling * (b - a).norm_squared();
         }
     }
-    // The springs of hands are a part of that inertia.
+    // The springs of hands are included in that inertia.
     for &(k, stiffness, _) in &input.inertial.hands {
         sum -= stiffness * v[k].norm_squared();
     }
     0.5 * sum / (rate * rate)
 }
 
-/// That of motion, J.
+/// Kinetic energy, J.
 pub(in crate::model::fem) fn kinetic_energy(cable: &CableState) -> f64 {
     let (mesh, v) = (&cable.mesh, &cable.motion.velocities);
     let mut sum = 0.0;

@@ -1,30 +1,29 @@
-//! A support that is driven against an obstacle stops in front of it, and one that stood on it
-//! leaves the cable there when it lets go.
+//! This module stops a support that is driven against an obstacle, and leaves the cable on the
+//! surface when a support that stood there releases it.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES};
 use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 
-/// Rounding of a gap, m.
+/// Round-off of a gap, m.
 const GAP_ROUNDING: f64 = 1e-9;
 
-/// The target `to` if it is at most `most` (m) away, else the place so far on the way to it.
+/// The target `to` if it is at most `most` (m) away, else the point at that distance on the way to
+/// it.
 pub(super) fn no_farther_than(from: Vec2, to: Vec2, most: f64) -> Vec2 {
     let (way, distance) = (to - from, (to - from).norm());
     if distance > most { from + way * (most / distance) } else { to }
 }
 
-/// The place that a held node can reach on its way to a target: an obstacle in the way stops it
-/// (m).
+/// The point that a held node can reach on its way to a target before an obstacle stops it, m.
 pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh, from: Vec2, to: Vec2) -> Vec2 {
     if problem.world.is_empty() || from == to {
         return to;
     }
     let least_gap = mesh.tuning.step.support_gap_reaches * mesh.tuning.contact.reach_m;
     let gap = |p: Vec2| problem.world.signed_gap(p, least_gap).map_or(least_gap, |g| g.gap_m);
-    // A support that the scene puts on a surface may stay on it; none may come nearer than it
-    // stands.
+    // A support that the scene puts on a surface may stay there, but not come nearer.
     let least = gap(from) - GAP_ROUNDING;
     let free = problem.world.free_fraction([from, from], [to, to], mesh.tuning.step.kept_support_gap_fraction);
     let mut part = if free >= 1.0 { 1.0 } else { free };
@@ -38,8 +37,9 @@ pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh
     from
 }
 
-/// Places the nodes of supports that let go between two times (s) on the surfaces on which they
-/// stood. A node that is held has no contact and may stand nearer than any force can press it.
+/// Places the nodes of supports that release the cable between two times (s) on the surfaces on
+/// which they stood. A held node has no contact and may be nearer to a surface than any force could
+/// press it.
 pub(in crate::model::fem) fn lay_down_released(cable: &mut CableState, [from, to]: [f64; 2]) {
     let clear = PUSHED_OUT_REACHES * cable.contacts.barrier.reach;
     for (support, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {

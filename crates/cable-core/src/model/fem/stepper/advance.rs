@@ -1,4 +1,4 @@
-//! An advance is divided into inner steps, with inertia or without, and reported.
+//! This module divides an `advance` into inner steps, with or without inertia, and reports it.
 
 use super::{StepRequest, Stepper};
 use crate::error::SolveError;
@@ -21,7 +21,7 @@ impl Stepper {
         self.advance_gauged(dt_s, inertia, dragged, &mut TensionGauge::off())
     }
 
-    /// As [`Self::advance`]; every inner step with inertia passes its tension to `tension_gauge`.
+    /// As [`Self::advance`]; every inner step with inertia passes its tensions to `tension_gauge`.
     ///
     /// # Errors
     /// As `Mechanics::advance`.
@@ -78,7 +78,7 @@ impl Stepper {
         Ok(self.report(total, halved, h))
     }
 
-    /// Begins an advance of `dt_s` (s); returns the time at which it ends, s.
+    /// Begins an `advance` of `dt_s` (s); returns its end time, s.
     fn begin_advance(&mut self, dt_s: f64, inertia: Inertia) -> f64 {
         self.cable.answers.held_back.clear();
         let end = self.cable.motion.time + dt_s;
@@ -92,7 +92,7 @@ impl Stepper {
                     self.cable.motion.account.begun(self.cable.motion.time, || MovingMass::of(&self.cable).momentum());
                 self.cable.motion.account = begun;
             }
-            // Without inertia supports are where they are drawn to.
+            // Without inertia supports are at the points to which they are dragged.
             Inertia::QuasiStatic => {
                 self.cable.motion.hands.fill(None);
                 self.cable.motion.energies = Energies::default();
@@ -101,7 +101,7 @@ impl Stepper {
         end
     }
 
-    /// Gives the gauge the tensions at the start of an advance, if it asks for them.
+    /// Gives the gauge the tensions at the start of an `advance` if it needs them.
     fn begin_gauge(&mut self, gauge: &mut TensionGauge) {
         if gauge.asks(self.cable.motion.time) {
             results::gauge_tension(&mut self.cable);
@@ -112,8 +112,8 @@ impl Stepper {
         }
     }
 
-    /// Ends an advance of `dt_s` (s) with inertia: chooses the size of the next steps, and lets a
-    /// cable that has come to rest fall asleep.
+    /// Ends an `advance` of `dt_s` (s) with inertia: chooses the size of the next steps, and puts a
+    /// cable at rest to sleep.
     fn end_motion(&mut self, dt_s: f64) {
         self.cable.motion.account.ends_at(self.cable.motion.time);
         self.time_control.step_size.choose(
@@ -132,7 +132,7 @@ impl Stepper {
         }
     }
 
-    /// The report of an advance or a search for the equilibrium.
+    /// The report of an `advance` or of a search for the equilibrium.
     pub(in crate::model::fem) fn report(&self, done: Converged, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
         let blocked = self.cable.answers.held_back.iter().filter_map(|&support| self.blocked_warning(support));

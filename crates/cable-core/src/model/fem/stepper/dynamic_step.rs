@@ -1,4 +1,4 @@
-//! A step with inertia: predicted, minimised, accepted, and accounted for.
+//! This module takes a step with inertia: it predicts, minimises, accepts and accounts for it.
 
 use super::Stepper;
 use crate::math::Vec2;
@@ -14,7 +14,7 @@ use crate::model::fem::time::{
 use crate::solution::Energy;
 
 impl Stepper {
-    /// One step of `h` (s) with inertia.
+    /// Takes one step of `h` (s) with inertia.
     pub(in crate::model::fem) fn dynamic_step(
         &mut self,
         h: f64,
@@ -31,8 +31,8 @@ impl Stepper {
 
     /// Predicts the unknowns of a step of `h` (s) and minimises its incremental potential.
     ///
-    /// # Errors
-    /// Why it has no minimum, or `CornerPulls` where a corner would have to pull.
+    /// # Errors The reason why no minimum was found, or `CornerPulls` if a corner would have to
+    /// pull.
     fn minimise_step(&mut self, h: f64) -> Result<(Unknowns, Converged), Failure> {
         let (mut unknowns, exact) =
             (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
@@ -53,8 +53,8 @@ impl Stepper {
         Ok((unknowns, done))
     }
 
-    /// Makes the unknowns of a step of `h` (s) the state of the cable, and accounts for momentum
-    /// and energy; `before` is the energy at its start, where that is accounted for.
+    /// Accepts the unknowns of a step of `h` (s) as the state of the cable, and accounts for
+    /// momentum and energy; `before` is the energy at its start if an account is kept.
     fn accept_step(&mut self, unknowns: Unknowns, weights: Weights, h: f64, before: Option<Energy>) {
         hands::report_held_back(&mut self.cable, &unknowns);
         hands::keep_forces(&mut self.cable, &unknowns);
@@ -101,10 +101,9 @@ impl Stepper {
         self.cable.contacts.outline_motion = None;
     }
 
-    /// Adapts the mesh to where a step led, of a cable whose material can slide over something.
+    /// Adapts the mesh after a step of a cable that can have sliding nodes.
     ///
-    /// # Errors
-    /// `CornerCrossed` where the changed mesh runs through an obstacle.
+    /// # Errors `CornerCrossed` if the changed mesh runs through an obstacle.
     fn remesh_after_step(&mut self, residual: f64) -> Result<(), Failure> {
         if self.cable.meshing.never_slides {
             return Ok(());
@@ -123,7 +122,7 @@ impl Stepper {
         }
     }
 
-    /// Moves the cable to the unknowns of a step, and its history on by that step.
+    /// Moves the cable to the unknowns of a step, and its history by that step.
     fn move_to(&mut self, unknowns: &Unknowns, weights: Weights) {
         let Weights { now, past, rate: a, .. } = weights;
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
@@ -144,7 +143,7 @@ impl Stepper {
         }
     }
 
-    /// Begins a step of the energy account; returns the energy that the cable has.
+    /// Begins a step of the energy account; returns the energy of the cable.
     fn begin_energy_account(&mut self) -> Energy {
         let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
         let mut energies = self.cable.motion.energies;

@@ -1,8 +1,9 @@
-//! A step that fails is taken again from its start as two of half the size.
+//! This module takes a failed step again from its start, as two steps of half the size.
 //!
-//! Before a step is halved, what made it fail may be mended: a corner that would have to pull is
-//! let go, and the outline of a robot waits for a cable that cannot get out of its way. Without
-//! inertia a step that was halved often enough relaxes the cable to its equilibrium instead.
+//! Before a step is halved, the cause of its failure may be removed: a corner that would have to
+//! pull loses its sliding node, and the outline of a robot waits for a cable that cannot get out of
+//! its way. A step without inertia that was halved often enough relaxes the cable to its
+//! equilibrium instead.
 
 use crate::error::SolveError;
 use crate::model::fem::remesh::settle_down;
@@ -12,19 +13,19 @@ use crate::model::fem::system::{Converged, Failure, FailureCause};
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Model};
 
-/// Part of a step below which nothing of it is left: rounding.
+/// Remaining fraction of a step below which it is complete (round-off).
 const DONE_FRACTION: f64 = 1e-9;
 
-/// The progress of a step, s.
+/// The progress of a step; times are in s.
 struct Progress {
     /// The whole step.
     whole: f64,
     left: f64,
     /// Size of the next piece.
     size: f64,
-    /// Times it was halved.
+    /// Number of times that it was halved.
     depth: usize,
-    /// Time that was left when a motion without history began.
+    /// Remaining time when a motion without history began.
     began: Option<f64>,
 }
 
@@ -36,8 +37,8 @@ impl Progress {
         }
     }
 
-    /// Notes a piece that is done; returns true if it was the last. The pieces after the first one
-    /// of a motion are each as long as all before.
+    /// Records a completed piece; returns true if it was the last. After the first piece of a
+    /// motion, each piece is as long as all before it.
     fn finish(&mut self, piece: f64) -> bool {
         self.left -= piece;
         if self.left <= DONE_FRACTION * self.whole {
@@ -55,7 +56,7 @@ fn outline_waits(cable: &mut CableState) -> bool {
 }
 
 impl Stepper {
-    /// One step of `h` (s), halved where it fails; `halved` counts how often.
+    /// Takes a step of `h` (s), halved if it fails; `halved` counts the halvings.
     pub(super) fn step_in_halves(
         &mut self,
         h: f64,
@@ -86,8 +87,8 @@ impl Stepper {
                         gauge.note(to, &self.cable.answers.gauged.arc_length, |k| self.cable.answers.gauged.tension[k]);
                         gauge.keep();
                     }
-                    // Forces jump where a support lets go: with the history from before, BDF2 would
-                    // feel them half a step late.
+                    // Forces jump when a support releases the cable: with the history from before,
+                    // BDF2 would take them into account half a step late.
                     if self.cable.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
                         self.cable.motion.step_before = 0.0;
                         lay_down_released(&mut self.cable, [start, to]);
@@ -118,8 +119,8 @@ impl Stepper {
         motion.positions.iter().chain(&motion.velocities).all(|p| p.iter().all(|c| c.is_finite()))
     }
 
-    /// A piece (s) of a step without inertia. One that was halved `depth` times relaxes the cable,
-    /// unless a corner would have to pull.
+    /// Takes a piece (s) of a step without inertia. After enough halvings (`depth`) it relaxes the
+    /// cable, unless a corner would have to pull.
     fn static_step(&mut self, piece: f64, request: StepRequest<'_>, depth: usize) -> Result<Converged, Failure> {
         let start = self.cable.motion.time;
         let to = start + piece;
@@ -139,15 +140,14 @@ impl Stepper {
         tried
     }
 
-    /// Mends what made a step fail, where that can be done without halving it; returns whether it
-    /// was.
+    /// Removes the cause of a failure if that is possible without halving; returns whether it was.
     fn recover(&mut self, failure: Failure, progress: &mut Progress, inertia: Inertia) -> bool {
         if failure.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, failure.node) {
             renew_input(&mut self.cable);
             return true;
         }
-        // A cable that cannot get out of the way of the robot holds it. One that finds no balance
-        // without inertia may slide on to one first: a robot was stopped by what lay loose.
+        // A cable that cannot get out of the robot's way stops it. Without inertia a cable that
+        // finds no equilibrium may slide to one first: loose cable stopped a robot.
         let tuning = &self.cable.mesh.tuning;
         let tried = match inertia {
             Inertia::Dynamic => tuning.step.halvings_before_robot_waits,
@@ -162,17 +162,16 @@ impl Stepper {
 
     /// Halves the next piece, with a stiffer barrier.
     ///
-    /// # Errors
-    /// The failure, where it was halved often enough.
+    /// # Errors The failure, if the piece was halved often enough.
     fn halve(&mut self, failure: Failure, progress: &mut Progress, inertia: Inertia) -> Result<(), SolveError> {
-        // The barrier may be too soft for what this step does.
+        // The barrier may be too soft for this step.
         self.cable.adapt_stiffness([2.0, 1.0], self.cable.mesh.tuning.contact.retry_stiffening);
         progress.depth += 1;
         progress.size *= 0.5;
         if inertia == Inertia::Dynamic {
             self.time_control.step_size.note_refused(&self.cable.mesh.tuning.step, progress.size);
         } else if progress.depth == self.cable.mesh.tuning.equilibrium.halvings_before_relaxation {
-            // The cable is relaxed: over all that is left, at once.
+            // The cable is relaxed over all the remaining time at once.
             progress.size = progress.left;
         }
         self.cable.motion.step_before = 0.0;

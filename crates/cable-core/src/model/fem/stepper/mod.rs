@@ -1,4 +1,4 @@
-//! The stepper takes the implicit steps of a meshed cable: with inertia, without, and those of a
+//! The stepper takes the implicit steps of a meshed cable: with inertia, without it, and those of a
 //! relaxation to its equilibrium.
 //!
 //! | room | content |
@@ -30,18 +30,18 @@ use crate::model::{Inertia, Settings};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 
-/// The request that the steps of an advance have in common.
+/// The request that all steps of an `advance` share.
 #[derive(Clone, Copy, Debug)]
 struct StepRequest<'a> {
-    /// End of the advance, s: without inertia hands draw supports evenly to where they are to be
-    /// then.
+    /// End of the `advance`, s: without inertia hands drag supports evenly to their positions at
+    /// that time.
     due: f64,
     inertia: Inertia,
     /// The places to which supports are dragged, m.
     dragged: &'a [Option<Vec2>],
 }
 
-/// A meshed cable that moves, or rests where it can touch something.
+/// A meshed cable in motion, or at rest with possible contacts, and the solvers that advance it.
 #[derive(Clone, Debug)]
 pub struct Stepper {
     pub(super) cable: CableState,
@@ -49,17 +49,16 @@ pub struct Stepper {
     pub(super) time_control: TimeControl,
     pub(super) solver: SolverMemory,
     pub(super) rollback: Rollback,
-    /// True if it has come to rest, or moves from a state that did.
+    /// True if it has come to rest, or moves from an equilibrium.
     pub(super) rested: bool,
     /// True if an energy account is kept.
     pub(super) accounts_energy: bool,
 }
 
 impl Stepper {
-    /// Builds it at the route.
+    /// Builds the cable along its route.
     ///
-    /// # Errors
-    /// None today: a feature that the model lacks is refused when it is asked for.
+    /// # Errors None today: a feature that the model lacks is refused when it is requested.
     pub fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
         let longest = tuning.step.longest_s;
         let cable = cable_along_route(problem, settings, tuning);
@@ -92,7 +91,7 @@ impl Stepper {
         })
     }
 
-    /// Forgets the steps before the present instant, and the frequency that was seen in them.
+    /// Forgets the earlier steps, and the frequency observed in them.
     pub(super) fn forget_history(&mut self) {
         self.cable.forget_history();
         self.time_control.step_size.forget();

@@ -1,9 +1,9 @@
-//! The system assembles the energies of a mesh into value, gradient and banded Hessian.
+//! This module assembles the energies of a mesh into value, gradient and banded Hessian.
 //!
 //! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3),
-//! bending two (5). Nodes that are held keep their rows: `System::pin_held` turns these into rows
-//! of the identity, so the band and the numbering never change. Before pinning, minus the gradient
-//! at a held node is the force of the cable on its support.
+//! bending two (5). Held nodes keep their rows: `System::pin_held` turns these into rows of the
+//! identity, so the band and the numbering never change. Before that, minus the gradient at a held
+//! node is the force of the cable on its support.
 
 use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
@@ -11,22 +11,22 @@ use crate::linalg::BandMatrix;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::mesh::Mesh;
 
-/// True if the turn at an inner node bends the cable: not where it or a neighbour slides over
-/// something.
+/// True if the turn at an inner node bends the cable: neither the node nor a neighbour is a sliding
+/// node.
 fn bends(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
 }
 
-/// A bend of a mesh and the nodes that make it.
+/// A bend of a mesh and its nodes.
 enum Bend {
-    /// Out of a clamp.
+    /// The bend beside a clamp.
     Clamped(ClampBend, [usize; 2]),
-    /// Between two bars.
+    /// The bend between two bars.
     Free(BendingEnergy, [usize; 3]),
 }
 
-/// Passes each bend of a mesh to `visit`, of this stiffness (N m²), measured from those at `from`
-/// (m), if there is such.
+/// Passes each bend of a mesh to `visit`, with this stiffness (N m²) and measured from the bends at
+/// `from` (m) if given.
 #[inline]
 fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: impl FnMut(Bend)) {
     let rest = &mesh.rest_length;
@@ -59,8 +59,8 @@ pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
     value
 }
 
-/// Slope of the energy of bends (see [`System::add_bends`]) at `x` (m) times the ways of the nodes
-/// (m), J.
+/// Slope of the energy of bends (see [`System::add_bends`]) at `x` (m) times the displacements of
+/// the nodes (m), J.
 pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, x: &[Vec2], ways: &[Vec2]) -> f64 {
     fn along<const N: usize>(bend: &impl Energy<N>, nodes: [usize; N], x: &[Vec2], ways: &[Vec2]) -> f64 {
         bend.gradient(&nodes.map(|n| x[n])).iter().zip(nodes).map(|(g, n)| g.dot(&ways[n])).sum()
@@ -85,7 +85,7 @@ pub struct System {
 }
 
 impl System {
-    /// Room for a mesh.
+    /// Allocates the system of a mesh.
     #[must_use]
     pub fn new(mesh: &Mesh) -> Self {
         Self {
@@ -94,8 +94,8 @@ impl System {
         }
     }
 
-    /// Adds a 2×2 block; a block on the diagonal (`i == j`) must be symmetric, and of a pair (i,
-    /// j), (j, i) with `i != j` only one is to be added.
+    /// Adds a 2×2 block. A diagonal block (`i == j`) must be symmetric, and only one of a pair (i,
+    /// j), (j, i) must be added.
     #[inline]
     pub fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
         let b = block;
@@ -164,9 +164,9 @@ impl System {
         self.add_bends(mesh, mesh.bending_stiffness, None, x, curvature)
     }
 
-    /// Bends of this stiffness (N m²), measured from those at `from` (m), if there is such; returns
-    /// their energy, J. With EI τ/h and where a step of h began it is the loss of bending, as that
-    /// of stretch is.
+    /// Adds bends of this stiffness (N m²), measured from those at `from` (m) if given; returns
+    /// their energy, J. With the stiffness EI τ/h and the positions at the start of a step of h
+    /// this is the damping of bending.
     pub fn add_bends(
         &mut self,
         mesh: &Mesh,

@@ -1,16 +1,16 @@
-//! The energy of a bar in a step consists of stretching, damping, and the weight that its material
-//! carries along.
+//! This module computes the energy of a bar in a step: stretching, damping, and the weight that
+//! moves with its material.
 //!
-//! With P the length of its way and L its unstretched length, ε = P/L − 1:
+//! With P the length of its path and L its unstretched length, ε = P/L − 1:
 //! ```text
 //! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
 //! ```
-//! At a node that moves with the material P depends on where the node is; at a sliding node L
-//! depends on its slide. The weight of the bar acts at the centroid c of its way (`bar_weight.rs`),
-//! so a change δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through.
-//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured
-//! from the one predicted; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
+//! At a material node P depends on the position of the node; at a sliding node L depends on its
+//! slide. The weight of the bar acts at the centroid c of its path (`bar_weight.rs`), so a change
+//! δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through. Viscous
+//! damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from
+//! the predicted one; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
@@ -19,50 +19,50 @@ use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, WORK_MAGNITUDE_FRACTION};
 
-/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
-/// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches
-/// on the ground and push their supports (a hundredth: 5.7 kN of a power cable that lies loose). A
-/// cable with bending stiffness does push.
+/// Effective EA of a bar, N: a flexible bar has none in compression, because it buckles between its
+/// nodes. With any fraction of EA slack cables would stand in arches on the ground and push their
+/// supports (with a hundredth a loose power cable pushed with 5.7 kN). A cable with bending
+/// stiffness resists compression.
 #[inline]
 #[must_use]
 pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
 }
 
-/// The way in which a bar answers a change of its length in a step.
+/// The branch of a bar's force law in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BarBranch {
-    /// It gives way sideways.
+    /// It is slack and buckles between its nodes.
     Slack,
-    /// It is stretched, or has bending stiffness.
+    /// It is in tension, or has bending stiffness.
     Taut,
 }
 
-/// The values of a bar that one iteration passes to the next.
+/// The unknowns of a bar in the mixed iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BarIterate {
-    /// Its pull, N.
+    /// Its force, N.
     pub pull: f64,
     /// The branch on which it is.
     pub branch: BarBranch,
 }
 
-/// A bar between nodes that move with the material, in a step: its pull is piecewise linear in its
-/// length, continuous, and never falls as it becomes longer.
+/// A bar between material nodes in a step: its force is a continuous, piecewise linear and
+/// non-decreasing function of its length.
 ///
-/// Stretch pulls by EA (P/L − 1) and loss by c (P − P̂)/L, as long as both together pull. A bar
-/// that would push gives way sideways instead: there only its folds resist, by a force that grows
-/// with its speed and is small beside its weight (`step_inertia.rs`), from its length P̂ at the
-/// start of the step or, if it was stretched then, from where its pull ends. With the loss of a
-/// stretched bar in a slack one, a cable that hung plumb stood as a column on the floor that it was
-/// lowered on, and pushed its riser up with 35 times its weight.
+/// The force is EA (P/L − 1) by stretch plus c (P − P̂)/L by damping, as long as their sum is
+/// tensile. Otherwise the bar buckles: only its folds resist, with a force proportional to its
+/// speed and small compared with its weight (`step_inertia.rs`), measured from its length P̂ at the
+/// start of the step or, if it was stretched then, from the length at which its tension ends. With
+/// the damping of a taut bar in slack ones, a plumb cable lowered on to a floor stood as a column
+/// and pushed its riser up with 35 times its weight.
 #[derive(Clone, Copy, Debug)]
 pub struct PlainBar {
     /// Length at which it begins to be stretched, m.
     taut_from: f64,
-    /// Pull at that length, N.
+    /// Force at that length, N.
     pull_there: f64,
-    /// Slopes of the pull where it is stretched and where it is slack, N/m.
+    /// Slopes of the force where it is taut and where it is slack, N/m.
     slopes: [f64; 2],
     /// True if it can be slack.
     flexible: bool,
@@ -76,7 +76,7 @@ impl PlainBar {
         let (length, ea, flexible) = (mesh.rest_length[e], mesh.axial_stiffness, mesh.is_flexible());
         let [taut, slack] = input.losses.bars.get(e).copied().unwrap_or_default();
         let slopes = [(ea + taut) / length, slack / length];
-        // Longer than its material at the start of the step.
+        // The bar was longer than its material at the start of the step.
         let late = if taut + slack == 0.0 { 0.0 } else { input.losses.predicted_length[e] - length };
         if !flexible {
             return Self { taut_from: length, pull_there: -late * taut / length, slopes, flexible };
@@ -88,21 +88,21 @@ impl PlainBar {
         }
     }
 
-    /// The branch on which it is at a length, m.
+    /// Its branch at a length, m.
     #[inline]
     #[must_use]
     pub fn branch(&self, p: f64) -> BarBranch {
         if self.flexible && p < self.taut_from { BarBranch::Slack } else { BarBranch::Taut }
     }
 
-    /// True if it is on a branch at a length (m), or within a strain of where that begins.
+    /// True if it is on a branch at a length (m), or within a strain `rounding` of it.
     #[inline]
     #[must_use]
     pub fn is_on(&self, branch: BarBranch, p: f64, rounding: f64) -> bool {
         branch == self.branch(p) || (p - self.taut_from).abs() <= rounding * self.taut_from
     }
 
-    /// Its pull on a branch, N, and the slope of that by its length, N/m.
+    /// Its force on a branch, N, and the derivative of that by its length, N/m.
     #[inline]
     #[must_use]
     pub fn pull(&self, branch: BarBranch, p: f64) -> (f64, f64) {
@@ -110,7 +110,7 @@ impl PlainBar {
         (self.pull_there + slope * (p - self.taut_from), slope)
     }
 
-    /// The energy of which that is the slope, J: none where it begins to be stretched.
+    /// The potential of this force, J, which is 0 where the bar becomes taut.
     #[inline]
     #[must_use]
     pub fn energy(&self, branch: BarBranch, p: f64) -> f64 {
@@ -119,18 +119,18 @@ impl PlainBar {
     }
 }
 
-/// Unstretched length of a bar at unknowns, m.
+/// Unstretched length of a bar with these slides, m.
 #[must_use]
 pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// The energy of a bar with a sliding node in a step, J, and its slopes by the length P of its way
-/// and by its unstretched length L.
+/// The energy of a bar with a sliding node in a step, J, and its derivatives by the length P of its
+/// path and by its unstretched length L.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::fem) struct BarEnergy {
     energy: f64,
-    /// ∂E/∂P, the pull, and ∂E/∂L, N.
+    /// ∂E/∂P (the force) and ∂E/∂L, N.
     slope: [f64; 2],
     /// ∂²E/∂P², ∂²E/∂P∂L, ∂²E/∂L², N/m.
     curvature: [f64; 3],
@@ -158,8 +158,9 @@ impl BarEnergy {
         }
     }
 
-    /// Stretching and loss of bar `e` at `[P, L]`, m. A flexible bar only pulls, its loss included:
-    /// a slack bar on a round whose loss pushed would rub by a force that nothing presses on.
+    /// Stretching and damping of bar `e` at `[P, L]`, m. The total force of a flexible bar is
+    /// tensile: if damping could compress a slack bar on a round, it would cause friction without a
+    /// normal force.
     fn of(mesh: &Mesh, input: &StepInput, e: usize, at: [f64; 2]) -> Self {
         let (ea, loss) = (mesh.axial_stiffness, input.damping(e));
         let ratio = input.losses.predicted_length[e] / mesh.rest_length[e];
@@ -168,7 +169,7 @@ impl BarEnergy {
             return elastic.and(viscous);
         }
         if ratio > 1.0 {
-            // The energy at the length at which the pull ends stays, per length.
+            // The energy at the length at which the tension ends remains, per length.
             let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
             return Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() };
         }
@@ -176,8 +177,8 @@ impl BarEnergy {
     }
 }
 
-/// Slopes of the energy of a bar with a sliding node by the length P of its way and by its
-/// unstretched length L at `[P, L]` (m), N: those of stretching, and those of its loss.
+/// Derivatives of the energy of a bar with a sliding node by the length P of its path and by its
+/// unstretched length L at `[P, L]` (m), N: those of stretching, and those of damping.
 #[must_use]
 pub fn slopes(mesh: &Mesh, input: &StepInput, e: usize, at @ [p, l]: [f64; 2]) -> [[f64; 2]; 2] {
     let whole = BarEnergy::of(mesh, input, e, at).slope;
@@ -191,17 +192,17 @@ pub fn stretch_energy(mesh: &Mesh, [p, l]: [f64; 2]) -> f64 {
     0.5 * stiffness(mesh, !(p < l)) / l * (p - l) * (p - l)
 }
 
-/// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), as the slope
-/// of its energy by the slide of that node sees it (without the factor of its energy), N: Θ, the
-/// loss, and the weight that comes over with the material.
+/// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), N: the
+/// derivative of its energy by the slide of that node, without the factor of the energy. It
+/// consists of Θ, damping, and the weight that moves with the material.
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, input: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let at = [mesh.path(e, x).length, rest_length(mesh, e, slide)];
     -mesh.thermal_stretch * BarEnergy::of(mesh, input, e, at).slope[1] + lifted(mesh, input.loads.body, e, j, x)
 }
 
-/// Tension along its path of a bar with a sliding node at an end, N, at the present length of its
-/// way and with an unstretched length `l`, m.
+/// Tension of a bar with a sliding node at an end, N, at the present length of its path and with an
+/// unstretched length `l`, m.
 #[must_use]
 pub fn pull_on(mesh: &Mesh, input: &StepInput, e: usize, x: &[Vec2], l: f64) -> f64 {
     BarEnergy::of(mesh, input, e, [mesh.path(e, x).length, l]).slope[0]
@@ -213,9 +214,9 @@ pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
 }
 
-/// Adds all bars; returns their energy and the size of what was summed (its rounding counted in),
-/// J. The stiffness across a bar is that of the pull `carried`, if there are such, not that of its
-/// present length.
+/// Adds all bars; returns their energy and the sum of the magnitudes of its terms (with their
+/// round-off), J. The geometric stiffness of a bar is that of the force `carried`, if given, not
+/// that of its present length.
 pub fn add_all(
     s: &mut System,
     mesh: &Mesh,
@@ -239,7 +240,7 @@ pub fn add_all(
     (energy, size)
 }
 
-/// Adds the bar `e`, which has no sliding node.
+/// Adds bar `e`, which has no sliding node.
 #[inline(always)]
 fn add(
     s: &mut System,
@@ -269,12 +270,12 @@ fn add(
     }
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
     let energy = scale * bar.energy(branch, p);
-    // The undamped Newton does not use the energy, so its round-off is not estimated.
+    // The undamped Newton method does not use the energy, so its round-off is not estimated.
     let rounding = if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * x[e].norm() };
     (energy, energy + rounding)
 }
 
-/// The same for a bar that has a sliding node at one end or both.
+/// Adds a bar that has a sliding node at one end or both.
 fn add_sliding(
     s: &mut System,
     mesh: &Mesh,
@@ -297,16 +298,17 @@ fn add_sliding(
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, input.loads.body);
     let sign = [-1.0, 1.0];
-    // Work is measured from the sliding node itself: with friction the two sides of it count
-    // differently.
+    // Work is measured from the sliding node itself, because with friction its two sides have
+    // different factors.
     let weight =
         [0, 1].map(|j| if slides[j] { input.loads.body.dot(&(hung.center - unknowns.positions[e + j])) } else { 0.0 });
-    // Generalised directions of P and of L, and of the weight's lever, at both ends.
+    // These are the generalised directions of P and L, and of the lever of the weight, at both
+    // ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
     let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
     let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
     let change = unknowns.slides[e + 1] - unknowns.slides[e];
-    // Half of what the bar held at first is among the forces on its nodes.
+    // Half of the bar's first material is already among the forces on its nodes.
     let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
     let half = (unknowns.positions[e] + unknowns.positions[e + 1]) * 0.5;
     let shifted = input.loads.body.dot(&(hung.center - half)) * held;

@@ -1,21 +1,22 @@
-//! The weight of a bar that lies on a round in part acts at the centroid of its path.
+//! The weight of a bar that lies partly on a round acts at the centroid of its path.
 //!
-//! A bar is strained evenly, so its material is spread evenly over its way, of length P: with C =
-//! ∫r over the way, the weight of L metres does the work L b·C/P. A free end x of the bar beyond a
-//! round draws the straight part (length l, middle m, direction u away from the round) along and
-//! turns it:
+//! A bar is strained evenly, so its material is spread evenly over its path of length P: with C =
+//! ∫r over the path, the weight of L metres has the potential −L b·C/P. A free end x of the bar
+//! beyond a round moves and turns the straight part (length l, middle m, direction u away from the
+//! round):
 //! ```text
 //! dC = ½ l dx + (u·dx) m,   dP = u·dx,   c = C/P,
 //! ∂(b·c)/∂x = ½ (l/P) b + u b·(m − c)/P
 //! ```
-//! So the end carries half the weight of the straight part, and what lies on the round acts there.
-//! The pull in the middle of the straight part is T − L b·(m − c)/P, with T the pull of the bar as
-//! a whole. A bar that lies on nothing has c = m and l = P: half at each end.
+//! So the end carries half the weight of the straight part, and the weight of the part on the round
+//! acts there. The tension in the middle of the straight part is T − L b·(m − c)/P, with T the
+//! tension of the bar as a whole. A bar without a round has c = m and l = P: half of its weight
+//! acts at each end.
 //!
-//! If that pull would be a push the bar is slack, and its material is not spread evenly: only so
-//! much of the weight on the round acts there that nothing pushes, and of the rest half at each
-//! end. How much is found from the unknowns in which a step begins: sought within the step, it goes
-//! to and fro where a bar is nearly slack.
+//! If that tension would be negative, the bar is slack, and its material is not spread evenly: only
+//! so much of the weight on the round acts there that nothing is compressed, and half of the rest
+//! at each end. This fraction is found from the unknowns at the start of a step; within the step it
+//! would alternate when a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::{Mesh, TangentPath};
@@ -25,18 +26,18 @@ use crate::model::fem::mesh::{Mesh, TangentPath};
 pub struct Weight {
     /// Point where it acts, c, m.
     pub center: Vec2,
-    /// ∂(b·c)/∂x at a free end, N/m; nothing at a sliding one.
+    /// ∂(b·c)/∂x at a free end, N/m; zero at a sliding node.
     pub slope: [Vec2; 2],
-    /// L (m) times this (N/m) is the pull that the bar as a whole has more than the middle of its
-    /// straight part: b·(m − c)/P.
+    /// b·(m − c)/P, N/m: times L (m) it is the excess of the tension of the bar as a whole over
+    /// that in the middle of its straight part.
     pub excess: f64,
-    /// Parts of the material that lie on the round of the first node, on the straight part, and on
-    /// the round of the second.
+    /// Fractions of the material on the round of the first node, on the straight part, and on the
+    /// round of the second node.
     pub parts: [f64; 3],
 }
 
 impl Weight {
-    /// The weight of bar `e` on its way `path`, under a body force (N/m).
+    /// The weight of bar `e` on its path, under a body force (N/m).
     #[must_use]
     pub fn of(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let full = Self::spread_evenly(mesh, e, path, body);
@@ -44,7 +45,7 @@ impl Weight {
         if lying == 1.0 { full } else { full.lying(lying, mesh, e, path, body) }
     }
 
-    /// The same if its material is spread evenly over its way.
+    /// The weight if the material is spread evenly over the path.
     #[must_use]
     pub fn spread_evenly(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let middle = (path.ends[0] + path.ends[1]) * 0.5;
@@ -70,15 +71,15 @@ impl Weight {
         let excess = body.dot(&(middle - center)) / path.length;
         let away = [path.direction * -excess, path.direction * excess];
         let slope = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { half[j] * part + away[j] });
-        // A bar that lies on one round all the way hangs from its ends.
+        // A bar that lies completely on one round hangs from its ends.
         let hangs = !(path.straight > 0.0);
         let (excess, parts) =
             if hangs { (0.0, [0.0, 1.0, 0.0]) } else { (excess, [laps[0] / path.length, part, laps[1] / path.length]) };
         Self { center, slope, excess, parts }
     }
 
-    /// The same where only a part of the weight on rounds (0 to 1) acts there, and of the rest half
-    /// at each end of the bar.
+    /// The weight if only a fraction of the weight on rounds (0 to 1) acts there, and half of the
+    /// rest at each end of the bar.
     fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let at = |j: usize| mesh.sliding[e + j].map_or(path.ends[j], |s| s.position());
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
@@ -112,20 +113,20 @@ impl Weight {
         let bend = body * (longer - u * full.parts[1]).transpose() * 0.5
             + across * (full.excess * path.length)
             + u * (middle - own - u * full.excess).transpose();
-        // Symmetric but for rounding.
+        // The matrix is symmetric except for round-off.
         (bend + bend.transpose()) * (0.5 * lying_fraction(mesh, e) / path.length)
     }
 
-    /// Pull in the middle of the straight part of a bar of `material` (m) that as a whole has the
-    /// pull `tension`, N: one that only pulls (`flexible`) pushes nowhere.
+    /// Tension in the middle of the straight part of a bar of `material` (m) with the tension
+    /// `tension` (N) as a whole, N; it is not negative if the bar is `flexible`.
     #[must_use]
     pub fn in_the_middle(&self, tension: f64, material: f64, flexible: bool) -> f64 {
         let pull = tension - material * self.excess;
         if flexible && !(pull > 0.0) { 0.0 } else { pull }
     }
 
-    /// Metres of `material` that are carried at the first end and at the second: half of the
-    /// straight part, and what lies on its round.
+    /// Length of `material` (m) that the first end and the second end carry: half of the straight
+    /// part, and the part on its round.
     #[must_use]
     pub fn carried(&self, material: f64) -> [f64; 2] {
         let [first, straight, second] = self.parts;
@@ -133,9 +134,9 @@ impl Weight {
     }
 }
 
-/// True if the round of a sliding node has several marks: what lies on a small one is little, and
-/// its friction is found as if it hung beside it. (A mesh of one bar stands for a part of a longer
-/// one.)
+/// True if the round of a sliding node has several marks. On a small round there is little weight,
+/// and its friction is computed as if that hung beside it. (A mesh of one bar stands for a part of
+/// a longer one.)
 fn is_large(mesh: &Mesh, k: usize) -> bool {
     let shares = |j: Option<usize>| {
         let beside = j.and_then(|j| mesh.sliding.get(j)?.as_ref());
@@ -144,7 +145,7 @@ fn is_large(mesh: &Mesh, k: usize) -> bool {
     shares(k.checked_sub(1)) || shares(Some(k + 1))
 }
 
-/// Part of the weight of bar `e` on rounds that acts there.
+/// Lying fraction of bar `e`: the fraction of its weight on rounds that acts there.
 fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
     let of = |k: usize, side: usize| {
         mesh.sliding[k]
@@ -153,8 +154,9 @@ fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
     smaller(of(e, 1), of(e + 1, 0))
 }
 
-/// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls
-/// with `tension` (N): the middle of its straight part would push beyond.
+/// The greatest fraction of the weight of bar `e` on rounds that may act there if the bar as a
+/// whole has the tension `tension` (N): with more, the middle of its straight part would be
+/// compressed.
 #[must_use]
 pub fn may_lie(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f64) -> f64 {
     let excess = Weight::spread_evenly(mesh, e, path, body).excess * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
@@ -162,8 +164,8 @@ pub fn may_lie(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f
     if !mesh.is_flexible() || pull >= excess { 1.0 } else { pull / excess }
 }
 
-/// The weight of bar `e` that acts on its first end and on its second with the slides `slide` (m),
-/// N; what no free end carries acts on rounds.
+/// The weight of bar `e` that acts on its first and second end with the slides `slide` (m), N; the
+/// weight that no free end carries acts on rounds.
 #[must_use]
 pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: Vec2) -> [Vec2; 2] {
     let slid = slide.map_or(0.0, |s| s[e + 1] - s[e]);
@@ -193,8 +195,8 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     before + after
 }
 
-/// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at
-/// positions `x` (m) under a distributed force `body` (N/m).
+/// Lying fractions of the bars beside sliding node `k` at positions `x` (m) under a distributed
+/// force `body` (N/m).
 pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
     [k - 1, k].map(|e| {
         let path = mesh.path(e, x);
@@ -262,7 +264,7 @@ mod tests {
             if let Some(node) = &mut mesh.sliding[1 - j] {
                 node.lying_fractions = [1.0; 2];
             }
-            // The centroid, summed along the way.
+            // Compare the centroid with a sum along the path.
             let end = mesh.sliding[1 - j].unwrap().end;
             let (parts, lap) = (4000, path.arcs[1 - j]);
             let mut sum = (path.ends[0] + path.ends[1]) * (0.5 * path.straight);
@@ -272,7 +274,8 @@ mod tests {
             }
             let w = weight(&mesh, &x);
             prop_assert!((w.center - sum / path.length).norm() < 1e-6, "{} {}", w.center, sum / path.length);
-            // Slope and bend, by differences, with a part of it lying there.
+            // Compare the first and second derivative with differences, with a fraction lying
+            // there.
             if let Some(node) = &mut mesh.sliding[1 - j] {
                 node.lying_fractions = [smaller(lying, 1.0); 2];
             }
@@ -289,8 +292,8 @@ mod tests {
                 prop_assert!(((up - down) / (2.0 * h) - w.slope[j].dot(&axis)).abs() < 1e-6);
                 prop_assert!(((plus.slope[j] - minus.slope[j]) / (2.0 * h) - bend * axis).norm() < 1e-5);
             }
-            // The end carries half of the straight part along with what the pull of the bar has
-            // more than its middle.
+            // The end carries half of the straight part; the rest is the excess of the bar's
+            // tension over that of its middle.
             let [_, carried] = w.carried(1.0);
             prop_assert!((w.carried(1.0)[0] + carried - 1.0).abs() < 1e-12);
         }
@@ -306,7 +309,7 @@ mod tests {
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
-            // Taut, and far from where it is not.
+            // The bar is taut, far from being slack.
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
             prop_assume!(mesh.rest_length[0] > 0.5);

@@ -1,55 +1,58 @@
-//! The material loses the same part of its energy of stretching at every frequency.
+//! This module models material damping with a constant loss factor: the same fraction of the
+//! stretching energy is lost in a cycle at every frequency.
 //!
-//! Beside the spring EA a bar has relaxation branches, each a spring EA y in series with a dashpot
-//! of relaxation time θ (generalised Maxwell body: H. Emmerich, M. Korn, "Incorporation of
+//! In parallel to the spring EA a bar has relaxation branches, each a spring EA y in series with a
+//! dashpot of relaxation time θ (generalised Maxwell body: H. Emmerich, M. Korn, "Incorporation of
 //! attenuation into time-domain computations of seismic wave fields", Geophysics 52(9), 1987; J.
 //! Blanch, J. Robertsson, W. Symes, "Modeling of a constant Q: methodology and algorithm for an
 //! efficient and optimally inexpensive viscoelastic technique", Geophysics 60(1), 1995):
 //! ```text
 //! T = EA ε + Σ q,   q̇ = −q/θ + EA y ε̇,   M(ω) = EA (1 + Σ y iωθ/(1 + iωθ)),   loss factor = Im M/Re M = 2ζ
 //! ```
-//! EA is the relaxed stiffness, that of slow motion. A constant loss stiffens with frequency
-//! (causality), by (4ζ/π) ln(ω/ω₀) beyond the lowest frequency ω₀: at ζ = 0.02 by 6 % a decade.
+//! EA is the relaxed stiffness, that of slow motion. By causality a material with constant loss
+//! factor stiffens with frequency, by (4ζ/π) ln(ω/ω₀) above the lowest frequency ω₀: at ζ = 0.02 by
+//! 6 % a decade.
 //!
-//! A step takes the strain as linear in time, for which the branches have an exact solution, with
-//! d = e^{−h/θ} and g = (1 − d) θ/h:
+//! If the strain is linear in time within a step, the branches have an exact solution, with d =
+//! e^{−h/θ} and g = (1 − d) θ/h:
 //! ```text
 //! q = d q₀ + EA y g (ε − ε₀),   T = EA ε + C (ε − ε₀) + Q,   C = EA Σ y g,   Q = Σ d q₀
 //! ```
-//! which is a spring of stiffness C whose strain is measured from ε₀ − Q/C: what the viscous loss
-//! of a step is, too.
+//! This is a spring of stiffness C whose strain is measured from ε₀ − Q/C, the same form as the
+//! viscous damping of a step.
 //!
-//! A bar of a flexible cable that goes slack gives way sideways: its material keeps the strain 0,
-//! and its branches relax. A bar that was slack when a step began has the viscous loss of its
-//! slackness in that step. Branches are strained in steps only in which their force acts, so that
-//! what they give back has been put in.
+//! A bar of a flexible cable that goes slack buckles between its nodes: its material keeps the
+//! strain 0, and its branches relax. A bar that was slack at the start of a step has the viscous
+//! damping of slack bars in that step. Branches are strained only in steps in which their force
+//! acts, so they give back only energy that was put in.
 
 use crate::math::bounded;
 use crate::problem::Problem;
 
-/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does
-/// not ask for more. Without it a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A
-/// cable that can touch nothing has its own damping alone: of what a weight that swings 9 times a
-/// second pulls beyond itself this would take a twelfth.
+/// Least time constant of material damping, s, of a cable with possible friction. Without it a soft
+/// cable (EA 1e5 N) shows 11 % of axial noise when it is dragged. A cable that can touch nothing
+/// has only its own damping: this value would take a twelfth of the dynamic tension of a weight
+/// that swings 9 times a second.
 const MATERIAL_DAMPING: f64 = 1e-3;
 
-/// Lowest frequency of constant loss, rad/s (0.1 Hz). Lower: more branches, and a cable that
-/// stiffens more; higher: slow swings have less loss.
+/// Lowest frequency of constant loss, rad/s (0.1 Hz). Smaller: more branches, and a cable that
+/// stiffens more; larger: slow swings have less loss.
 const LOWEST_LOSS_FREQUENCY: f64 = 0.2 * std::f64::consts::PI;
 
-/// Ratio of the frequencies of neighbouring branches at most. Greater: the loss factor waves by
+/// Greatest ratio of the frequencies of neighbouring branches. Larger: the loss factor varies by
 /// more than 5 % between them; smaller: more branches.
 const RATIO: f64 = 10.0;
 
 /// Damping ratio up to which loss is constant. With more the cable would stiffen manyfold (at 0.1
-/// by 5 in four decades): what is asked beyond is viscous, and of the first axial mode.
+/// by 5 in four decades): the rest of the damping is viscous, with its ratio at the first axial
+/// mode.
 const CONSTANT_LOSS_RATIO_LIMIT: f64 = 0.1;
 
-/// Width of the band at most, decades. Less: the shortest bars of stiff cables ring with less loss;
-/// more: branches that no step sees.
+/// Greatest width of the band, decades. Smaller: the shortest bars of stiff cables ring with less
+/// loss; larger: branches that no step resolves.
 const MOST_DECADES: f64 = 9.0;
 
-/// Rounds of the fit. Fewer: up to 1 % off at the greatest ratio.
+/// Rounds of the fit. Smaller: an error up to 1 % at the greatest ratio.
 const ROUNDS: usize = 40;
 
 /// A relaxation branch.
@@ -57,12 +60,12 @@ const ROUNDS: usize = 40;
 pub(in crate::model::fem) struct Branch {
     /// Relaxation time θ, s.
     time: f64,
-    /// Stiffness in parts of EA, y.
+    /// Stiffness y as a fraction of EA.
     part: f64,
 }
 
 impl Branch {
-    /// d and y g of a step of `h` (s).
+    /// The values d and y g of a step of `h` (s).
     pub(in crate::model::fem) fn in_step(&self, h: f64) -> [f64; 2] {
         let r = h / self.time;
         [(-r).exp(), self.part * -(-r).exp_m1() / r]
@@ -73,12 +76,13 @@ impl Branch {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model::fem) struct Loss {
     pub(in crate::model::fem) branches: Vec<Branch>,
-    /// Time constant of what is viscous of the loss of a taut bar, s.
+    /// Time constant of the viscous part of the loss of a taut bar, s.
     pub(in crate::model::fem) viscous: f64,
 }
 
 impl Loss {
-    /// Of a cable of even bars of length `bar` (m): constant up to the highest frequency of these.
+    /// The loss of a cable of even bars of length `bar` (m): constant up to their highest
+    /// frequency.
     pub(in crate::model::fem) fn of(problem: &Problem, bar: f64) -> Self {
         let ratio = problem.cable.damping_ratio;
         let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
@@ -94,11 +98,11 @@ impl Loss {
     }
 }
 
-/// Branches of a loss factor from the lowest to the highest frequency (rad/s).
+/// Fits branches to a loss factor from the lowest to the highest frequency (rad/s).
 ///
-/// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor), and are then each
-/// multiplied by what the loss factor lacks at its own frequency, again and again, which keeps them
-/// positive.
+/// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor). Then each is multiplied
+/// repeatedly by the ratio of the wanted to the present loss factor at its own frequency, which
+/// keeps them positive.
 fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<Branch> {
     let decades = bounded((highest / lowest).ln() / RATIO.ln(), 0.0, MOST_DECADES);
     let steps = if decades > 1.0 { decades.ceil() } else { 1.0 };
@@ -128,9 +132,9 @@ fn loss_factor(branches: &[Branch], omega: f64) -> f64 {
     imaginary / real
 }
 
-/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole
-/// cable, and where it `rubs` no less than [`MATERIAL_DAMPING`]. Taut bars of a cable that can
-/// touch nothing have relaxation branches in its place (`loss`).
+/// Time constant of viscous damping, s: that of the damping ratio at the first axial mode of the
+/// whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable that can touch
+/// nothing have relaxation branches instead.
 pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
     let first_mode = std::f64::consts::PI * wave / problem.damped_length;
@@ -142,7 +146,7 @@ pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 
 mod tests {
     use super::*;
 
-    /// The least and the greatest loss factor over a band, in parts of that asked for.
+    /// The test compares the least and the greatest loss factor over the band with the wanted one.
     #[test]
     fn the_loss_factor_is_constant_from_the_lowest_frequency_to_the_highest() {
         for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (CONSTANT_LOSS_RATIO_LIMIT, 1e5)] {
@@ -156,7 +160,7 @@ mod tests {
         }
     }
 
-    /// Cycles of strain through the exact update lose what the loss factor says.
+    /// Cycles of strain with the exact update lose the energy that the loss factor gives.
     #[test]
     fn steps_lose_what_the_law_says() {
         let branches = fit(0.04, [LOWEST_LOSS_FREQUENCY, 1e4]);

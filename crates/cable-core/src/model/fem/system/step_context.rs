@@ -1,4 +1,4 @@
-//! The step context is what every part of the solve of one step reads.
+//! The step context holds everything that the solvers of one step read.
 
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
@@ -24,7 +24,7 @@ pub(in crate::model::fem) struct StepContext<'a> {
 }
 
 impl StepContext<'_> {
-    /// True if the cable is flexible and nothing but its supports can touch it on the way to places
+    /// True if the cable is flexible and can touch nothing but its supports on the way to positions
     /// `to` (m).
     pub(in crate::model::fem) fn moves_freely(&self, to: &[Vec2]) -> bool {
         !self.mesh.slides_anywhere()
@@ -33,14 +33,14 @@ impl StepContext<'_> {
             && self.is_out_of_reach(to)
     }
 
-    /// True if nothing but supports can touch the cable on its way to places `to` (m).
+    /// True if the cable can touch nothing but its supports on the way to positions `to` (m).
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.contacts.meets_nothing(self.problem)
             || (!self.contacts.self_contacts.shape.is_on()
                 && self.contacts.out_of_reach(self.mesh, [&self.input.supports.start, to]))
     }
 
-    /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.
+    /// The load of a sliding node at positions `x` (m) and, if given, slides (m).
     pub(in crate::model::fem) fn load_at(
         &self,
         k: usize,
@@ -53,7 +53,7 @@ impl StepContext<'_> {
         }
         let path = [mesh.path(k - 1, x), mesh.path(k, x)];
         let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| bar_energy::rest_length(mesh, e, s)));
-        // A step balances the pull with its loss.
+        // A step balances the force of a bar with its damping.
         let tension = [0, 1].map(|j| {
             if slide.is_some() && self.input.inertial.moves {
                 return bar_energy::pull_on(mesh, self.input, k - 1 + j, x, rest[j]);
@@ -72,12 +72,12 @@ impl StepContext<'_> {
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
         let load = SlidingNodeLoad::new(node, straight, [&path[0], &path[1]], body, share);
-        // Between steps the input may be of another mesh, and nothing is balanced.
+        // Between steps the input may belong to another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k].map(|e| bar_energy::pull_at_slide(mesh, self.input, e, k - e, x, slide))
         });
-        // Without friction Θ = T + T²/(2 EA) changes by what lifts the weight: what is stretched
-        // weighs less by the metre.
+        // Without friction Θ = T + T²/(2 EA) changes by the force that lifts the weight: a
+        // stretched cable weighs less per metre.
         let compliance = 1.0 / mesh.axial_stiffness;
         let lifted = [0, 1].map(|j| {
             let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + body.dot(&(weight[j].center - x[k]));
@@ -87,9 +87,9 @@ impl StepContext<'_> {
     }
 }
 
-/// Longest move of a node in a step, m; NaN where one is.
+/// Greatest displacement of a node in a step, m; NaN if any is NaN.
 pub(in crate::model::fem) fn longest(step: &[f64]) -> f64 {
-    // Four of them at a time do not wait for each other.
+    // Four independent maxima at a time let the processor work in parallel.
     let (mut most, mut undefined) = ([0.0_f64; 4], false);
     for moves in step.chunks(8) {
         for (most, d) in most.iter_mut().zip(moves.chunks_exact(2)) {

@@ -1,35 +1,35 @@
-//! The step input says what a step is about; beside it stand its unknowns and how it ended.
+//! This module defines the input of a step, its unknowns and its outcome.
 
 pub use crate::error::FailureCause;
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
-/// Part of force times coordinate that counts as magnitude: times the noise of an energy four
-/// roundings of the coordinate. With none, a stiff pendulum's last iteration is lost in the
-/// rounding of 98 N times 1 m and its step is halved for nothing.
+/// Fraction of force times coordinate that counts as magnitude of an energy: with the noise of an
+/// energy it is four roundings of the coordinate. Without it, a stiff pendulum's last iteration is
+/// lost in the round-off of 98 N times 1 m and its step is halved without need.
 pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
-/// Unbalanced force accepted, part of the whole load.
+/// Accepted unbalanced force, as a fraction of the whole load.
 const TOLERANCE: f64 = 1e-6;
 
-/// Roundings of the strain of a bar that may stay in its axial force. Smaller: steps of stiff
-/// cables never end; larger: their forces are known worse than they could be. A choice, tuned on no
-/// campaign.
+/// Round-off of the strain of a bar that may remain in its axial force, in units of the last place.
+/// Smaller: steps of stiff cables never converge; larger: their forces are less accurate than
+/// possible. A choice, tuned on no campaign.
 const STRAIN_ROUNDINGS: f64 = 64.0;
 
-/// Size of coordinates in lengths of a bar, by which the rounding of a strain is that much larger.
-/// Smaller and larger: as of the roundings.
+/// Size of coordinates in lengths of a bar, which multiplies the round-off of a strain. Smaller and
+/// larger: as for `STRAIN_ROUNDINGS`.
 const COORDINATE_BARS: f64 = 100.0;
 
-/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
-/// are coarse.
+/// Round-off of the inertia force of a node, in units of the last place. Smaller: small steps of
+/// heavy point masses fail; larger: they are less accurate.
 const INERTIA_ROUNDINGS: f64 = 16.0;
 
 /// The unknowns of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unknowns {
-    /// Position of each node, m; of a sliding one its mark.
+    /// Position of each node, m; for a sliding node that of its mark.
     pub positions: Vec<Vec2>,
     /// Slide of the arc length at each sliding node in this step, m.
     pub slides: Vec<f64>,
@@ -40,7 +40,7 @@ pub struct Unknowns {
 pub struct StepInput {
     /// Factor of each bar's energy (see `sliding_node`); 1 without friction at sliding nodes.
     pub scale: Vec<f64>,
-    /// Inertia, and hands, which are a part of it.
+    /// Inertia, and the springs of hands, which enter like inertia.
     pub inertial: InertialTerms,
     /// Loss of bars and bends.
     pub losses: LossTerms,
@@ -48,7 +48,7 @@ pub struct StepInput {
     pub loads: Loads,
     /// Targets of the supports, and positions at the start of the step.
     pub supports: SupportTargets,
-    /// When the iteration ends.
+    /// Criteria at which the iteration ends.
     pub stopping: StoppingCriteria,
 }
 
@@ -57,32 +57,32 @@ pub struct StepInput {
 pub struct InertialTerms {
     /// True if it is a step with inertia.
     pub moves: bool,
-    /// mᵢ a², N/m.
+    /// Inertia of each node, mᵢ a², N/m.
     pub stiffness: Vec<f64>,
-    /// x̃, m.
+    /// Predicted position x̃ of each node, m.
     pub predicted: Vec<Vec2>,
     /// Predicted slide of each sliding node, m.
     pub predicted_slide: Vec<f64>,
-    /// Momentum that the cable carries over each sliding node in a second, N: ρw² at its rate w
-    /// when the step begins. What bends its way there does so against the tension less that.
+    /// Momentum flux of the cable over each sliding node, N: ρw² at its rate w when the step
+    /// begins. The tension less this flux presses on the round.
     pub momentum_flux: Vec<f64>,
-    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m);
-    /// empty: nothing does.
+    /// For each bar the inertia that couples its nodes (m a², N/m) and its predicted chord (m);
+    /// empty if there is none.
     pub coupling: Vec<(f64, Vec2)>,
-    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in
-    /// this step: a part of inertia and prediction there.
+    /// Nodes that hands hold by springs, with the stiffness (N/m) and the position (m) of each
+    /// spring in this step; both are included in inertia and prediction there.
     pub hands: Vec<(usize, f64, Vec2)>,
 }
 
 /// Loss in a step.
 #[derive(Clone, Debug, Default)]
 pub struct LossTerms {
-    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a
-    /// viscous one (0: no loss).
+    /// Damping stiffness of each bar when taut and when slack, N: EA τ a for viscous damping (0:
+    /// none).
     pub bars: Vec<[f64; 2]>,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
-    /// EI τ/h, N m² (0: no damping).
+    /// Damping stiffness of bends, EI τ/h, N m² (0: none).
     pub bending: f64,
 }
 
@@ -95,18 +95,18 @@ pub struct Loads {
     pub force: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
-    /// The time that forces are of, s.
+    /// The time at which the forces hold, s.
     pub time_s: f64,
 }
 
-/// Targets of the supports of a step, and the positions that it begins with.
+/// Targets of the supports of a step, and the positions at its start.
 #[derive(Clone, Debug, Default)]
 pub struct SupportTargets {
     /// Target of each held node, m (others: ignored).
     pub target: Vec<Vec2>,
-    /// True if held nodes may stop short of it where an obstacle or the cable is in the way.
+    /// True if held nodes may stop short of their targets because of an obstacle or the cable.
     pub may_lag: bool,
-    /// True if an outline that is not of the cable may squeeze it against an obstacle.
+    /// True if a moving outline may squeeze the cable against an obstacle.
     pub has_moving_outline: bool,
     /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
@@ -114,18 +114,18 @@ pub struct SupportTargets {
     pub cleared: Vec<Vec2>,
 }
 
-/// When the iteration of a step ends.
+/// The criteria at which the iteration of a step ends.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StoppingCriteria {
     /// Unbalanced force to reach, N.
     pub tolerance: f64,
-    /// Unbalanced force that is accepted at most where contact forces are known no better, N.
+    /// Greatest unbalanced force that is accepted if contact forces are known no better, N.
     pub max_noise: f64,
-    /// Iterations allowed.
+    /// Maximum number of iterations.
     pub max_iterations: usize,
     /// Largest move of a node in one iteration, m.
     pub max_move: f64,
-    /// Regularisation to begin with, N/m.
+    /// First shift of the Hessian, N/m.
     pub shift: f64,
 }
 
@@ -143,7 +143,8 @@ impl StepInput {
         if self.supports.cleared.is_empty() { &self.supports.start } else { &self.supports.cleared }
     }
 
-    /// The factor of each bar's energy from the grips of the sliding nodes before it.
+    /// Sets the factor of each bar's energy from the friction states of the sliding nodes before
+    /// it.
     pub(in crate::model::fem) fn set_scale(&mut self, mesh: &Mesh) {
         let mut scale = 1.0;
         self.scale.clear();
@@ -155,9 +156,9 @@ impl StepInput {
         }
     }
 
-    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x − x̃)
-    /// at positions `at` (m). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their
-    /// force to 1e-6 N only.
+    /// Unbalanced force to reach in a step with inertia, N: at least the round-off of m a² (x − x̃)
+    /// at positions `at` (m). That grows as the step shrinks: with 5 kg at 20 m and 1/4000 s the
+    /// force is known only to 1e-6 N.
     pub(in crate::model::fem) fn rounded_tolerance(&self, at: &[Vec2]) -> f64 {
         let mut tolerance = self.stopping.tolerance;
         for (inertia, x) in self.inertial.stiffness.iter().zip(at) {
@@ -170,12 +171,12 @@ impl StepInput {
     }
 }
 
-/// The work that a search may still do: iterations times nodes.
+/// The work that a search may still do, in iterations times nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorkBudget {
     /// The caller bounds the work in another way.
     Unlimited,
-    /// So many more.
+    /// So much work is left.
     Left(usize),
 }
 
@@ -186,7 +187,7 @@ impl WorkBudget {
         self == Self::Left(0)
     }
 
-    /// Takes one iteration of so many nodes off it.
+    /// Subtracts one iteration of so many nodes.
     pub fn spend(&mut self, nodes: usize) {
         if let Self::Left(left) = self {
             *left = left.saturating_sub(nodes);
@@ -201,7 +202,7 @@ pub struct Failure {
     pub node: usize,
     /// Its unbalanced force, N.
     pub residual: f64,
-    /// Why.
+    /// The cause.
     pub cause: FailureCause,
 }
 
@@ -220,7 +221,7 @@ pub(in crate::model::fem) fn node_scale(input: &StepInput, node: usize) -> f64 {
     input.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 
-/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
+/// Load per metre that presses on the ground (N/m), and the whole load (N); neither is 0.
 pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
     // The normal force on the floor of a plan view counts by its friction.
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
@@ -229,7 +230,7 @@ pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
     (per_m, whole)
 }
 
-/// Unbalanced force to reach, N: not below the rounding of the axial forces.
+/// Unbalanced force to reach, N: at least the round-off of the axial forces.
 pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
     let rounding = STRAIN_ROUNDINGS * f64::EPSILON * problem.axial_stiffness * COORDINATE_BARS;
     (TOLERANCE * whole).max(rounding)

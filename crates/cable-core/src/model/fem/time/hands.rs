@@ -1,5 +1,5 @@
-//! Hands draw supports in a step with inertia: by a spring, which is a force on a node, or the
-//! support itself.
+//! Hands drag supports in a step with inertia: by a spring, which is a force on a node, or by
+//! prescribing the support's position.
 
 use crate::math::Vec2;
 use crate::model::fem::state::CableState;
@@ -8,7 +8,7 @@ use crate::model::hand::Hand;
 use crate::model::smoothed_target::{SmoothedTarget, is_led};
 use crate::solution::Warning;
 
-/// Force that holds a support's node against its bars and what hangs there, N.
+/// Force that holds a support's node against its bars and loads, N.
 fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let pull = |e: usize| {
@@ -25,29 +25,29 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
         - cable.problem.hung_on(support, time)
 }
 
-/// Keeps the force of the cable on what hands hold, as unknowns balances it.
+/// Stores the force of the cable on supports that hands hold, at balanced unknowns.
 pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unknowns) {
     for &(k, stiffness, at) in &cable.input.inertial.hands {
         cable.answers.reaction[k] = (unknowns.positions[k] - at) * stiffness;
     }
 }
 
-/// The hands that lead supports.
+/// The hands that drag supports.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct HandDrive {
-    /// Fastest hand, m/s.
+    /// Greatest speed of a hand, m/s.
     pub(in crate::model::fem) hand_speed: f64,
-    /// Stiffness of its spring, N/m, where that was asked for.
+    /// Stiffness of its spring, N/m, if the user gave one.
     pub(in crate::model::fem) hand_stiffness: Option<f64>,
     /// True for dragged supports that a hand holds by a spring.
     pub(in crate::model::fem) pulled: Vec<bool>,
-    /// Room for the points to which hands draw supports in a part of a step.
+    /// Working memory for the points to which hands drag supports in a piece of a step.
     pub(in crate::model::fem) hand_targets: Vec<Option<Vec2>>,
 }
 
 impl HandDrive {
-    /// Moves hands and dragged supports on for `h` (s) towards where they are drawn (m); supports
-    /// that the robot leads get there at the time `due` (s).
+    /// Moves hands and dragged supports for `h` (s) towards the points `dragged` (m); supports that
+    /// the robot moves get there at the time `due` (s).
     pub(in crate::model::fem) fn follow(&self, cable: &mut CableState, due: f64, h: f64, dragged: &[Option<Vec2>]) {
         for (k, target) in dragged.iter().enumerate() {
             let (Some(target), Some(at)) = (*target, cable.support_position(k)) else { continue };
@@ -92,8 +92,8 @@ impl HandDrive {
     }
 }
 
-/// Reports the supports that did not reach their targets; their hands start again from where they
-/// are.
+/// Reports the supports that did not reach their targets; their hands restart from the supports'
+/// positions.
 pub(in crate::model::fem) fn report_held_back(cable: &mut CableState, unknowns: &Unknowns) {
     for (support, node) in cable.meshing.support_node.iter().enumerate() {
         let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };

@@ -1,15 +1,15 @@
-//! The relaxation branches of a cable's loss take part in a step and remember it.
+//! This module holds the state of the relaxation branches of material damping, and adds them to a
+//! step.
 
 use crate::math::Vec2;
 use crate::model::fem::state::CableState;
 
-/// Engineering strain of bar `e` at places `x` (m).
+/// Engineering strain of bar `e` at positions `x` (m).
 fn strain(cable: &CableState, e: usize, x: &[Vec2]) -> f64 {
     (x[e + 1] - x[e]).norm() / cable.mesh.rest_length[e] - 1.0
 }
 
-/// True if the bars have branches: those of a cable that can touch nothing and slides over
-/// nothing.
+/// True if the bars have branches: for a cable that can touch nothing and has no sliding nodes.
 ///
 /// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the
 /// tank of the catalogue costs 1.14 times as much, but the greatest tension of a drop on rubble
@@ -19,12 +19,13 @@ fn has_branches(cable: &CableState) -> bool {
     !cable.loss.branches.is_empty() && !cable.mesh.spread.is_lumped()
 }
 
-/// True if a bar so strained at the start of a step has the loss of its branches in it.
+/// True if a bar with this strain at the start of a step has the damping of its branches in it.
 fn relaxes(cable: &CableState, strain: f64) -> bool {
     strain >= 0.0 || !cable.mesh.is_flexible()
 }
 
-/// The branches after a step of `h` (s) to places `x` (m), before the motion is there.
+/// Updates the branches by a step of `h` (s) to positions `x` (m), before the motion itself is
+/// updated.
 pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
     if !has_branches(cable) {
         return;
@@ -52,8 +53,8 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
     cable.motion.branch_forces = memory;
 }
 
-/// The forces of the branches of each bar, one bar after the other, and how many branches a bar
-/// has, N; None where there are none.
+/// The forces of the branches, one bar after the other, N, and the number of branches of a bar;
+/// None without branches.
 pub(in crate::model::fem) fn forces(cable: &CableState) -> Option<(&[f64], usize)> {
     let (forces, count) = (cable.motion.branch_forces.as_slice(), cable.loss.branches.len());
     (has_branches(cable) && forces.len() == count * cable.mesh.rest_length.len()).then_some((forces, count))
@@ -64,8 +65,8 @@ pub(in crate::model::fem) fn force(cable: &CableState, e: usize) -> f64 {
     forces(cable).map_or(0.0, |(forces, count)| forces[e * count..][..count].iter().sum())
 }
 
-/// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose
-/// rates are `rate` (1/s) times differences.
+/// Replaces the viscous damping by that of the branches in a step of `h` (s) with velocities `rate`
+/// (1/s) times differences.
 pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, decay: &mut Vec<f64>) {
     if !has_branches(cable) {
         return;

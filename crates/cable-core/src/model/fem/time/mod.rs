@@ -1,19 +1,19 @@
-//! These modules integrate in time: BDF2, step sizes, sleep, hands, impulses, loss, impacts, and
-//! the return to the state before a step that failed.
+//! These modules integrate in time: BDF2, step sizes, sleep, hands, impulses, damping, impacts, and
+//! rollback of failed steps.
 //!
 //! | room | content |
 //! |---|---|
-//! | `bdf2.rs` | weights of BDF2, with a part of BDF3 without contact |
-//! | `step_inertia.rs` | masses, predicted places and damping of a step |
+//! | `bdf2.rs` | weights of BDF2, blended with BDF3 without contact |
+//! | `step_inertia.rs` | masses, predicted positions and damping of a step |
 //! | `sliding_tensions.rs` | tensions between which friction acted at sliding nodes |
 //! | `time_control.rs` | data of the time control: step size, sleep, tolerance, end of the advance |
-//! | `step_size.rs` | step length from the observed frequency and from how hard steps are to solve |
+//! | `step_size.rs` | step length from the observed frequency and the number of iterations |
 //! | `hands.rs` | hands that drag supports, by a spring or directly, and their warnings |
 //! | `plastic_impact.rs` | inelastic contacts: normal speed of an impact removed after the step |
 //! | `loss_memory.rs` | state of the relaxation branches of material loss, from step to step |
 //! | `step_impulses.rs` | impulse of each kind of force in a step, for the momentum account |
 //! | `step_work.rs` | work of each kind of force in a step, for the energy account |
-//! | `rollback.rs` | checkpoint of the state, restored where a step fails |
+//! | `rollback.rs` | checkpoint of the state, restored if a step fails |
 //! | `sleeping.rs` | a cable at rest is frozen until its loads or supports change |
 
 pub(in crate::model::fem) mod bdf2;

@@ -1,38 +1,39 @@
-//! Contacts are plastic: after each step the normal speeds of impacts are taken away.
+//! Contacts are plastic: after each step this module removes the normal speeds of impacts.
 //!
 //! The barrier is a spring and would throw a landing cable back at 0.4 to 0.8 of its speed. A node
-//! that still comes nearer stops, and one that goes away goes no faster than without the force of
-//! the contact, as nothing presses on what leaves (J. J. Moreau, "Unilateral contact and dry
-//! friction in finite freedom dynamics", in: Nonsmooth Mechanics and Applications, CISM 302, 1988).
-//! A node that the cable itself draws away keeps its speed: stopped in each step, it would stay
-//! until one step carries it out of the barrier's reach, and finer steps would hold it harder.
+//! that still approaches stops, and one that recedes is no faster than without the contact force,
+//! because nothing presses on a receding node (J. J. Moreau, "Unilateral contact and dry friction
+//! in finite freedom dynamics", in: Nonsmooth Mechanics and Applications, CISM 302, 1988). A node
+//! that the cable itself pulls away keeps its speed: stopped in each step, it would stay until one
+//! step carries it out of the barrier's reach, and finer steps would hold it harder.
 //!
-//! An impact is over with its step: the history of nodes that change keeps the impulse of the other
-//! forces, and of the contact that which holds against those. With all of the contact in the
-//! history a third of an impact would come after it and throw the cable back; with none of it
+//! An impact ends with its step: the history of the stopped nodes keeps the impulse of the other
+//! forces, and the part of the contact impulse that balances these. With all of the contact impulse
+//! in the history a third of an impact would follow later and throw the cable back; with none of it
 //! contacts would press by half too much in the next step; without the impulse of the other forces
-//! BDF2 would give two thirds of their next one only.
+//! BDF2 would give only two thirds of their next one.
 //!
-//! An impulse that is over with its step has done its work by the mean of the speeds at the start
-//! and at the end: force times way, as the energy account counts it first, is half as much again
-//! where BDF2 would have given a third of the impulse later.
+//! The work of an impulse that ends with its step is the impulse times the mean of the speeds at
+//! start and end. The energy account first counts force times displacement, which is half as much
+//! again, because BDF2 would have given a third of the impulse later.
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
 use crate::model::fem::newton::NodalWays;
 use crate::model::fem::state::{CableState, Works};
 
-/// The impulses of contacts of a step whose forces acted for 1/`a` (s) that are over with it.
+/// The contact impulses that end with a step whose forces acted for 1/`a` (s).
 struct EndedImpulses<'a> {
     ways: &'a NodalWays,
     a: f64,
-    /// Their work beyond force times way.
+    /// Their work beyond force times displacement.
     more: Works,
 }
 
 impl EndedImpulses<'_> {
-    /// Counts an impulse (N s) on node `k`, which has a velocity now (m/s), of a contact with a
-    /// normal; what touches it has another velocity, and its way in the step (m).
+    /// Counts an impulse (N s) of a contact with this normal on node `k`, which now has a velocity
+    /// (m/s); `carried` is the velocity (m/s) of the touching body, and `carried_way` its
+    /// displacement in the step (m).
     fn add(&mut self, k: usize, impulse: Vec2, velocity: Vec2, normal: Vec2, [carried, carried_way]: [Vec2; 2]) {
         let (Some(way), Some(before)) = (self.ways.ways.get(k), self.ways.velocities.get(k)) else { return };
         let relative = (velocity + before) * 0.5 - carried - (way - carried_way) * self.a;
@@ -44,7 +45,7 @@ impl EndedImpulses<'_> {
 }
 
 /// Makes the contacts with obstacles plastic after a step of `h` (s) whose forces acted for 1/`a`
-/// (s) and whose nodes went `ways`.
+/// (s) and whose nodes moved by `ways`.
 pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a: f64, ways: &NodalWays) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
     let mut ended = EndedImpulses { ways, a, more: Works::default() };
@@ -65,7 +66,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
         }
         let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
         let sum = give[0] * shares[0] + give[1] * shares[1];
-        // Impulses: what the contact gave in the step, and what is taken of it.
+        // These are the impulse of the contact in the step, and the part that is removed.
         let made = load / a;
         let taken = taken_speed(speed, made * sum) / sum;
         if speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
@@ -125,14 +126,14 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
     cable.motion.energies.correct(&ended.more);
 }
 
-/// The speed along its normal (m/s) that a plastic contact takes: all of one towards it, and of one
-/// away from it no more than its force `made` in the step.
+/// The normal speed (m/s) that a plastic contact removes: all of an approaching speed, and at most
+/// the part that its force `made` in the step of a receding one.
 fn taken_speed(speed: f64, made: f64) -> f64 {
     if speed > made { made } else { speed }
 }
 
-/// Impulse (N s) that a contact goes on giving after an impact: against the other forces, which are
-/// the opposite of `against`, as far as its normal and friction can.
+/// Impulse (N s) of a contact that lasts after an impact: it balances the other forces, which are
+/// the opposite of `against`, within its normal and friction cone.
 fn lasting_impulse(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
     let (pressed, along) = (against.dot(&normal), perp(normal));
     let pressed = if pressed > 0.0 { pressed } else { 0.0 };

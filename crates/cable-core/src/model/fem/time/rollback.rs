@@ -1,4 +1,4 @@
-//! A step that fails returns to the checkpoint before it.
+//! This module stores a checkpoint before each step and restores it if the step fails.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
@@ -6,7 +6,7 @@ use crate::model::fem::obstacle::place_outline;
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
 use crate::model::fem::system::ContactSet;
 
-/// A state to go back to.
+/// The stored state of a cable.
 #[derive(Clone, Debug)]
 struct Checkpoint {
     motion: NodalMotion,
@@ -18,12 +18,12 @@ struct Checkpoint {
     reaction: Vec<Vec2>,
 }
 
-/// The state to go back to where a step fails; a copy of the model saves its own.
+/// The checkpoint that is restored when a step fails; a copy of the model stores its own.
 #[derive(Debug, Default)]
 pub(in crate::model::fem) struct Rollback {
-    /// The last one that was saved, and its memory.
+    /// The last stored checkpoint, whose memory is reused.
     saved: Option<Box<Checkpoint>>,
-    /// True if it is of the present step.
+    /// True if it belongs to the present step.
     can_restore: bool,
 }
 
@@ -34,12 +34,12 @@ impl Clone for Rollback {
 }
 
 impl Rollback {
-    /// A copy with the state that is saved.
+    /// A copy with the stored state.
     pub(in crate::model::fem) fn with_saved(&self) -> Self {
         Self { saved: self.saved.clone(), can_restore: self.can_restore }
     }
 
-    /// Keeps the present state to go back to, in the memory of the one kept before.
+    /// Stores the present state in the memory of the previous checkpoint.
     pub(in crate::model::fem) fn save(&mut self, cable: &CableState) {
         match &mut self.saved {
             Some(s) => {
@@ -65,7 +65,7 @@ impl Rollback {
         self.can_restore = true;
     }
 
-    /// Goes back to the state kept, once.
+    /// Restores the stored state, once.
     pub(in crate::model::fem) fn restore(&mut self, cable: &mut CableState) {
         if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
             cable.motion.copy_from(&s.motion);

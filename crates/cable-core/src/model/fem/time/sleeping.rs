@@ -1,16 +1,16 @@
 //! A cable at rest sleeps until something that acts on it changes.
 //!
-//! On rough ground two or three nodes may tremble for ever inside the reach of the barrier. Where
-//! no node has left its place by more than that for a while, and all that acts on the cable is what
-//! acted then, nothing more will happen: the state is kept, speeds are 0 and a step costs a
+//! On rough ground two or three nodes may tremble for ever inside the reach of the barrier. If no
+//! node has left its position by more than that for a while, and the actions on the cable have not
+//! changed, nothing more will happen: the state is kept, speeds are 0 and a step costs a
 //! comparison.
 
 use crate::math::Vec2;
 use crate::model::fem::state::{CableState, MovingOutline, prepare_input};
 
-/// Way of a hand that wakes a sleeping cable, in distances by which its nodes may have moved.
-/// Smaller: the lag of a hand's filter keeps it awake; larger: a slow hand moves nothing and then
-/// by a jerk. A choice, tuned on no campaign.
+/// Displacement of a hand that wakes a sleeping cable, as a fraction of the distance by which its
+/// nodes may have moved. Smaller: the lag of a hand's filter keeps it awake; larger: a slow hand
+/// moves nothing for a while and then jerks. A choice, tuned on no campaign.
 const WAKING_HAND_FRACTION: f64 = 1e-3;
 
 /// Distance (m) by which a node of a sleeping cable may have moved.
@@ -18,7 +18,7 @@ fn sleep_distance(cable: &CableState) -> f64 {
     cable.mesh.tuning.step.sleep_distance_reaches * cable.mesh.tuning.contact.reach_m
 }
 
-/// The measures by which the cable is found to be still, and the loads when it fell asleep.
+/// The data of the test for a still cable, and the loads when it fell asleep.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct Sleep {
     since: f64,
@@ -31,8 +31,8 @@ pub(in crate::model::fem) struct Sleep {
 }
 
 impl Sleep {
-    /// Looks after a step whether the cable has been still since the last look; returns true if it
-    /// falls asleep now.
+    /// Checks after a step whether the cable has been still since the last check; returns true if
+    /// it falls asleep now.
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
         let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
         let distance = sleep_distance(cable);
@@ -44,7 +44,7 @@ impl Sleep {
         let still = same
             && self.place.iter().zip(&motion.positions).all(near)
             && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= distance);
-        // A cable that touches nothing may be at the turn of a slow swing.
+        // A cable without contact may be at the turning point of a slow swing.
         let touches =
             !cable.contacts.friction_contacts.is_empty() || !cable.contacts.self_contacts.friction_contacts.is_empty();
         let falls_asleep = still && touches && self.same_input(cable);
@@ -58,7 +58,7 @@ impl Sleep {
         falls_asleep
     }
 
-    /// True if the forces and targets of the cable are those of the last look.
+    /// True if the forces and targets of the cable are those of the last check.
     fn same_input(&self, cable: &CableState) -> bool {
         let (held, target) = (&cable.mesh.held, &cable.input.supports.target);
         self.force == cable.input.loads.force
@@ -67,8 +67,8 @@ impl Sleep {
             && (0..target.len()).filter(|k| held[*k]).all(|k| self.target[k] == target[k])
     }
 
-    /// True if the cable sleeps on until the time `to` (s), its supports dragged to `dragged` (m),
-    /// by springs those that are `pulled`.
+    /// True if the cable stays asleep until the time `to` (s), with its supports dragged to
+    /// `dragged` (m), by springs those that are `pulled`.
     pub(in crate::model::fem) fn lasts_until(
         &mut self,
         cable: &mut CableState,
@@ -86,7 +86,7 @@ impl Sleep {
         let distance = sleep_distance(cable);
         let motion = &cable.motion;
         let follows = (0..motion.followers.len()).any(|k| match (motion.followers[k], hand(k)) {
-            // A hand that takes hold, lets go, or goes on.
+            // A hand that grips, releases or moves on wakes it.
             (_, Some(_)) if pulled[k] != motion.hands[k].is_some() => true,
             (_, Some(to)) if pulled[k] => {
                 motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > distance * WAKING_HAND_FRACTION)

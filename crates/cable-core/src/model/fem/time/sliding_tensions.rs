@@ -1,11 +1,11 @@
-//! A sliding node keeps the tensions between which its friction acted in a step, for the report of
-//! its contact.
+//! This module stores the tensions between which the friction of each sliding node acted in a step,
+//! for the report of its contact.
 
 use crate::model::fem::mesh::{BalancedTensions, StickSlip};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::Unknowns;
 
-/// Keeps the tensions and the turn between which friction acts at each sliding node.
+/// Stores the tensions and the turn between which friction acts at each sliding node.
 pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unknowns: &Unknowns) {
     for k in 0..cable.mesh.nodes() {
         let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
@@ -14,7 +14,8 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
         let momentum_flux = cable.input.inertial.momentum_flux[k];
         if let Some(node) = &mut cable.mesh.sliding[k] {
             let [comes, leaves] = load.at_round();
-            // The step balances slopes by the slide, where inertia counts by what is stretched.
+            // The step balances derivatives by the slide, in which inertia is multiplied by the
+            // stretch.
             let [before, after] = load.at_material;
             let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;
             let pulls = match node.stick_slip {

@@ -1,12 +1,12 @@
-//! The momentum account says what each kind of force gave the cable in a step of its caller.
+//! This module computes the impulse of each kind of force in a step, for the momentum account.
 //!
 //! With p the momentum and F a force at the end of a step, its history gives (see `bdf2`)
 //! ```text
 //! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```
-//! so that the impulse of each kind of force is filtered as their sum is. What a round does to the
-//! cable that runs over it is what bends its way: the pull of the bars beside it, and the change of
-//! the momentum of what lies on it and of what goes over it.
+//! so the impulse of each kind of force is filtered like their sum. The force of a round on the
+//! cable that runs over it turns the cable: it is the sum of the pulls of the bars beside it and
+//! the change of momentum of the material on it and moving over it.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -15,9 +15,9 @@ use crate::model::fem::system::{ContactPair, Unknowns, bar_energy, bar_weight};
 use crate::model::fem::time::bdf2::Weights;
 use crate::scene::SupportKind;
 
-/// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is
-/// made, contacts are not yet made plastic. `slid` is the momentum of what lay on rounds before
-/// (kg m/s), `slide` how far it slid (m).
+/// Adds the impulses of a step with these weights and balanced forces (N), after the step and
+/// before contacts are made plastic. `slid` is the momentum of the material on rounds before (kg
+/// m/s), `slide` its slide (m).
 pub(in crate::model::fem) fn account_for_step(
     cable: &mut CableState,
     weights: Weights,
@@ -32,7 +32,8 @@ pub(in crate::model::fem) fn account_for_step(
         let (mesh, m) = (&cable.mesh, &cable.motion);
         for (k, node) in mesh.sliding.iter().enumerate() {
             let Some(node) = node else { continue };
-            // Material that goes over moves as the material there, and has its history.
+            // Material that moves over to a node moves like the material there, and has its
+            // history.
             let of = |v: &[Vec2]| {
                 let at = |j: usize| if mesh.sliding[j].is_none() { v[j] } else { Vec2::zeros() };
                 (at(k - 1) - at(k + 1)) * (0.5 * cable.problem.linear_density * slide[k])
@@ -57,8 +58,8 @@ pub(in crate::model::fem) fn account_for_step(
     account.late = [Vec2::zeros(); 4];
 }
 
-/// The forces that a step balanced at unknowns, N: on what moves with its material, and the
-/// weight of what does not less what carries that. `touches` are the contacts of the solver.
+/// The balanced forces of a step, N: on material nodes, and the weight on sliding nodes less the
+/// forces that carry it. `touches` are the contacts of the solver.
 pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unknowns, touches: &[ContactPair]) -> Kinds {
     let (problem, mesh, input, x) = (&cable.problem, &cable.mesh, &cable.input, &unknowns.positions);
     let gravity = problem.gravity();

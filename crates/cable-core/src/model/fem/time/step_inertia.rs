@@ -1,4 +1,5 @@
-//! A step with inertia has masses, predicted places and damping, which its weights in time give.
+//! This module sets masses, predicted positions and damping of a step with inertia from its weights
+//! in time.
 
 use crate::math::Vec2;
 use crate::model::fem::state::CableState;
@@ -6,19 +7,19 @@ use crate::model::fem::system::damping_time;
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::loss_memory;
 
-/// Force by which a slack bar of length l resists a change of its length at a speed, in parts of
-/// √(ρ b l), with b its weight and wind per metre: that of a fold as high as the bar is long which
-/// comes to rest as it falls. Less: slack bars in heaps swing for long; more: what falls in a heap
-/// pushes by more than a small part of its weight.
+/// Damping coefficient of a slack bar of length l (force over rate of length), in units of √(ρ b
+/// l), with b its weight and wind per metre: that of a fold as high as the bar is long which comes
+/// to rest as it falls. Smaller: slack bars in heaps swing for long; larger: cable that falls in a
+/// heap pushes with more than a small fraction of its weight.
 const FOLD_DAMPING: f64 = 10.0;
 
-/// Inertia and damping of a step of `h` (s).
+/// Sets inertia and damping of a step of `h` (s).
 ///
-/// The rate of a length has no history where velocities jump between two steps (a plastic
-/// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
-/// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
-/// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
-/// small force, ¾ τ/h of that which BDF2 makes of a vibration.
+/// If velocities jump between two steps (by a plastic impulse or a change of the mesh), the rate of
+/// a length must not use the history: it would extrapolate through the jump and add ½ EA τ Δv/l₀ to
+/// the damping, 150 kN for nodes 3 cm apart. So the damping of a cable that may touch something
+/// uses the step itself, EA τ (P − P₀)/(L h). This is a first-order error of a small force, ¾ τ/h
+/// of the error of BDF2 in a vibration.
 pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
     let Weights { now, past, rate: a, .. } = weights;
     let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
@@ -34,7 +35,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
             input.inertial.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
         }
     }
-    // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+    // The coupling concerns the masses alone: hands pull at their own nodes only.
     let predicted = &input.inertial.predicted;
     input.inertial.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
         let chord = predicted[e + 1] - predicted[e];

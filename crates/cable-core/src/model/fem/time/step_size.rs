@@ -1,46 +1,46 @@
-//! Steps follow how fast a taut cable vibrates.
+//! This module adapts the time step to the frequency at which a taut cable vibrates.
 //!
-//! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency
-//! ω comes out slower by (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer,
-//! Wanner, "Solving ordinary differential equations II", 1996, V.1). Even steps have a part of BDF3
-//! and half of that error; it is BDF2's that is reckoned with, for steps that change. The frequency
-//! of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean
-//! of the cable, which falls or is carried along.
+//! BDF2 replaces ẋ by (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + …, so a vibration of angular frequency ω
+//! becomes slower by the fraction (ωh)²/3 and loses the fraction π(ωh)³/2 of its amplitude a period
+//! (Hairer, Wanner, "Solving ordinary differential equations II", 1996, V.1). Even steps are
+//! blended with BDF3 and have half of that error; the error of BDF2 is used because steps may
+//! change. The frequency is observed from the motion, ω² = Σ m a² / Σ m v² as a moving average,
+//! with a and v less the mean of the cable, which falls or is carried along.
 //!
-//! Steps also follow how hard they are to solve. Where one is refused, the next of the same length
-//! mostly is as well, and to find that out costs more than several shorter steps. So steps stay as
-//! short as the one that was solved, until a frame takes few iterations (E. Ramm, "Strategies for
-//! tracing the nonlinear response near limit points", in: Nonlinear finite element analysis in
+//! Steps also adapt to the difficulty of their solution. If one is refused, the next of the same
+//! length mostly is as well, and the failure costs more than several shorter steps. So steps stay
+//! as short as the one that was solved, until a frame takes few iterations (E. Ramm, "Strategies
+//! for tracing the nonlinear response near limit points", in: Nonlinear finite element analysis in
 //! structural mechanics, Springer 1981, has the same law for load steps).
 
 use crate::math::{Vec2, bounded, larger, smaller};
 use crate::model::fem::settings::StepTuning;
 use crate::model::fem::state::CableState;
 
-/// The observed frequency of the motion, and the step that follows from it.
+/// Chooses the step from the observed frequency of the motion.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct StepSizeController {
     /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
     seen: [f64; 3],
     /// Longest step of the next frame, s.
     step: f64,
-    /// Longest step of all, s.
+    /// Upper limit of the step, s.
     longest: f64,
-    /// Longest step that is tried after others were refused, s.
+    /// Longest step that is tried after a refusal, s.
     solvable: f64,
-    /// Most Newton iterations of a step of the present frame.
+    /// Greatest number of Newton iterations of a step in the present frame.
     most_iterations: usize,
     /// True if a step of the present frame was refused.
     refused: bool,
 }
 
 impl StepSizeController {
-    /// Nothing was seen yet.
+    /// A controller without observations.
     pub(in crate::model::fem) fn new(longest: f64) -> Self {
         Self { seen: [0.0; 3], step: longest, longest, solvable: longest, most_iterations: 0, refused: false }
     }
 
-    /// Forgets the motion that was seen.
+    /// Forgets the observed motion.
     pub(in crate::model::fem) fn forget(&mut self) {
         *self = Self::new(self.longest);
     }
@@ -50,19 +50,19 @@ impl StepSizeController {
         smaller(self.step, self.solvable)
     }
 
-    /// A step was solved in so many iterations.
+    /// Records a step that was solved in so many iterations.
     pub(in crate::model::fem) fn note_solved(&mut self, iterations: usize) {
         self.most_iterations = self.most_iterations.max(iterations);
     }
 
-    /// A step was refused, and is tried again as one of `size` (s). What needs steps shorter than
-    /// the shortest of a frame passes with its frame.
+    /// Records a refused step, which is tried again with `size` (s). Events that need steps shorter
+    /// than the shortest one of a frame pass within the frame.
     pub(in crate::model::fem) fn note_refused(&mut self, tuning: &StepTuning, size: f64) {
         self.solvable = smaller(self.solvable, larger(size, tuning.shortest_fraction * self.longest));
         self.refused = true;
     }
 
-    /// Lets steps grow again after a frame that was easy to solve.
+    /// Lets steps grow again after an easy frame.
     fn end_frame(&mut self, tuning: &StepTuning) {
         if !self.refused && self.most_iterations <= tuning.easy_iterations {
             self.solvable = smaller(tuning.max_change * self.solvable, self.longest);
@@ -70,7 +70,7 @@ impl StepSizeController {
         (self.refused, self.most_iterations) = (false, 0);
     }
 
-    /// Looks at a step of `h` (s) just made. A cable that falls or lands does not vibrate.
+    /// Observes a step of `h` (s) just made. A cable that falls or lands does not vibrate.
     pub(in crate::model::fem) fn observe(&mut self, cable: &CableState, h: f64) {
         if !is_string(cable) {
             self.seen = [0.0; 3];
@@ -93,8 +93,8 @@ impl StepSizeController {
         self.seen[2] += h;
     }
 
-    /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length
-    /// (m) whose frequency may be off by a part `tolerance`.
+    /// Chooses the longest step of the next frame, after one of `dt` (s), for a cable of a length
+    /// (m) with a relative frequency error of at most `tolerance`.
     pub(in crate::model::fem) fn choose(&mut self, tuning: &StepTuning, tolerance: f64, length: f64, dt: f64) {
         let [changes, speeds, time] = self.seen;
         let frequency = (changes / speeds).sqrt();
@@ -109,7 +109,7 @@ impl StepSizeController {
     }
 }
 
-/// True if the cable touches nothing and is pulled all along by more than its weight.
+/// True if the cable touches nothing and its tension exceeds its weight everywhere.
 fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
@@ -137,7 +137,7 @@ mod tests {
         let mut pace = StepSizeController::new(LONGEST);
         pace.note_refused(&Tuning::default().step, 0.5 * LONGEST);
         pace.note_refused(&Tuning::default().step, 0.25 * LONGEST);
-        // The frame of the refusal says nothing about a longer step, however easy its end was.
+        // The frame of the refusal gives no evidence for a longer step, however easy its end was.
         assert_eq!(frame(&mut pace, 1), 0.25 * LONGEST);
         // A hard frame keeps the step.
         assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations + 1), 0.25 * LONGEST);

@@ -1,17 +1,19 @@
-//! The work of a step is that of each kind of force, from its own force and displacement.
+//! This module computes the work of each kind of force in a step, from its own force and
+//! displacement.
 //!
-//! A step balances forces at its end, M a (v₁ − v̂) = Σ F₁ (see `bdf2`). Times the ways Δx of the
-//! nodes, and what slides through sliding nodes, that is
+//! A step balances forces at its end, M a (v₁ − v̂) = Σ F₁ (see `bdf2`). Multiplied by the
+//! displacements Δx of the nodes and the slides of sliding nodes, that is
 //! ```text
 //! I − C = Σ F₁·Δx,     I = M a (v₁ − v̂)·Δx,     C = −∂U/∂x(x₁)·Δx
 //! ```
 //! with U the energy of height, stretch and bending, and the sum over all other forces. The work of
-//! a force that changes within the step is its mean force times the way. So with K the kinetic
-//! energy the integrator gives the cable
+//! a force that changes within the step is its mean force times the displacement. So with K the
+//! kinetic energy the integrator gives the cable the energy
 //! ```text
 //! numerical = ΔK + ΔU − (I − C) + Σ (F₁·Δx − work)
 //! ```
-//! which knows nothing of the balance: it is closed where gains and works agree.
+//! which is computed without using the balance of energies: the account closes if gains and works
+//! agree.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -24,39 +26,39 @@ use crate::model::fem::time::loss_memory;
 use crate::scene::SupportKind;
 use crate::solution::Energy;
 
-/// The work of a step that is balanced and not yet made.
+/// The work of a balanced step before it is accepted.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct StepWork {
     works: Works,
-    /// I − C, J, without the work of the weight where nothing slides.
+    /// I − C, J; without sliding nodes it excludes the work of the weight.
     balanced: f64,
-    /// The energy at the end where nothing slides, but for that of motion.
+    /// The energy at the end of the step without kinetic energy; None if there are sliding nodes.
     stored: Option<Energy>,
 }
 
 impl StepWork {
-    /// The energy at the end of the step but for that of motion, where that is known.
+    /// The energy at the end of the step without kinetic energy, if it is known.
     pub(in crate::model::fem) fn stored(&self) -> Option<Energy> {
         self.stored
     }
 
-    /// The works of a step from one energy to another.
+    /// The work of each kind of force in a step from one energy to another.
     pub(in crate::model::fem) fn between(self, before: Energy, after: Energy) -> Works {
-        // Height is linear in the unknowns if nothing slides.
+        // Without sliding nodes the energy of height is linear in the unknowns.
         let linear = if self.stored.is_some() { after.gravity_j - before.gravity_j } else { 0.0 };
         let gained = after.total_j() - before.total_j() - linear;
         Works { numerical: self.works.numerical + gained - self.balanced, ..self.works }
     }
 }
 
-/// Adds a work to its kind by the mean force in the step, and what that by the force at its end is
-/// more to the numerical one, J.
+/// Adds the work by the `mean` force in the step to its kind, and the excess of that by the force
+/// at the `end` to the numerical work, J.
 fn note(kind: &mut f64, numerical: &mut f64, [mean, end]: [f64; 2]) {
     *kind += mean;
     *numerical += end - mean;
 }
 
-/// A step that is balanced, with the ways of its nodes.
+/// A balanced step with the displacements of its nodes.
 struct BalancedStep<'a> {
     cable: &'a CableState,
     unknowns: &'a Unknowns,
@@ -64,8 +66,8 @@ struct BalancedStep<'a> {
     ways: &'a [Vec2],
 }
 
-/// The work of a step that is balanced at unknowns; `solver` has the ways of the nodes (m) and the
-/// forces on supports at its start (N).
+/// The work of a step balanced at `unknowns`; `solver` has the displacements of the nodes (m) and
+/// the forces on supports at its start (N).
 pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknowns, solver: &SolverMemory) -> StepWork {
     let step = BalancedStep { cable, unknowns, ways: &solver.ways.ways };
     let mut works = Works::default();
@@ -108,14 +110,14 @@ impl BalancedStep<'_> {
                 sum -= (b - a - chord).dot(&(to - from)) * coupling;
             }
         }
-        // The springs of hands are a part of that inertia.
+        // The springs of hands are included in that inertia.
         for &(k, stiffness, at) in &input.inertial.hands {
             sum -= (x[k] - at).dot(&self.ways[k]) * stiffness;
         }
         sum
     }
 
-    /// Work of a force on each metre of cable (N/m), J.
+    /// Work of a distributed force (N/m), J.
     fn distributed(&self, body: Vec2) -> f64 {
         let (mesh, x, slides) = (self.mesh(), &self.unknowns.positions, &self.unknowns.slides);
         let mut moved = Vec2::zeros();
@@ -152,7 +154,7 @@ impl BalancedStep<'_> {
         sum
     }
 
-    /// Wind, current and loads.
+    /// Adds the work of wind, current and loads.
     fn loads(&self, works: &mut Works) {
         let (problem, input) = (&self.cable.problem, &self.cable.input);
         let [from, to] = [self.cable.motion.time, input.loads.time_s];
@@ -175,7 +177,8 @@ impl BalancedStep<'_> {
         note(&mut works.loads, &mut works.numerical, both);
     }
 
-    /// Supports and hands, whose forces on the cable were the opposite of `before` at the start, N.
+    /// Adds the work of supports and hands, whose forces on the cable were the opposite of `before`
+    /// (N) at the start.
     fn supports(&self, works: &mut Works, before: &[Vec2]) {
         let (mesh, x, cable) = (self.mesh(), &self.unknowns.positions, self.cable);
         let mut support = |k: usize, force: Vec2| {
@@ -192,9 +195,9 @@ impl BalancedStep<'_> {
         }
     }
 
-    /// A bar without sliding nodes and the force (N) of its branches at the start: what its
-    /// material loses; returns the work of stretch at the end of the step and what it stores then,
-    /// J.
+    /// Adds the damping work of a bar without sliding nodes; `was` is the force (N) of its branches
+    /// at the start. Returns the work of stretch at the end of the step and the energy that it
+    /// stores then, J.
     #[inline]
     fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
@@ -213,8 +216,8 @@ impl BalancedStep<'_> {
         [-pull * along, 0.5 * pull * (p - l)]
     }
 
-    /// The same of all bars of a mesh without sliding nodes; returns the work of stretch at the end
-    /// of the step (J) and the energy stored then, but for that of motion.
+    /// Adds the damping work of all bars of a mesh without sliding nodes; returns the work of
+    /// stretch at the end of the step (J) and the energy stored then without kinetic energy.
     fn plain_bars(&self, works: &mut Works) -> (f64, Energy) {
         let (branches, count) = loss_memory::forces(self.cable).unwrap_or((&[], 1));
         let (arc_length, x) = (&self.mesh().arc_length, &self.unknowns.positions);
@@ -230,7 +233,7 @@ impl BalancedStep<'_> {
         (sum[0], Energy { kinetic_j: 0.0, gravity_j, stretch_j: sum[1], bending_j })
     }
 
-    /// Adds what the material of bars loses; returns the work of stretch at the end of the step, J.
+    /// Adds the damping work of bars; returns the work of stretch at the end of the step, J.
     fn bars(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let mut stretched = 0.0;
@@ -246,7 +249,7 @@ impl BalancedStep<'_> {
             let (along, more) = (path.direction.dot(&way), l - mesh.rest_length[e]);
             stretched -= elastic[0] * along + elastic[1] * more;
             works.material -= loss[0] * along + loss[1] * more;
-            // A wheel that moves draws at both bars.
+            // A moving wheel pulls at both bars.
             for (j, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(j, _)| mesh.sliding[e + j].is_some()) {
                 let pull = path.direction * (sign * (elastic[0] + loss[0]));
                 let on = bar_weight::on_ends(mesh, e, x, Some(&self.unknowns.slides), input.loads.body)[j];
@@ -256,7 +259,7 @@ impl BalancedStep<'_> {
         stretched
     }
 
-    /// Loss of bending; returns the work of bending at the end of the step, J.
+    /// Adds the damping work of bends; returns the work of bending at the end of the step, J.
     fn bends(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         if mesh.is_flexible() {
@@ -268,7 +271,7 @@ impl BalancedStep<'_> {
         -bends_slope(mesh, mesh.bending_stiffness, None, x, self.ways)
     }
 
-    /// Friction at sliding nodes.
+    /// Adds the work of friction at sliding nodes.
     fn sliding(&self, works: &mut Works) {
         let (mesh, input, x, slides) =
             (self.mesh(), &self.cable.input, &self.unknowns.positions, &self.unknowns.slides);
@@ -284,7 +287,8 @@ impl BalancedStep<'_> {
         }
     }
 
-    /// Way of the material that a touch presses on, m, weighted by what bears it, and that weight.
+    /// Displacement of the material under a contact, m, weighted by the shares of its material
+    /// nodes, and the sum of these weights.
     fn way_at(&self, touch: &ContactPair) -> (Vec2, f64) {
         let moves = |k: usize| self.mesh().sliding[k].is_none();
         let [a, b] = touch.shares();
@@ -295,7 +299,8 @@ impl BalancedStep<'_> {
         (way, touch.material_share(moves))
     }
 
-    /// Normal forces and friction of obstacles, of the floor and of the cable on itself.
+    /// Adds the work of normal forces and friction of obstacles, of the floor and of the cable on
+    /// itself.
     fn contacts(&self, works: &mut Works, solver: &SolverMemory) {
         let (cable, x, contacts) = (self.cable, &self.unknowns.positions, &self.cable.contacts);
         let carried = |touch: &ContactPair, share: f64| {

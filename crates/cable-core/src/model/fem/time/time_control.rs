@@ -1,17 +1,17 @@
-//! The control of time chooses the length of inner steps and puts a cable at rest to sleep.
+//! The time control chooses the length of inner steps and puts a cable at rest to sleep.
 
 use crate::model::fem::time::sleeping::Sleep;
 use crate::model::fem::time::step_size::StepSizeController;
 
-/// The control of time.
+/// The data of the time control.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct TimeControl {
     /// The length of inner steps.
     pub(in crate::model::fem) step_size: StepSizeController,
-    /// The watch for a cable at rest.
+    /// The detector of a cable at rest.
     pub(in crate::model::fem) sleep: Sleep,
-    /// Part of its frequency that a vibration may be off by.
+    /// Relative error of frequency that a vibration may have.
     pub(in crate::model::fem) tolerance: f64,
-    /// End of the present advance, s.
+    /// End of the present `advance`, s.
     pub(in crate::model::fem) due: f64,
 }

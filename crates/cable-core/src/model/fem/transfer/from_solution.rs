@@ -1,12 +1,12 @@
-//! This module continues from a solution, of another model or an earlier instant, and keeps what
-//! friction holds.
+//! This module continues from a solution, of another model or an earlier instant, with its
+//! friction.
 //!
-//! A [`State`] says where a cable is; an answer also says what tension it has. Between two places
-//! of the cable with forces F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs:
-//! N = C·n is the normal force there and C·t friction. Friction here is a spring of the length ε to
-//! an anchor (`contact/friction.rs`), of the force μN(2y/ε − y|y|/ε²): the sliding y that gives the
-//! friction the answer had is what a contact remembers from then on. Corners and posts get their
-//! sliding nodes at once, with the material the answer has there.
+//! A [`State`] holds positions; an answer also holds tensions. Between two places of the cable with
+//! forces F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles exert the force C = F₁ − F₂ − bΔs: N = C·n is the
+//! normal force there and C·t friction. Friction here is a spring of the length ε to an anchor
+//! (`contact/friction.rs`) with the force μN(2y/ε − y|y|/ε²): each contact stores the slide y that
+//! gives the friction of the answer. Corners and posts get their sliding nodes at once, with the
+//! material that the answer has there.
 
 use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, angle_between, rotate, round_of};
@@ -17,22 +17,22 @@ use crate::model::fem::system::ContactPair;
 use crate::solution::Node;
 use crate::state::State;
 
-/// Part of an even bar over which directions are read.
+/// Distance over which directions are read, as a fraction of an even bar.
 const NEAR: f64 = 1e-3;
 
-/// Part of its radius by which a node of an answer may be off a round and lie on it.
+/// Distance from a round within which a node of an answer lies on it, as a fraction of its radius.
 const ON_ROUND: f64 = 1e-3;
 
-/// Part of the greatest tension below which there is none. Smaller: the rounding of an answer is a
-/// tension, and loose cable is given away; larger: bars that pull are given too much material.
+/// Tension below which a bar is slack, as a fraction of the greatest. Smaller: the round-off of an
+/// answer counts as tension, and loose bars lose material; larger: taut bars are given too much
+/// material.
 const SLACK: f64 = 1e-6;
 
-/// An answer's nodes read as a curve.
+/// The nodes of an answer, interpolated as a curve.
 pub(in crate::model::fem) struct SolutionCurve<'a>(pub(in crate::model::fem) &'a [Node]);
 
 impl SolutionCurve<'_> {
-    /// The nodes on either side of a material point (m), and how far it is from the first to the
-    /// second.
+    /// The nodes on either side of a material point (m), and its place between them, 0 to 1.
     fn around(&self, s: f64) -> Option<(&Node, &Node, f64)> {
         let nodes = self.0;
         let k = nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, nodes.len().max(2) - 1);
@@ -45,8 +45,8 @@ impl SolutionCurve<'_> {
         self.around(s).map_or(0.0, |(a, b, f)| a.tension_n + (b.tension_n - a.tension_n) * f)
     }
 
-    /// Position, m: on the parabola of curvature and strain between two nodes. Where an arc begins
-    /// the curvature jumps; the lesser counts.
+    /// Position (m) on the parabola with the curvature and strain between two nodes. Where an arc
+    /// begins the curvature jumps, and the smaller value is used.
     fn place(&self, s: f64) -> Option<Vec2> {
         let (a, b, f) = self.around(s)?;
         let (from, to) = (a.at(), b.at());
@@ -62,7 +62,7 @@ impl SolutionCurve<'_> {
         Some(from + chord * along - perp(chord) * (curvature * (b.arc_length_m - a.arc_length_m) * bulge))
     }
 
-    /// Material at an angle (rad) from the beginning of an arc, m.
+    /// Arc length (m) at an angle (rad) from the beginning of an arc.
     fn at_turn(&self, arc: &RoundArc, angle: f64) -> f64 {
         let center = arc.node.end.center;
         let mut turned = 0.0;
@@ -87,7 +87,7 @@ impl SolutionCurve<'_> {
     }
 }
 
-/// A state with the nodes of this mesh where the answer has them.
+/// A state with the nodes of this mesh at their positions in the answer.
 pub(in crate::model::fem) fn state_of_solution(cable: &CableState, curve: &SolutionCurve<'_>, whole: &State) -> State {
     let mut s = whole.arc_length_m.clone();
     s.extend(&cable.mesh.arc_length);
@@ -103,7 +103,7 @@ pub(in crate::model::fem) fn state_of_solution(cable: &CableState, curve: &Solut
     }
 }
 
-/// Nodes of the cable where they were before they were pushed clear of obstacles.
+/// Restores the positions of nodes before they were pushed clear of obstacles.
 pub(in crate::model::fem) fn restore_positions(cable: &mut CableState, state: &State) {
     for k in 0..cable.mesh.nodes() {
         if let (None, Some(at)) = (cable.mesh.sliding[k], state.position_at(cable.mesh.arc_length[k])) {
@@ -112,7 +112,7 @@ pub(in crate::model::fem) fn restore_positions(cable: &mut CableState, state: &S
     }
 }
 
-/// Puts sliding nodes on the rounds that the answer lies on.
+/// Puts sliding nodes on the rounds on which the answer lies.
 pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: &SolutionCurve<'_>) {
     if !cable.meshing.slides {
         return;
@@ -145,7 +145,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
     }
 }
 
-/// A sliding node at a material point (m).
+/// Adds a sliding node at a material point (m).
 fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
     let near = cable.mesh.tuning.remesh.min_bar * cable.even();
     let k = cable.mesh.arc_length.partition_point(|&a| a <= s);
@@ -161,7 +161,7 @@ fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
     }
 }
 
-/// The rounds that the answer lies on, in order.
+/// The rounds on which the answer lies, in order.
 fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<RoundArc> {
     let geometry = cable.problem.world.geometry();
     let mut out: Vec<RoundArc> = Vec::new();
@@ -188,10 +188,10 @@ fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<RoundA
     out
 }
 
-/// Gives every bar between two nodes in contact the material that makes its tension that of the
-/// answer: rounds are the barrier's reach wider than the answer's, which between two corners
-/// that hold would be a great strain. What that takes is given by the spans on either side as
-/// they can: a loose end all of it, two spans by their lengths.
+/// Gives every bar between two nodes in contact the material with which it has the tension of the
+/// answer: rounds are wider than the answer's by the barrier's reach, which would be a large strain
+/// between two sticking corners. The spans on either side give that material: a loose end gives all
+/// of it, two spans share it by their lengths.
 pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &SolutionCurve<'_>) {
     let on = |d: &CableState, k: usize| {
         d.mesh.sliding[k].is_some()
@@ -217,12 +217,12 @@ pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &Solut
     cable.motion.previous_arc_length.clone_from(&cable.mesh.arc_length);
 }
 
-/// The same for nodes in contact one after the other; `next` is the next that is held or in
+/// Does this for a run of successive nodes in contact; `next` is the next node that is held or in
 /// contact.
 fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
     let s = cable.mesh.arc_length.clone();
     let greatest = curve.0.iter().map(|n| n.tension_n).fold(0.0, larger);
-    // A loose bar has no tension and more material than way: it keeps its material.
+    // A loose bar has no tension and more material than path: it keeps its material.
     let mut bars: Vec<BarMaterial> = (first..last)
         .map(|e| {
             let (material, tension) = (s[e + 1] - s[e], curve.tension(0.5 * (s[e] + s[e + 1])));
@@ -260,16 +260,17 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
     }
 }
 
-/// Material of a bar beside obstacles.
+/// The material of a bar beside obstacles.
 struct BarMaterial {
-    /// Its material, m.
+    /// Length of its material, m.
     length: f64,
-    /// What it has more than it needs to be straight, m.
+    /// Length beyond that of the straight bar, m.
     spare: f64,
 }
 
-/// Makes bars as long together as a length (m), as far as loose bars can: they give what they have
-/// to spare and take what is over. Returns what the bars have more than that length, m.
+/// Changes the lengths of loose bars so that the sum over all bars is `length` (m), as far as
+/// possible: loose bars give their spare material, and take a surplus. Returns the remaining
+/// difference, m.
 fn share_with_loose_bars(bars: &mut [BarMaterial], length: f64) -> f64 {
     let over = bars.iter().map(|b| b.length).sum::<f64>() - length;
     let spare: f64 = bars.iter().map(|b| b.spare).sum();
@@ -283,8 +284,8 @@ fn share_with_loose_bars(bars: &mut [BarMaterial], length: f64) -> f64 {
     over - given
 }
 
-/// Plan view: every node remembers the sliding with which the floor does what the answer asks
-/// for there, as far as it can.
+/// Plan view: stores the slide of every node with which the floor has the friction of the answer
+/// there, as far as possible.
 pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve: &SolutionCurve<'_>) {
     if cable.problem.floor_friction.is_none() {
         return;
@@ -297,7 +298,7 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
         let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
         let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
         let asked = match cable.mesh.sliding[k] {
-            // The floor holds there first, and the round the rest.
+            // The floor's friction acts there first, and the round takes the rest.
             Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
             None => match (curve.force(low, near), curve.force(high, near)) {
                 (Some(before), Some(after)) => Some(after - before + cable.input.loads.body * (high - low)),
@@ -305,13 +306,13 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
             },
         };
         let Some((asked, way)) = asked.and_then(|a| Some((a.norm(), a.try_normalize(0.0)?))) else { continue };
-        // The floor resists with R(2u − u²).
+        // The friction of the floor is R(2u − u²).
         let part = if asked < *limit { asked / limit } else { 1.0 };
         cable.contacts.floor_slip[k] = way * (cable.contacts.slip * (1.0 - (1.0 - part).sqrt()));
     }
 }
 
-/// Every contact remembers the sliding that gives the friction of the answer.
+/// Stores the slide of every contact that gives the friction of the answer.
 pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &SolutionCurve<'_>) {
     let mut touches: Vec<ContactPair> = Vec::new();
     cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.positions, &mut touches);
@@ -329,7 +330,7 @@ pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &Solu
         let normal = pushed.dot(&touch.pair.gap.normal);
         let limit = touch.pair.gap.friction * normal;
         if limit > 0.0 {
-            // On the node acts −μN(2u − u|u|) along the tangent.
+            // The force on the node is −μN(2u − u|u|) along the tangent.
             let part = (-pushed.dot(&touch.tangent()) / limit).clamp(-1.0, 1.0);
             let u = part.signum() * (1.0 - (1.0 - part.abs()).sqrt());
             cable.contacts.remember(touch, u * cable.contacts.slip);
@@ -337,7 +338,7 @@ pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &Solu
     }
 }
 
-/// A round that an answer lies on; the mark of its node is where the cable comes on to it.
+/// A round on which an answer lies; the mark of its node is where the cable meets it.
 struct RoundArc {
     /// First and last node of the answer on it.
     nodes: [usize; 2],
@@ -349,7 +350,7 @@ struct RoundArc {
 }
 
 impl RoundArc {
-    /// Takes in all nodes before and after that lie on a round of this radius (m).
+    /// Extends the arc by all nodes before and after it that lie on a round of this radius (m).
     fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
         let is_on_round = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
@@ -361,7 +362,7 @@ impl RoundArc {
         self.turn = whole.abs();
         self.material = [on[0].arc_length_m, on[on.len() - 1].arc_length_m];
         self.node.end.sense = if whole < 0.0 { -1.0 } else { 1.0 };
-        // Nodes of the answer lie on the round within a part of its radius.
+        // Nodes of the answer lie on the round within a fraction of its radius.
         self.node.end.mark = (on[0].at() - center).try_normalize(0.0).unwrap_or(self.node.end.mark);
     }
 }

@@ -7,9 +7,9 @@ use crate::model::fem::state::CableState;
 
 use crate::state::State;
 
-/// Bars that cut off by more than the cable's radius what the state leads round get a node
-/// where the state is farthest from them: from there inside nothing tells on which side of a
-/// corner they were, and nothing could push them out.
+/// Inserts nodes in bars that cut off a corner of the state by more than the cable's radius, at the
+/// point of the state that is farthest from the bar. So deep inside, a bar no longer shows on which
+/// side of the corner the cable was, and could not be pushed out.
 pub(in crate::model::fem) fn follow_corners(cable: &mut CableState, state: &State) {
     let (mut e, mut left) = (0, state.arc_length_m.len());
     while e + 1 < cable.mesh.nodes() {
@@ -39,7 +39,7 @@ fn farthest(cable: &CableState, e: usize, state: &State) -> Option<(f64, Vec2)> 
     (off(&farthest.1) > cable.problem.radius).then_some(farthest)
 }
 
-/// Takes all sliding nodes out.
+/// Removes all sliding nodes.
 pub(in crate::model::fem) fn remove_all_sliding_nodes(cable: &mut CableState) {
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {

@@ -2,8 +2,9 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `from_state.rs` | state of another mesh or model taken over |
-//! | `from_solution.rs` | answer taken over with its tensions: sliding nodes, stretch, friction anchors |
+//! | `from_state.rs` | adopts a state of another mesh or model |
+//! | `from_solution.rs` | adopts an answer with its tensions: sliding nodes, stretch, friction
+//! anchors |
 
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
@@ -24,11 +25,10 @@ use crate::solution::CableSolution;
 use crate::state::State;
 
 impl Stepper {
-    /// Takes over a state (from statics: at rest).
+    /// Adopts a state (from statics: at rest).
     ///
-    /// # Errors
-    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes
-    /// cannot be pushed out.
+    /// # Errors An error if a number is not finite, and `Buried` if the state is so far inside an
+    /// obstacle that nodes cannot be pushed out.
     pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
@@ -44,7 +44,7 @@ impl Stepper {
         taken
     }
 
-    /// Goes on from an answer of the same cable at rest, holding what friction held there.
+    /// Continues from an answer of the same cable at rest, with its friction.
     ///
     /// # Errors
     /// As [`Self::set_state`].
@@ -77,9 +77,9 @@ impl Stepper {
         renew_input(&mut self.cable);
         adopt_friction(&mut self.cable, &curve);
         adopt_floor_friction(&mut self.cable, &curve);
-        // Bars that stick from node to node are far from their balance by hardly any way: where
-        // Newton's method alone does not find it, a resistance that fades leads there. From bars
-        // that cut a corner it would lead to where they still do.
+        // With sticking nodes the balance is a tiny displacement but a large force away. If
+        // Newton's method alone does not find it, a fading resistance does. From bars that cut a
+        // corner it would lead to a state that still cuts it.
         let found = self.quasi_static_step(time_s, dragged).or_else(|failed| {
             match IntersectionCheck::of(&self.cable).cuts_nothing() {
                 true => self.relax(time_s, dragged),
@@ -94,7 +94,7 @@ impl Stepper {
         Ok(())
     }
 
-    /// Takes over a state: node by node where the nodes are the same, else by arc length.
+    /// Adopts a state: node by node if the nodes are the same, else by arc length.
     fn take_over(&mut self, state: &State) -> Result<(), SolveError> {
         self.time_control.sleep.wake();
         let led = put_outline(&mut self.cable);
@@ -118,10 +118,10 @@ impl Stepper {
         if !same {
             thread_pulleys(&mut self.cable, Some(state));
         }
-        // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
+        // A state in motion continues as it is; one at rest is brought to rest on this mesh.
         let still = !state.in_motion && self.cable.motion.velocities.iter().all(|v| v.norm() == 0.0);
         // So does a first equilibrium: bars that cut a corner would come to rest there. Within a
-        // run without inertia what friction holds is not disturbed.
+        // quasi-static run friction is not disturbed.
         if !same && (!still || state.time_s == 0.0) {
             follow_corners(&mut self.cable, state);
         }

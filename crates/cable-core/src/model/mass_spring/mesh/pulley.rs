@@ -10,14 +10,14 @@
 //! length = L + R₁f₁ (θₘ₁ − θ) + R₂f₂ (θ − θₘ₂),      ∂length/∂(ends) = ∓t
 //! ```
 //!
-//! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round,
-//! and the energy is exact. The material obeys ṡ = u with the mass of the half elements beside it
-//! and of the arc, m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of
-//! the straight part; friction holds within the capstan's cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a),
-//! taken where the cable touches the wheel. Material sliding through a fixed point in space is
-//! after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of
-//! highly constrained strands", ACM Transactions on Graphics 30 (2011); they share masses
-//! consistently, here they are lumped.
+//! so an element is a spring of that length with rest length λ(s₂ − s₁), even if it winds round
+//! wheels, and the energy is exact. The material obeys ṡ = u with the mass of the half elements
+//! beside it and of the arc, m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the
+//! middle of the straight part; friction holds within the capstan's cone |T_b − T_a| ≤
+//! tanh(μφ/2)(T_b + T_a), taken where the cable touches the wheel. Material sliding through a fixed
+//! point in space is after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic
+//! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011); they share
+//! masses consistently, here they are lumped.
 
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
@@ -162,7 +162,7 @@ impl Pulley {
         }
     }
 
-    /// Greatest |T_b − T_a| over T_b + T_a that friction holds.
+    /// Greatest ratio of |T_b − T_a| to T_b + T_a that friction holds.
     pub(in crate::model::mass_spring) fn friction_ratio(&self) -> f64 {
         (0.5 * self.friction * self.turn.abs()).tanh()
     }
@@ -176,7 +176,7 @@ impl Wheels {
         wheels
     }
 
-    /// Finds again which pulley is at which node.
+    /// Rebuilds the index of pulleys by node.
     pub(in crate::model::mass_spring) fn index(&mut self) {
         self.at_node.fill(None);
         for (k, p) in self.pulleys.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! The springs lose energy by their strain rate (Kelvin–Voigt), with a coefficient that follows
-//! from the damping ratio of the cable.
+//! This module computes the damping of the springs by their strain rate (Kelvin–Voigt) from the
+//! damping ratio of the cable.
 
 use crate::math::bounded;
 use crate::model::mass_spring::settings::MeshTuning;

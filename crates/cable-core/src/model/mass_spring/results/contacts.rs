@@ -1,4 +1,5 @@
-//! The contacts of the cable, each with what it leaves uncertain of the tension.
+//! This module reports the contacts of the cable, each with the uncertainty of the tension beyond
+//! it.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, larger, perp};

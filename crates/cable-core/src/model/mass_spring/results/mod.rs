@@ -1,4 +1,4 @@
-//! These modules read the answer out of the state of the model.
+//! These modules make the answer from the state of the model.
 //!
 //! | room | content |
 //! |---|---|
@@ -16,7 +16,7 @@ use crate::solution::{Assumptions, CableSolution, ErrorEstimates};
 use crate::state::State;
 use nodes::NodeReader;
 
-/// The answer of the present state, with its errors where `tolerance` (relative) was asked for.
+/// The answer of the present state, with warnings of errors above `tolerance` (relative).
 pub(in crate::model::mass_spring) fn answer(
     chain: &ChainState,
     errors: &ErrorEstimates,
@@ -42,7 +42,7 @@ pub(in crate::model::mass_spring) fn answer(
     CableSolution { error_estimate, errors: *errors, ..answer }
 }
 
-/// Positions and velocities as every model reads them.
+/// The state in the form that every model accepts.
 pub(in crate::model::mass_spring) fn state(chain: &ChainState) -> State {
     let time_s = chain.clock.time_s;
     let nodes = NodeReader { mesh: &chain.mesh, time_s }.nodes();

@@ -1,4 +1,5 @@
-//! Positions, tensions and internal forces at the nodes, and the forces on supports.
+//! This module computes positions, tensions and internal forces at the nodes, and the forces on
+//! supports.
 
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
@@ -8,7 +9,7 @@ use crate::model::mass_spring::forces::{bending, nodal, reactions};
 use crate::model::mass_spring::mesh::{Mesh, Pulley};
 use crate::solution::{Node, SupportReaction};
 
-/// Tensions of both sides of a point that are the same to this part make one node.
+/// Relative difference of the tensions on both sides of a point up to which they make one node.
 const TENSION_JUMP_TOLERANCE: f64 = 1e-9;
 
 /// A side of a pulley.
@@ -18,7 +19,7 @@ enum Side {
     Beyond,
 }
 
-/// A mesh at a time, as the answer reads it.
+/// Reads nodes and reactions from a mesh at a time.
 #[derive(Clone, Copy)]
 pub(in crate::model::mass_spring) struct NodeReader<'a> {
     pub mesh: &'a Mesh,
@@ -193,7 +194,7 @@ impl NodeReader<'_> {
             self.mesh.support_node.iter().position(|&n| n == i).filter(|&k| self.mesh.problem.supports[k].mass == 0.0);
         let tension = self.mesh.tension.get(e).copied().unwrap_or(0.0);
         let hung = support.map_or(tension, |k| self.mesh.problem.hung_on(k, self.time_s).norm());
-        // On the ground a part of it presses there.
+        // On the ground a part of the load presses there.
         if self.mesh.problem.world.signed_gap(self.mesh.position[i], self.mesh.tuning.impact.skin_m).is_some()
             && hung > tension
         {
@@ -217,7 +218,7 @@ impl NodeReader<'_> {
         let force = if self.mesh.supported[i] {
             reactions::of_support(self.mesh, i)
         } else {
-            // The cable pulls a dead load the other way.
+            // The reaction of a dead load is minus the load.
             -self.mesh.problem.hung_on(k, self.time_s)
         };
         SupportReaction {

@@ -1,4 +1,4 @@
-//! The solver balances the preview's springs for the whole cable at once.
+//! This solver balances the preview's springs for the whole cable at once.
 //!
 //! With λ = −T h² (T tension, h the sub-step), w the inverse masses, t the directions and C =
 //! length − l₀ at the predicted place, Δx = w ∇C λ and C + λ l₀/(EA h²) = 0 make
@@ -7,7 +7,7 @@
 //! A λ = −C,   A_ee = w_e + w_{e+1} + l₀/(EA h²),   A_{e,e+1} = −w_{e+1} t_e·t_{e+1}
 //! ```
 //!
-//! tridiagonal; elements that would push are left out. Between the elements b before and a after a
+//! tridiagonal; compressed elements are left out. Between the elements b before and a after a
 //! pulley the material σ (mass m, thermal stretch θ) takes the place of the node: C_b = C_b⁰ − θΔσ,
 //! C_a = C_a⁰ + θΔσ. Friction is Coulomb's on a round, |T_b − T_a| ≤ g (T_b + T_a), g = tanh(μφ/2),
 //! sliding in the sense s = ±1 or stuck:
@@ -33,7 +33,7 @@ enum PulleyFriction {
     Stuck,
     /// It slides, +1 to the side before the pulley, −1 to the side after it.
     Slides(f64),
-    /// No material is left that could run through.
+    /// No material is left that could slide through.
     Blocked,
 }
 
@@ -60,8 +60,8 @@ pub(in crate::model::mass_spring) struct ConstraintSolver {
 }
 
 impl ConstraintSolver {
-    /// Moves the predicted nodes, and the material on pulleys, so that the springs balance;
-    /// tensions are those that do it.
+    /// Moves the predicted nodes, and the material on pulleys, so that the springs balance, and
+    /// sets their tensions.
     pub(in crate::model::mass_spring) fn solve(&mut self, mesh: &mut Mesh, h: f64) {
         self.set_spring_rows(mesh, h);
         for _ in 0..mesh.tuning.preview.max_rounds {
@@ -80,7 +80,7 @@ impl ConstraintSolver {
         for k in 0..mesh.wheels.pulleys.len() {
             let p = mesh.wheels.pulleys[k];
             let by = self.slide(mesh, &p, self.friction[k], h);
-            // The last round may leave one that slides against its friction: it stops.
+            // The last round may leave a pulley that slides against its friction: it stops.
             let by = if matches!(self.friction[k], PulleyFriction::Slides(s) if p.friction > 0.0 && s * by < 0.0) {
                 0.0
             } else {
@@ -99,7 +99,7 @@ impl ConstraintSolver {
             .zip(&mut self.position)
             .zip(&self.inverse_mass)
         {
-            // NaN goes through to where it is found.
+            // A NaN passes on, and is detected later.
             let lambda = if *lambda > 0.0 { 0.0 } else { *lambda };
             *tension = lambda * per_square;
             let push = direction * lambda;
@@ -161,7 +161,7 @@ impl ConstraintSolver {
         let (theta, ea) = (mesh.problem.thermal_stretch, mesh.problem.axial_stiffness);
         for p in &mesh.wheels.pulleys {
             for e in [p.node - 1, p.node] {
-                // Its other node, unless that is a pulley too: then what it does is added below.
+                // Its other node, unless that is a pulley, too, whose terms are added below.
                 let other = if e < p.node { e } else { e + 1 };
                 let inverse = if mesh.wheels.at_node[other].is_none() { self.inverse_mass[other] } else { 0.0 };
                 self.diagonal[e] = inverse + mesh.rest_length[e] / (ea * h * h);
@@ -192,7 +192,7 @@ impl ConstraintSolver {
         predicted_slide(mesh, p, sense, h) + mesh.problem.thermal_stretch / p.mass * pull
     }
 
-    /// Lets pulleys hold or slide by their tensions; returns true if any changed.
+    /// Sets the stick-slip states of pulleys from their tensions; returns true if any changed.
     fn update_friction(&mut self, mesh: &Mesh, h: f64) -> bool {
         let (theta, least) = (mesh.problem.thermal_stretch, least_straight_length(mesh));
         let mut any = false;

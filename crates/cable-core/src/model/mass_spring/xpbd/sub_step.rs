@@ -1,4 +1,4 @@
-//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps
+//! The preview moves stiff cables in real time, with compliant constraints in fixed small sub-steps
 //! instead of stable explicit ones.
 //!
 //! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N.
@@ -9,10 +9,10 @@
 //! picture, not a measurement: implicit in time, so fast motion is damped, and contacts act a
 //! sub-step late.
 //!
-//! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of
-//! frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and
-//! leave the unit circle at ω²h² = 4/3: taut cables take shorter sub-steps, still longer than
-//! explicit ones by √(EA/T).
+//! Directions are those of the predicted position x* = 2xₙ − xₙ₋₁, so transverse vibrations of a
+//! taut cable, of frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up
+//! to ωh = 1 and leave the unit circle at ω²h² = 4/3: taut cables take shorter sub-steps, still
+//! longer than explicit ones by √(EA/T).
 
 use crate::error::SolveError;
 use crate::math::{Vec2, larger};

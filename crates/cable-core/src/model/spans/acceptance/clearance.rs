@@ -1,11 +1,11 @@
-//! This check asks that no answer is inside anything; it shares nothing with the search for
-//! contacts (`changes/obstacle_search.rs`).
+//! This check proves that no cable of an answer is inside an obstacle; it shares nothing with the
+//! search for contacts (`changes/obstacle_search.rs`).
 //!
-//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with
-//! its ends a, b and its tangents there it lies in the triangle of a, b and the point where the
-//! tangents meet. What is nowhere nearer to that triangle than the cable's radius is nowhere nearer
-//! to the stretch; else the stretch is halved. Distances are those of points from lines, without a
-//! sign: no way into an obstacle leads past its boundary.
+//! A stretch of a catenary or of an arc that turns by at most a right angle is convex: with its
+//! ends a, b and its tangents there it lies in the triangle of a, b and the point where the
+//! tangents meet. If an obstacle is nowhere nearer to that triangle than the cable's radius, it is
+//! nowhere nearer to the stretch; otherwise the stretch is halved. Distances are unsigned distances
+//! of points from lines: every way into an obstacle crosses its boundary.
 
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
@@ -13,11 +13,11 @@ use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::section::{CableSection, Contact, Failure, SolveContext};
 
-/// Depth that is none, m: what is asked of every answer.
+/// Depth inside an obstacle that every answer may have, m.
 const DEPTH: f64 = 1e-6;
-/// Halvings at most: 2⁻⁴⁰ of any cable is a point.
+/// Maximum number of halvings: 2⁻⁴⁰ of any cable is a point.
 const MOST_HALVINGS: u32 = 40;
-/// Longest stretch of an arc taken at once, rad.
+/// Longest stretch of an arc that is checked at once, rad.
 const TURN: f64 = 1.0;
 
 /// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector
@@ -28,13 +28,14 @@ struct BoundingTriangle {
 }
 
 impl BoundingTriangle {
-    /// Of a stretch from a to b with these directions of travel there (of any length, 0: straight).
+    /// The triangle of a stretch from a to b with these directions of travel there (of any length;
+    /// 0 for a straight stretch).
     fn of([a, b]: [Vec2; 2], along: [Vec2; 2]) -> Self {
         let d = b - a;
         let far = d.norm();
         let straight = if far > 0.0 { d / far } else { Vec2::x() };
         let [t, u] = along.map(|v| if v.norm() > 0.0 { v / v.norm() } else { straight });
-        // a + x t = b − y u; neither way is longer than the chord.
+        // a + x t = b − y u; neither side is longer than the chord.
         let turn = cross(t, u);
         let x = cross(d, u) / turn;
         let apex = a + t * if x > 0.0 && x < far { x } else { 0.5 * far };
@@ -44,20 +45,20 @@ impl BoundingTriangle {
         Self { corners: [a, apex, b], sides: [(a, first), (b, inwards(perp(u), -d)), (a, chord)] }
     }
 
-    /// The box it lies in, r wider.
+    /// Its bounding box, widened by r.
     fn bounds(&self, r: f64) -> (Vec2, Vec2) {
         let [a, apex, b] = &self.corners;
         (a.inf(apex).inf(b) - Vec2::repeat(r), a.sup(apex).sup(b) + Vec2::repeat(r))
     }
 
-    /// True if a box comes within r of it, as far as its sides tell.
+    /// True if its sides do not prove that a box is farther than r from it.
     fn meets(&self, low: Vec2, high: Vec2, r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
 
-    /// True if an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways
-    /// from its ends tell.
+    /// True if the sides, the edge itself or the directions from its ends prove that an edge is
+    /// nowhere nearer than r.
     fn misses_edge(&self, e: &Edge, r: f64) -> bool {
         let (n, t) = (e.normal(), e.tangent);
         self.sides.iter().any(|(at, n)| (e.from - at).dot(n) <= -r && (e.to - at).dot(n) <= -r)
@@ -69,26 +70,26 @@ impl BoundingTriangle {
             || self.aside(e.to, |n| n.dot(&t) >= 0.0, r)
     }
 
-    /// True if a point is nowhere nearer than r, as far as the sides and the ways to the corners
-    /// tell.
+    /// True if the sides or the directions to the corners prove that a point is nowhere nearer than
+    /// r.
     fn misses_point(&self, v: Vec2, r: f64) -> bool {
         self.sides.iter().any(|(at, n)| (v - at).dot(n) <= -r) || self.aside(v, |_| true, r)
     }
 
-    /// True if all of it is at least r from a point in a direction (a unit vector).
+    /// True if all of the triangle is at least r from a point in a direction (a unit vector).
     fn beyond(&self, v: Vec2, n: Vec2, r: f64) -> bool {
         self.corners.iter().all(|c| (c - v).dot(&n) >= r)
     }
 
-    /// True if all of it is at least r from a point in the direction of one of its corners, of
-    /// those that will do.
+    /// True if all of the triangle is at least r from a point in the direction of one of its
+    /// corners; `will_do` selects the directions.
     fn aside(&self, v: Vec2, will_do: impl Fn(Vec2) -> bool, r: f64) -> bool {
         let unit = self.corners.iter().map(|c| (c - v, (c - v).norm())).filter(|(_, far)| *far >= r && *far > 0.0);
         unit.map(|(way, far)| way / far).any(|n| will_do(n) && self.beyond(v, n, r))
     }
 
-    /// True if it is clear of a body. `beside`: a corner or circle that what it holds runs round at
-    /// the right distance.
+    /// True if it is clear of a body. `beside` is a corner or circle round which its stretch runs
+    /// at the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
         let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
         if let Some(center) = body.center {
@@ -105,7 +106,7 @@ impl BoundingTriangle {
     }
 }
 
-/// Checks that a section is clear of everything.
+/// Checks that a section is clear of all obstacles.
 pub(in crate::model::spans) fn verify(
     section: &CableSection,
     context: &SolveContext,
@@ -134,7 +135,7 @@ pub(in crate::model::spans) fn verify(
     Ok(())
 }
 
-/// The place at which a contact is inside something.
+/// The place at which a contact is inside an obstacle.
 fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, Vec2)> {
     let contact_path = context.contact_path(c).with_cached_piece(c.ends.place[0]);
     let mut p = c.ends.place[0];
@@ -156,7 +157,7 @@ fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, V
     None
 }
 
-/// The place at which a stretch is inside something.
+/// The place at which a stretch is inside an obstacle.
 fn inside_on(
     world: &World,
     point: &dyn Fn(f64) -> (Vec2, Vec2),
@@ -167,7 +168,8 @@ fn inside_on(
     world.geometry().bodies().iter().find_map(|body| search(body, point, ends, beside, 0))
 }
 
-/// The place at which a stretch is inside a body, halved until it is clear or no stretch any more.
+/// The place at which a stretch is inside a body. The stretch is halved until it is clear or has no
+/// length.
 fn search(
     body: &Body,
     point: &dyn Fn(f64) -> (Vec2, Vec2),

@@ -1,6 +1,6 @@
-//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable,
-//! the balance of each contact from its ends, and the cone of friction along it. `clearance` asks
-//! that nothing is inside an obstacle.
+//! This check does not use the solver: it computes lengths by quadrature of the law of the free
+//! cable, the balance of each contact from its ends, and the friction cone along it. `clearance`
+//! checks that nothing is inside an obstacle.
 
 use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
@@ -10,26 +10,28 @@ use crate::model::spans::results::{end_force, held_by, loose, wheel_force};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Contact, EndCondition, Failure, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 
-/// Equations must hold to this part of the length, the tension, the angle. The solver stops at
+/// Relative error with which equations of length, tension and angle must hold. The solver stops at
 /// 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
-/// Compression that is rounding, of the greatest tension.
+/// Compression that counts as round-off, as a fraction of the greatest tension.
 const COMPRESSION_ROUNDING: f64 = 1e-9;
-/// A contact may end so far beyond its chain, m or rad: rounding.
+/// Distance (m or rad) by which a contact may end beyond its chain (round-off).
 const CHAIN_END_TOLERANCE: f64 = 1e-9;
-/// Points of a contact looked at where its load has changed.
+/// Number of points of a contact that are checked if its load has changed.
 const SAMPLES: usize = 8;
-/// A span hangs in one line when the force across the load is below this part of its load.
+/// Force across the load below which a span hangs in one line, as a fraction of its load.
 const FOLD_FORCE_FRACTION: f64 = 1e-12;
 /// Panels of a span beside its fold.
 const TAUT_PANELS: usize = 4;
-/// Lengths of a span from which its fold is so far that one panel leaves 1e-12.
+/// Distance of a fold from its span, in lengths of the span, from which one panel leaves an error
+/// of 1e-12.
 const ONE_PANEL_FOLD_DISTANCE: f64 = 4.0;
-/// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
+/// Length of a panel of the quadrature of a span, in v; 5 Gauss points in each leave an error of
+/// 1e-12.
 const PANEL: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
-/// that the contacts were solved with.
+/// with which the contacts were solved.
 pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveContext) -> Result<(), Failure> {
     let mut before = section.from;
     let greatest = section
@@ -45,7 +47,7 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     for k in 0..section.spans() {
         let (from, to) = section.material(k);
         let long = section.to - section.from;
-        // A pocket that is short by less is not opened.
+        // A pocket with a smaller shortage is not opened.
         if !(from >= before - BALANCE_TOLERANCE * long && to >= from - slack_pocket::POCKET_SHORTAGE_FRACTION * long) {
             return Err(Failure::Unsound { what: EquilibriumFault::MaterialOrder, s: from, at: Vec2::zeros() });
         }
@@ -60,8 +62,8 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     Ok(())
 }
 
-/// Checks that supports and contacts, as they are reported, hold all of the weight and the loads:
-/// what no part of the cable equilibrium asked for is missed by each part's own check.
+/// Checks that the reported forces of supports and contacts balance weight and loads: an error that
+/// no part of the equilibrium shows by itself appears here.
 pub(in crate::model::spans) fn balanced(
     layout: &SectionLayout,
     cable_equilibrium: &CableEquilibrium,
@@ -75,8 +77,7 @@ pub(in crate::model::spans) fn balanced(
     Err(Failure::Unsound { what: EquilibriumFault::Unbalanced, s: 0.0, at })
 }
 
-/// The sum of all forces on the cable as they are reported, and their size, N: supports and
-/// contacts hold weight and loads.
+/// The sum of all reported forces on the cable, and their size, N.
 fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (Vec2, f64) {
     let (p, context) = (&layout.problem, &cable_equilibrium.context);
     let mut sum = context.law.load * p.length;
@@ -112,7 +113,7 @@ fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (
     (sum, size)
 }
 
-/// The span closes.
+/// Checks that the span closes.
 fn span(section: &CableSection, context: &SolveContext, k: usize) -> Result<(), Failure> {
     let (from, to) = section.material(k);
     if let [Some(a), Some(b)] = section.span_ends(context, k) {
@@ -129,13 +130,13 @@ fn span(section: &CableSection, context: &SolveContext, k: usize) -> Result<(), 
     Ok(())
 }
 
-/// The way of a catenary by quadrature of f(F) = τ(F/T + F/EA).
+/// The chord of a catenary by quadrature of f(F) = τ(F/T + F/EA).
 ///
 /// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b)
 /// sinh v makes T = H cosh v: smooth however sharp the cable folds. Straight up and down (H = 0)
 /// the integral is split at the fold.
 fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f64; 2]) -> Vec2 {
-    // Inside the piece: a load at its start acts before it.
+    // The force is evaluated inside the piece, because a load at its start acts before it.
     let start = section.force(context, k, 0.5 * (from + to)) + context.law.load * (0.5 * (to - from));
     let force = |s: f64| start - context.law.load * (s - from);
     let b = context.law.load.norm();
@@ -147,7 +148,7 @@ fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f6
         return straight(from, fold) + straight(fold, to);
     }
     let middle = from + start.dot(&context.law.load) / (b * b);
-    // T² = H² + b² (s − s*)²: smooth as it is far from s* ± i H/b.
+    // T² = H² + b² (s − s*)² is smooth far from s* ± i H/b.
     let far = (0.5 * (from + to) - middle).hypot(across / b);
     if middle < 2.0 * from - to || middle > 2.0 * to - from || far > ONE_PANEL_FOLD_DISTANCE * (to - from) {
         let panels = if far > ONE_PANEL_FOLD_DISTANCE * (to - from) { 1 } else { TAUT_PANELS };
@@ -168,8 +169,8 @@ fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f6
     sum
 }
 
-/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its
-/// tangent.
+/// Checks that a contact presses, has no compression, keeps the friction cone, and that the spans
+/// leave it along its tangent.
 fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &section.contacts[j];
     let (contact_path, e) = (context.contact_path(c).with_cached_piece(c.ends.place[0]), &c.ends);
@@ -197,7 +198,7 @@ fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f
                 return Err(unsound(EquilibriumFault::LooseCableSlides, e.place[side], e.material[side]));
             }
         } else if section.is_joined(j, side) {
-            // The load beside it is looked at by itself.
+            // The load beside it is checked by itself.
         } else if let EndCondition::Loose(force) = section.end_conditions[side] {
             let lifts = force.dot(&contact_path.place(e.place[side]).normal);
             if !((e.tension[side] - context.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
@@ -224,15 +225,15 @@ fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f
     along(&contact_path, c, greatest, section.to - section.from)
 }
 
-/// Material that may be missing along a contact, of the section's length. Smaller: contacts laid
-/// along the nodes of another model, which know their material to the distance of those nodes, are
-/// refused; larger: folds are lost (8 cm of 20 m were).
+/// Material that may be missing along a contact, as a fraction of the section's length. Smaller:
+/// contacts made from the nodes of another model, whose material is known only to the distance of
+/// those nodes, are refused; larger: folds are lost (8 cm of 20 m were).
 const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 
-/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On
-/// each stretch between two breakpoints one part of friction is called upon: what holds for that
-/// and at the next breakpoint holds all along. No material of the section's `length` (m) is lost
-/// between two breakpoints, nor between the ends and the first and last of them.
+/// Checks that along a contact friction keeps its cone, and that there is no compression and no
+/// pull on the obstacle. Between two breakpoints the mobilised friction is constant, so a check at
+/// the breakpoints suffices. No material of the section's `length` (m) may be lost between two
+/// breakpoints, or between the ends and the first and last of them.
 fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = contact_path.friction_of_loose;
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
@@ -274,7 +275,7 @@ fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64
             }
             (p, t, s) = (q, whole.tension, s + whole.material);
         }
-        // On its way under a drag it is no answer yet.
+        // While it slides under a drag, it is not an answer yet.
         if contact_path.drag > 0.0 {
             continue;
         }
@@ -291,8 +292,8 @@ fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64
     Ok(())
 }
 
-/// True if tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
-/// N ds/dp > T − cb.
+/// True if tension and pressure cannot vanish on a short distance round an arc: dT/dp > −|m|T −
+/// 2cb, and N ds/dp > T − cb.
 fn firm(contact_path: &ContactPath<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = contact_path.place(p);
     let load = place.stretch * contact_path.law.load.norm() / contact_path.law.thermal;
@@ -302,8 +303,8 @@ fn firm(contact_path: &ContactPath<'_>, p: f64, q: f64, t: f64, m: f64) -> bool 
         && m.abs() <= 1.0
 }
 
-/// Checks the cone from point to point where the load has changed since something was laid: what
-/// sticks has changed by less than friction takes up.
+/// Checks the friction cone from point to point if the load has changed since cable was laid: in a
+/// stick zone friction must take up the change.
 fn sampled(contact_path: &ContactPath<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.place;

@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `equilibrium.rs` | spans by quadrature, contact and global balance, friction cone |
 //! | `clearance.rs` | proof that nothing is inside an obstacle, by halving bounding triangles |
-//! | `tunnelling.rs` | did a step pass the cable through a corner? shapes before and after |
+//! | `tunnelling.rs` | test whether a step passed the cable through a corner, from shapes before
+//! and after |
 
 pub(in crate::model::spans) mod clearance;
 pub(in crate::model::spans) mod equilibrium;

@@ -1,16 +1,16 @@
-//! The tunnelling check compares the cable's shape before and after a step as points
-//! (`contact/swept_corners.rs`), and decides when that is not necessary.
+//! The tunnelling check compares the cable's shapes before and after a step as points
+//! (`contact/swept_corners.rs`), and decides when this is not necessary.
 
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross, larger, perp, smaller};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
-/// A corner this near to a tangent is on it, m: rounding.
+/// Distance (m) from a tangent within which a corner is on it (round-off).
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
-/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding
-/// says which side of the tangent it is on. Larger: steep spans are looked at more closely than
-/// they must be.
+/// Angle of a cable's tangent with its load below which it hangs along the load. Smaller: round-off
+/// decides on which side of the tangent the cable is. Larger: steep spans are compared as points
+/// without need.
 const HANGING_ANGLE: f64 = 1e-6;
 
 /// A line with the side of it (a unit vector) on which the cable is.
@@ -22,9 +22,9 @@ pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Opt
     (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
 }
 
-/// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
-/// every corner lies on the same side of each span before and after. A span is convex: above its
-/// tangents and below its chord, seen against the load.
+/// True if the ends of the spans alone prove that no corner was passed: the contacts are the same,
+/// and every corner lies on the same side of each span before and after. A span is convex: above
+/// its tangents and below its chord, seen against the load.
 pub(in crate::model::spans) fn is_clear(
     old: &CableSection,
     new: &CableSection,
@@ -58,7 +58,7 @@ pub(in crate::model::spans) fn is_clear(
         })
 }
 
-/// A span by its ends: from where to where in x, its tangents and its chord.
+/// Bounds of a span from its ends: its range in x, its tangents and its chord.
 struct SpanBound {
     low: f64,
     high: f64,
@@ -67,7 +67,7 @@ struct SpanBound {
 }
 
 impl SpanBound {
-    /// None where an end hangs or loads act on the way.
+    /// The bounds of span `k`; None if an end hangs or loads act within it.
     fn of(section: &CableSection, context: &SolveContext, k: usize) -> Option<Self> {
         let (from, to) = section.material(k);
         let [Some(a), Some(b)] = section.span_ends(context, k) else { return None };

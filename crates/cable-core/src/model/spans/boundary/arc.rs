@@ -1,7 +1,7 @@
-//! A stretch of an arc has closed forms of tension and material.
+//! This module has closed forms of tension and material along a stretch of an arc.
 //!
-//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see
-//! [`capstan`](crate::model::spans::boundary::capstan). What is left of it, and the material, are
+//! With λ = λ₀ frozen, dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see
+//! [`capstan`](crate::model::spans::boundary::capstan). The remainder and the material are
 //! integrals of functions that hardly change along a stretch, and whose derivatives at both ends
 //! are known: with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
 //!
@@ -12,36 +12,37 @@
 //! T = T⁰ − c ∫ G dξ,         G = e^{m(h−ξ)} q (f − f₀)         material = c ∫ f dξ
 //! ```
 //!
-//! both by the rule of Hermite that is exact to the fifth power, ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' −
-//! g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in between.
+//! Both integrals use the Hermite rule that is exact to the fifth power, ∫ g = h/2 (g₀ + g₁) +
+//! h²/10 (g₀' − g₁') + h³/120 (g₀'' + g₁''): a stretch costs one exponential and one rotation,
+//! without points in between.
 
 use crate::math::{exp, sin_cos};
 use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
 
-/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it,
-/// itself of the order of T/EA.
+/// Longest stretch of one rule, rad: its error is h⁶/100 800 of the change of 1/λ along it, which
+/// is of the order of T/EA.
 const PANEL: f64 = 0.3;
 
-/// A way (rad) so short that what changes on it is known from its start to third order: what is
-/// left out is its fourth power times a part of the tension. Larger: material is off. Smaller: one
-/// more look at both tensions where they are to be one.
+/// Length (rad) up to which changes along an arc follow from its start to third order: the error is
+/// its fourth power times a fraction of the tension. Larger: errors of material. Smaller: one more
+/// evaluation where two tensions become equal.
 pub(in crate::model::spans) const SHORT_ARC: f64 = 1e-3;
 
-/// A way along an arc, in as many stretches as it needs.
+/// A path along an arc, in as many stretches as it needs.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct ArcPath {
     /// Radius, m.
     c: f64,
     count: usize,
-    /// Angle of each, rad, with sine and cosine.
+    /// Angle of each stretch, rad, with its sine and cosine.
     h: f64,
     turn: (f64, f64),
     /// b·t and b·n at the start, N/m.
     load: [f64; 2],
 }
 
-/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into
-/// nowhere takes a minute.
+/// Longest path along an arc, rad: 1600 turns. Smaller: drums are refused; larger: a diverging
+/// Newton step takes a minute.
 pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
 
 /// Derivatives of tension and material by the angle at a point of an arc.
@@ -51,13 +52,13 @@ pub(in crate::model::spans) struct Rates {
     pub tension: [f64; 3],
     /// Material per radian and its first two derivatives, m.
     material: [f64; 3],
-    /// Derivative of the first by the tension at the start, m/N.
+    /// Derivative of the first of these by the tension at the start, m/N.
     by_tension: f64,
     m: f64,
 }
 
 impl ArcPath {
-    /// From a place so far along its arc (either way).
+    /// The path from a place along its arc, by an angle in either direction.
     pub fn new(from: &LocalLoad, way: f64) -> Self {
         let (h, count) = if way.abs() <= PANEL {
             (way, 1)
@@ -72,7 +73,7 @@ impl ArcPath {
         Self { c: from.stretch, count, h, turn, load: from.load }
     }
 
-    /// Slides along it with m from the tension `t`; and how it goes on from there.
+    /// The result of sliding along it with m from the tension `t`, and the derivatives at its end.
     pub fn slide(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         if self.h.abs() <= SHORT_ARC {
             return self.hair(law, t, m);
@@ -95,7 +96,7 @@ impl ArcPath {
         (sum, rates)
     }
 
-    /// No more than a hair's breadth.
+    /// Handles a path of at most `SHORT_ARC`.
     fn hair(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
         let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
@@ -105,18 +106,18 @@ impl ArcPath {
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
 
-    /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
+    /// Handles one stretch, with the loads at its start and end; `grown` = e^{mh}.
     fn stretch(&self, law: &CableLaw, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (SlideResult, Rates) {
         let (c, h, [[bt, bn], [bt1, bn1]]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
         let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
         let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);
-        // T⁰ at the end.
+        // This is T⁰ at the end.
         let divided = c * f / (1.0 + m * m);
         let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let tension = alpha * bt1 + beta * bn1 + (t - alpha * bt - beta * bn) * grown;
         let mut end = Point::new(law, c, k, bt1 + m * bn1, m * bt1 - bn1, tension, m);
-        // G and its derivatives at both ends.
+        // These are G and its derivatives at both ends.
         let (more, q1, r1) = (end.f[0] - f, end.q, end.r);
         let first = grown * q * f1;
         let first2 = grown * (2.0 * (r - m * q) * f1 + q * f2);
@@ -127,7 +128,8 @@ impl ArcPath {
         end.shift(off, k);
         let [g, g1, g2] = end.f;
         let material = h * (0.5 * (f + g) + h * (0.1 * (f1 - g1) + h / 120.0 * (f2 + g2)));
-        // ∫ e^{mξ} f² dξ only steers Newton: by the rule of the third power.
+        // ∫ e^{mξ} f² dξ only enters the derivative for Newton's method, so the rule of the third
+        // power suffices.
         let squares = [f * f, grown * g * g];
         let change = m * (squares[0] - squares[1]) + 2.0 * (f * f1 - grown * g * g1);
         let by = h * (0.5 * (squares[0] + squares[1]) + h / 12.0 * change);
@@ -141,14 +143,14 @@ impl ArcPath {
     }
 }
 
-/// A point of the way.
+/// A point of the path.
 struct Point {
     tension: f64,
     q: f64,
     r: f64,
-    /// f, f', f''.
+    /// The values f, f', f''.
     f: [f64; 3],
-    /// T', T'', T'''.
+    /// The derivatives T', T'', T'''.
     slopes: [f64; 3],
 }
 
@@ -164,13 +166,14 @@ impl Point {
         Self { tension, q, r, f: [f, f1, f2], slopes: [slope, bend, third] }
     }
 
-    /// As it goes on from there; `grown`: its tension by that at the start.
+    /// The derivatives at this point; `grown` is the derivative of its tension by that at the
+    /// start.
     fn rates(&self, c: f64, k: f64, grown: f64, m: f64) -> Rates {
         let [f, f1, f2] = self.f;
         Rates { tension: self.slopes, material: [c * f, c * f1, c * f2], by_tension: -c * k * f * f * grown, m }
     }
 
-    /// The tension is more by so little that its square does not count.
+    /// Adds a change of tension whose square is negligible.
     fn shift(&mut self, by: f64, k: f64) {
         self.tension += by;
         self.f[0] -= k * self.f[0] * self.f[0] * by;
@@ -178,7 +181,7 @@ impl Point {
 }
 
 impl Rates {
-    /// A little further on.
+    /// The result extended by a short angle.
     pub fn on(&self, way: &SlideResult, by: f64) -> SlideResult {
         let ([first, second, third], [per, change, again]) = (self.tension, self.material);
         let turn = self.m * by;

@@ -1,47 +1,48 @@
 //! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a
 //! coordinate p that grows along the cable.
 //!
-//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the
-//! obstacle. On an edge p counts metres, on an arc (a convex corner, a post, a wheel) radians, so
-//! that a sharp corner needs no case of its own. With the sense σ = +1 where the solid lies right
-//! of travel and −1 where it lies left, t the direction of travel and n the outward normal,
+//! The centre line runs at the offset c (cable radius plus the obstacle's own offset) from the
+//! obstacle. On an edge p counts metres, on an arc (a convex corner, a post, a wheel) radians, so a
+//! sharp corner needs no special case. With the sense σ = +1 where the solid lies right of travel
+//! and −1 where it lies left, t the direction of travel and n the outward normal,
 //!
 //! ```text
 //! n = σ perp t        edge: x = x₀ + t p        arc: x = C + c n,  dt/dp = −n,  dn/dp = t
 //! ```
 //!
-//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load
-//! does not press the cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free
-//! span from corner to corner. What lies between two breaks is a chain; a contact never leaves its
-//! chain. Beyond the ends of its chain the curve goes on straight or round, so that Newton may look
-//! there; what that would cut is found by the search for penetration.
+//! A concave kink is a break: a cable in tension bridges it by a free span. So is an edge on to
+//! which the load does not press the cable (b·n ≥ 0: walls, undersides): the cable hangs beside it
+//! by a free span from corner to corner. The pieces between two breaks are a chain; a contact never
+//! leaves its chain. Beyond the ends of its chain the curve continues straight or round, so that
+//! Newton's method may evaluate it there; the search for penetration finds obstacles that this
+//! would cut.
 
 use std::sync::Arc;
 
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
-/// A support this near to a boundary lies on it, m.
+/// Distance (m) from a boundary within which a support lies on it.
 pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
-/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a
-/// wall that rounding tilts would hold a cable that hangs beside it. Larger: floors steeper than
+/// Normal component of the load, as a fraction of it, above which an edge holds the cable. Smaller:
+/// a wall tilted by round-off would hold a cable that hangs beside it. Larger: floors steeper than
 /// 89.99° would not hold.
 const PRESSING_FRACTION: f64 = 1e-9;
 
-/// A direction beyond the end of an arc by less than this (rad) is rounding.
+/// Angle (rad) by which a direction may be beyond the end of an arc (round-off).
 const ARC_END_TOLERANCE: f64 = 1e-9;
 
 /// The form of a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum PieceShape {
-    /// Straight.
+    /// A straight piece.
     Edge {
         /// Start, m.
         from: Vec2,
         /// Direction of travel, a unit vector.
         tangent: Vec2,
     },
-    /// Round, always convex.
+    /// A round piece, always convex.
     Arc {
         /// Centre, m.
         center: Vec2,
@@ -60,7 +61,7 @@ pub(in crate::model::spans) struct BoundaryPiece {
     pub extent: f64,
     /// True if a concave kink lies before it.
     pub kink_before: bool,
-    /// Feature of the obstacle it belongs to; None of a wheel.
+    /// Index of the obstacle's feature to which it belongs; None for a wheel.
     pub feature: Option<usize>,
 }
 
@@ -71,18 +72,18 @@ pub(in crate::model::spans) struct Curve {
     pub obstacle: Option<usize>,
     /// Coulomb friction coefficient.
     pub friction: f64,
-    /// +1 with the solid right of travel, −1 with the solid left of it.
+    /// +1 if the solid is right of the direction of travel, −1 if it is left of it.
     pub sense: f64,
-    /// Displacement from the scene's place, m (a wheel that travels).
+    /// Displacement from the scene's position, m (of a moving wheel).
     pub shift: Vec2,
-    /// Shared by all copies: scanned ground has a million.
+    /// Shared by all copies, because scanned ground has a million pieces.
     pieces: Arc<[BoundaryPiece]>,
     starts: Arc<[f64]>,
     /// One turn of a closed boundary in p.
     period: Option<f64>,
 }
 
-/// Pieces of a chain, counted on over the turns of a closed boundary.
+/// Index range of the pieces of a chain, counted over the turns of a closed boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) struct ChainRange {
     pub first: i64,
@@ -164,7 +165,7 @@ impl Curve {
                     PieceShape::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
                 }
             };
-            // The kink after a piece is the kink before it now.
+            // The kink after a piece is now the kink before it.
             let kink_before = self.pieces.get(n - k).or(self.pieces.first()).is_some_and(|next| next.kink_before);
             BoundaryPiece { form, kink_before, ..p }
         };
@@ -177,14 +178,14 @@ impl Curve {
         matches!(self.pieces[..], [BoundaryPiece { form: PieceShape::Arc { .. }, .. }])
     }
 
-    /// The numbers of its pieces in the first turn.
+    /// The indices of its pieces in the first turn.
     pub fn pieces(&self) -> impl Iterator<Item = i64> + use<> {
         0..self.pieces.len() as i64
     }
 
-    /// The piece of a number that counts on over the turns.
+    /// The piece of an index that is counted over the turns.
     pub fn piece(&self, i: i64) -> &BoundaryPiece {
-        // Without a division in the first turn.
+        // The first turn needs no division.
         let k = i as usize;
         if k < self.pieces.len() {
             &self.pieces[k]
@@ -213,7 +214,7 @@ impl Curve {
         self.origin(i) + self.piece(i).extent
     }
 
-    /// The piece at p, of those of a chain: its first or last beyond their ends.
+    /// The index of the piece of a chain at p; beyond its ends the first or last piece.
     pub fn locate(&self, p: f64, chain_range: ChainRange) -> i64 {
         let (mut i, mut last) = (chain_range.first, chain_range.last);
         while i < last {
@@ -285,8 +286,8 @@ impl Curve {
         }
     }
 
-    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a
-    /// cable. A chain of a closed boundary is always counted from the same turn.
+    /// The chain to which a piece belongs and the index of the piece in it; None if it cannot hold
+    /// a cable. A chain of a closed boundary is always counted from the same turn.
     pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, ChainRange)> {
         if !self.supports_cable(i, load) {
             return None;
@@ -312,7 +313,7 @@ impl Curve {
         Some((i + turn, ChainRange { first: first + turn, last: last + turn }))
     }
 
-    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is
+    /// The piece beyond the kink at the start (side 0) or the end of a chain; None if there is
     /// none.
     pub fn beyond_kink(&self, chain_range: ChainRange, side: usize) -> Option<i64> {
         let (i, after) = if side == 0 {
@@ -324,8 +325,8 @@ impl Curve {
         (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
     }
 
-    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point
-    /// where it has several.
+    /// The piece of one turn that belongs to a feature of the obstacle; if there are several, the
+    /// nearest to a point.
     pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
         let mut best: Option<(f64, i64)> = None;
         for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == Some(feature)) {
@@ -355,13 +356,13 @@ impl Curve {
         })
     }
 
-    /// p on piece i of the point nearest to `at`, kept on the piece.
+    /// p of the point of piece i nearest to `at`.
     pub fn project(&self, i: i64, at: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
             PieceShape::Edge { from, tangent } => bounded((at - self.shift - from).dot(&tangent), 0.0, piece.extent),
             PieceShape::Arc { center, from, .. } => {
-                // n = σ perp t, t at the angle from − σ x.
+                // n = σ perp t, with t measured as an angle from −σ x.
                 let n = at - self.shift - center;
                 let tangent = -perp(n) * self.sense;
                 self.arc_at(from, piece.extent, tangent)
@@ -370,8 +371,8 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half
-    /// a turn of 0).
+    /// p on arc i at which its tangent has the direction `along`, limited to the arc (on a post:
+    /// within half a turn of 0).
     pub fn with_tangent(&self, i: i64, along: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
@@ -381,7 +382,7 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// Calls back with each place between p and q, on arc i, at which its tangent is that of
+    /// Calls back with each place between p and q on arc i at which its tangent has the direction
     /// `along`.
     pub fn running(&self, i: i64, along: Vec2, p: f64, q: f64, mut each: impl FnMut(f64)) {
         let PieceShape::Arc { from, .. } = self.piece(i).form else { return };
@@ -394,8 +395,8 @@ impl Curve {
         }
     }
 
-    /// Side of arc i, before its start (−1) or after its end (+1), on which alone its tangent comes
-    /// to be `along`; 0 where it does so on the arc.
+    /// Side of arc i, before its start (−1) or after its end (+1), on which its tangent would have
+    /// the direction `along`; 0 if it has it on the arc.
     pub fn beyond_arc(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
         let PieceShape::Arc { from, .. } = piece.form else { return 0 };
@@ -420,20 +421,20 @@ impl Curve {
     }
 }
 
-/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and
-/// whether it closes.
+/// The pieces of a polygon, ground or thin line at an offset, with the solid right of the direction
+/// of travel; and true if it is closed.
 fn boundary(body: &Body, c: f64) -> (Vec<BoundaryPiece>, bool) {
     let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
     edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));
     let loops = body.edges.first().zip(body.edges.last()).is_some_and(|(a, b)| a.from == b.to);
     let closed = !body.is_ground();
     if closed && !loops {
-        // A thin line is gone round: there and back.
+        // A thin line is traversed on both sides: there and back.
         let back = body.edges.iter().enumerate().rev();
         edges.extend(back.map(|(k, e)| (Edge { from: e.to, to: e.from, tangent: -e.tangent }, k)));
     }
     let n = edges.len();
-    // The turn at the start of edge k: negative = convex.
+    // The turn at the start of edge k, negative if convex.
     let turn = |k: usize| {
         let (before, after) = (edges[(k + n - 1) % n].0.tangent, edges[k % n].0.tangent);
         let turn = cross(before, after).atan2(before.dot(&after));
@@ -456,7 +457,7 @@ fn boundary(body: &Body, c: f64) -> (Vec<BoundaryPiece>, bool) {
             let form = PieceShape::Arc { center: e.from, radius: c, from: direction(arc_from) };
             out.push(BoundaryPiece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
         }
-        // A kink takes c tan(δ/2) of both its edges.
+        // A kink shortens both its edges by c tan(δ/2).
         let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
         let form = PieceShape::Edge { from: e.from + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
         let extent = e.length() - cut[0] - cut[1];

@@ -1,7 +1,6 @@
-//! A contact remembers its friction as a profile of tension, in closed form.
+//! A contact stores its friction memory as a profile of tension, in closed form.
 //!
-//! A cable that sticks keeps the tension that it had; one that slides follows the capstan law from
-//! one end:
+//! Sticking cable keeps its tension; sliding cable follows the capstan law from one end:
 //!
 //! ```text
 //! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
@@ -9,27 +8,27 @@
 //!
 //! with L and U the least and the greatest tension that sliding allows from the tension at either
 //! end (1 at p₁, 2 at p₂). This is the exact minimiser of the energy and the incremental
-//! dissipation: T − T_old has the sign that the law asks for wherever it slides. U₁ and L₂ follow
-//! m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of stretches with one m each:
-//! a breakpoint where m changes is all there is to store, and nothing is ever interpolated. From
-//! each end T leaves its envelope at most once, at the *front*; between the fronts it sticks, and
-//! the material there is where it was. Material newly laid down beyond the old contact has the
-//! tension of its end, as even as friction can keep it (m between −μ and μ on each edge).
+//! dissipation: T − T_old has the sign that the law requires wherever the cable slides. U₁ and L₂
+//! follow m = +μ, L₁ and U₂ m = −μ, so T always consists of stretches with one m each: only the
+//! breakpoints where m changes are stored, and nothing is interpolated. From each end T leaves its
+//! envelope at most once, at the *slip front*; between the fronts the cable sticks, and its
+//! material does not move. Material newly laid down beyond the old contact has the tension of its
+//! end, as constant as friction allows (m between −μ and μ on each edge).
 
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
 use crate::model::spans::boundary::segment_cursor::Sliding;
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
-/// Part of the friction coefficient by which it is changed to see what that moves.
+/// Relative step of the friction coefficient for a difference quotient.
 const DIFFERENCE_STEP: f64 = 1e-6;
 
-/// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over
-/// the same stretch rounding leaves a breakpoint more each time. Larger: tension is off by as much
-/// times the slope of tension.
+/// Length (m or rad) up to which a stretch is dropped. Smaller: if a contact slides back and forth
+/// over the same stretch, round-off adds a breakpoint each time. Larger: the tension is off by this
+/// length times its slope.
 const SHORTEST_STRETCH: f64 = 1e-12;
 
-/// A point from which the tension follows the law with m.
+/// A point from which the tension follows the capstan law with one m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Breakpoint {
     /// Boundary coordinate.
@@ -42,13 +41,13 @@ pub(in crate::model::spans) struct Breakpoint {
     pub mobilised: f64,
 }
 
-/// Tension and material along a contact as they were last.
+/// Tension and material along a contact after the last step.
 #[derive(Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct TensionProfile {
     breakpoints: Vec<Breakpoint>,
 }
 
-/// Ends of a contact: place, material (m), tension (N).
+/// Ends of a contact: boundary coordinate, material (m), tension (N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Ends {
     pub place: [f64; 2],
@@ -57,8 +56,8 @@ pub(in crate::model::spans) struct Ends {
 }
 
 impl Ends {
-    /// The end from which a contact that slides with m is drawn: without friction the one with the
-    /// greater tension.
+    /// The end towards which a contact that slides with m is drawn; without friction the one with
+    /// the greater tension.
     pub fn drawn_side(&self, m: f64) -> usize {
         usize::from(if m == 0.0 { self.tension[1] > self.tension[0] } else { m > 0.0 })
     }
@@ -73,7 +72,7 @@ pub(in crate::model::spans) enum SweepDirection {
     Left,
 }
 
-/// Change of a reached tension with m.
+/// Sense in which a reached tension changes with m.
 #[derive(Clone, Copy, Debug)]
 enum Growth {
     Grows,
@@ -85,7 +84,7 @@ enum Growth {
 pub(in crate::model::spans) enum Mode {
     /// Some of it sticks.
     Stick,
-    /// All of it slides with this m (0: smooth).
+    /// All of it slides with this m (0: frictionless).
     Slip(f64),
 }
 
@@ -93,24 +92,24 @@ pub(in crate::model::spans) enum Mode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct SlipFront {
     pub coordinate: f64,
-    /// The way from the end to it.
+    /// The result of sliding from the end to it.
     pub way: SlideResult,
     pub mobilised: f64,
-    /// True if the old tension stopped it; else it came to the other end.
+    /// True if the old tension stopped it; false if it reached the other end.
     pub met: bool,
     /// Old material at p, m.
     pub old: f64,
 }
 
-/// A contact that holds.
+/// The stick zone of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum StickZone {
-    /// It sticks between two fronts (or at one point).
+    /// The contact sticks between two fronts (or at one point).
     Between([SlipFront; 2]),
-    /// Sliding from both ends meets in one point, which sticks.
+    /// The fronts from both ends meet in one point, which sticks.
     Meet([SlipFront; 2]),
-    /// The end tensions are too far apart: it slides with this m. The fronts have passed each
-    /// other.
+    /// The end tensions differ too much: the whole contact slides with this m. The fronts have
+    /// passed each other.
     Beyond(f64, [SlipFront; 2]),
 }
 
@@ -125,12 +124,13 @@ impl Clone for TensionProfile {
 }
 
 impl TensionProfile {
-    /// Material laid with one tension law from a point.
+    /// A profile with one tension law between two points.
     pub fn new(start: Breakpoint, end: Breakpoint) -> Self {
         Self { breakpoints: if end.coordinate > start.coordinate { vec![start, end] } else { vec![start] } }
     }
 
-    /// Through these breakpoints, as near as a part of the cone of friction allows.
+    /// A profile through these breakpoints, as near as the fraction `within` of the friction cone
+    /// allows.
     pub fn through(contact_path: &ContactPath<'_>, breakpoints: &[Breakpoint], within: f64) -> Self {
         let contact_path = &ContactPath { friction: contact_path.friction * within, ..*contact_path };
         let mut out = Self { breakpoints: breakpoints.first().copied().into_iter().collect() };
@@ -138,7 +138,7 @@ impl TensionProfile {
         out
     }
 
-    /// The same, from the last breakpoint back.
+    /// As [`Self::through`], from the last breakpoint back.
     pub fn through_back(contact_path: &ContactPath<'_>, breakpoints: &[Breakpoint], within: f64) -> Self {
         let friction = contact_path.friction * within;
         let mut out: Vec<Breakpoint> = Vec::with_capacity(breakpoints.len());
@@ -158,8 +158,8 @@ impl TensionProfile {
         Self { breakpoints: out }
     }
 
-    /// The m with which sliding reaches a tension, which is brought to what it can reach; that
-    /// grows with m, or falls.
+    /// The m with which sliding reaches a tension. The tension is limited to the values that can be
+    /// reached; `growth` tells whether these grow or fall with m.
     fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, growth: Growth) -> f64 {
         let sign = match growth {
             Growth::Grows => 1.0,
@@ -181,8 +181,9 @@ impl TensionProfile {
         })
     }
 
-    /// Material laid from `start` to p₁ and to p₂ with an even tension as far as friction holds
-    /// that on every slope: what it is does not depend on the end from which the cable is counted.
+    /// A profile of material laid from `start` to p₁ and to p₂ with a tension as constant as
+    /// friction allows on every slope. It does not depend on the end from which the cable is
+    /// counted.
     pub fn laid(contact_path: &ContactPath<'_>, start: Breakpoint, [first, last]: [f64; 2]) -> Self {
         let way = |to: f64| {
             let mut breakpoints = vec![Breakpoint { mobilised: 0.0, ..start }];
@@ -190,7 +191,7 @@ impl TensionProfile {
             while p != to {
                 let next = contact_path.next_border(p, to);
                 let (m, way) = (contact_path.even(0.5 * (p + next)), contact_path.lay(p, next, tension));
-                // The law of a stretch stands at its left end.
+                // The law of a stretch is stored at its left end.
                 if let (Some(breakpoint), true) = (breakpoints.last_mut(), next > p) {
                     breakpoint.mobilised = m;
                 }
@@ -209,13 +210,13 @@ impl TensionProfile {
         out
     }
 
-    /// All of its material passed on along the boundary by a length, m.
+    /// Shifts all of its material along the boundary by a length, m.
     pub fn shift_material(&mut self, by_m: f64) {
         self.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.arc_length += by_m);
     }
 
-    /// The same from the middle of its length with a tension there, N, what is missing or too much
-    /// of its material at both ends alike; no end has less than that tension: weight that hangs
+    /// A profile laid from the middle of its length with a tension there, N. Missing or surplus
+    /// material is shared by both ends, and no end has less than that tension: weight that hangs
     /// down on both sides of a crest is held there.
     pub fn laid_from_middle(contact_path: &ContactPath<'_>, e: &Ends, tension: f64) -> Self {
         let middle = Breakpoint {
@@ -234,8 +235,8 @@ impl TensionProfile {
         laid
     }
 
-    /// Counts its material anew from its first breakpoint on, or from its last one back, as its
-    /// tensions strain it.
+    /// Recomputes its material from the strain of its tensions, from its first breakpoint on or
+    /// from its last one back.
     pub fn measure(&mut self, contact_path: &ContactPath<'_>, going: SweepDirection) {
         let way = |a: &Breakpoint, b: &Breakpoint| {
             contact_path.slide(a.coordinate, b.coordinate, a.tension, a.mobilised).material
@@ -263,8 +264,8 @@ impl TensionProfile {
         &self.breakpoints
     }
 
-    /// Takes over what another contact, joined to this one at its end, remembers. Between the two,
-    /// and on as far as it must, tension is brought within the cone by the least change.
+    /// Appends the memory of another contact that follows this one. Between the two, and beyond as
+    /// far as necessary, the tension is brought within the friction cone by the least change.
     pub fn append(&mut self, contact_path: &ContactPath<'_>, next: &Self) {
         let friction = contact_path.friction;
         for breakpoint in &next.breakpoints {
@@ -284,7 +285,7 @@ impl TensionProfile {
         }
     }
 
-    /// The profile up to p, and from there on.
+    /// The profile up to p, and the profile from p on.
     pub fn split(&self, contact_path: &ContactPath<'_>, p: f64) -> (Self, Self) {
         let (tension, s) = self.at(contact_path, p);
         let breakpoint =
@@ -299,7 +300,7 @@ impl TensionProfile {
         (Self { breakpoints: before.collect() }, Self { breakpoints: after.collect() })
     }
 
-    /// Forgets everything but what is new; keeps the memory of the list.
+    /// Empties the profile, keeping the memory of its list.
     fn clear(&mut self) {
         self.breakpoints.clear();
     }
@@ -307,7 +308,7 @@ impl TensionProfile {
     fn push(&mut self, k: Breakpoint) {
         if let Some(last) = self.breakpoints.last_mut() {
             if k.coordinate - last.coordinate <= SHORTEST_STRETCH {
-                // A stretch of no extent.
+                // This stretch has no extent.
                 last.mobilised = k.mobilised;
                 return;
             }
@@ -321,8 +322,8 @@ impl TensionProfile {
         self.breakpoints.push(k);
     }
 
-    /// The breakpoint from which the tension at p follows, seen going on to the right or back to
-    /// the left, and whether it lies beyond what was there.
+    /// The breakpoint from which the tension at p follows in this direction, and true if p lies
+    /// beyond the old contact.
     fn breakpoint(&self, p: f64, going: SweepDirection) -> (Breakpoint, bool) {
         let k = self
             .breakpoints
@@ -352,13 +353,13 @@ impl TensionProfile {
         (way.tension, breakpoint.arc_length + way.material)
     }
 
-    /// The friction coefficient called upon at p.
+    /// The friction coefficient mobilised at p.
     pub fn required_friction(&self, contact_path: &ContactPath<'_>, p: f64) -> f64 {
         let (breakpoint, beyond) = self.breakpoint(p, SweepDirection::Right);
         if beyond { contact_path.even(p) } else { breakpoint.mobilised }
     }
 
-    /// From p towards `to`: how far the old tension has one law there, and its m.
+    /// The end of the stretch from p towards `to` on which the old tension has one law, and its m.
     fn stretch(&self, contact_path: &ContactPath<'_>, p: f64, to: f64) -> (f64, f64) {
         let right = to > p;
         let (breakpoint, beyond) = self.breakpoint(p, if right { SweepDirection::Right } else { SweepDirection::Left });
@@ -383,7 +384,7 @@ impl TensionProfile {
         )
     }
 
-    /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
+    /// Slides from an end at p with tension `t` towards `to`, up to the slip front.
     pub fn front(&self, contact_path: &ContactPath<'_>, p: f64, t: f64, to: f64) -> SlipFront {
         let right = to > p;
         let (mut old, mut s) = self.at(contact_path, p);
@@ -422,12 +423,13 @@ impl TensionProfile {
         if left.met && right.met && left.coordinate <= right.coordinate {
             return StickZone::Between([left, right]);
         }
-        // One has come past the other, or to the far end: either the tensions are too far apart …
+        // If one front has passed the other, or reached the far end, either the tensions differ too
+        // much …
         let beyond = |m: f64| StickZone::Beyond(m, [left, right]);
         if !(p2 > p1) {
             return beyond(if t2 > t1 { friction } else { -friction });
         }
-        // (along a slope the load may make the tension behind the greater all the same) …
+        // (along a slope the load may nevertheless make the tension behind the greater one) …
         if left.mobilised == right.mobilised {
             return beyond(left.mobilised);
         }
@@ -460,8 +462,8 @@ impl TensionProfile {
         StickZone::Meet([front(p1, t1, left.mobilised), front(p2, t2, right.mobilised)])
     }
 
-    /// Takes the outcome of a step as the new past. `held` is the stick zone, where that is known;
-    /// `old` gives memory for the past before it.
+    /// Stores the outcome of a step. `held` is the stick zone if it is known; `old` is working
+    /// memory for the previous profile.
     pub fn commit(
         &mut self,
         contact_path: &ContactPath<'_>,
@@ -508,8 +510,8 @@ impl TensionProfile {
         }
     }
 
-    /// Takes a contact that slid from end to end, with friction `m`, as the new past. If its
-    /// tension ends before the end that is not drawn, the rest lies loose.
+    /// Stores a contact that slid from end to end with friction `m`. If its tension vanishes before
+    /// the end that is not drawn, the rest lies loose.
     fn commit_slip(&mut self, contact_path: &ContactPath<'_>, e: &Ends, [first, last]: [Breakpoint; 2], m: f64) {
         let drawn = e.drawn_side(m);
         let [from, to] = [[first, last][drawn], [first, last][1 - drawn]];
@@ -522,7 +524,8 @@ impl TensionProfile {
             self.breakpoints.extend([Breakpoint { mobilised: m, ..first }, last]);
             return;
         };
-        // Loose from there to the end that is not drawn, as even as friction keeps it.
+        // From there to the other end the cable lies loose, with a tension as constant as friction
+        // allows.
         let end = Breakpoint {
             coordinate: loose.coordinate,
             arc_length: from.arc_length + loose.material,
@@ -543,8 +546,8 @@ impl TensionProfile {
         }
     }
 
-    /// Takes a contact that slid from its ends up to two slip fronts, and stuck between them, as
-    /// the new past: between the fronts it keeps its `old` memory.
+    /// Stores a contact that slid from its ends up to two slip fronts and stuck between them:
+    /// between the fronts it keeps its `old` memory.
     fn commit_stick(
         &mut self,
         contact_path: &ContactPath<'_>,

@@ -1,12 +1,13 @@
-//! Cable that lies without tension is a row of parts that hang, lie, or rest in a heap.
+//! This module describes a section without tension as a row of parts that hang, lie, or rest in a
+//! heap.
 
 use crate::math::Vec2;
 
-/// A section that lies without tension.
+/// A section without tension.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct LooseSection {
     pub parts: Vec<SlackPart>,
-    /// Dead loads on free ends, which lie, N.
+    /// Dead loads on free ends that lie, N.
     pub drawn: Vec2,
 }
 
@@ -20,22 +21,22 @@ pub(in crate::model::spans) struct SlackPart {
     pub form: SlackForm,
 }
 
-/// The line on which a part is.
+/// The form of a part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum SlackForm {
-    /// Plumb, from one point to another.
+    /// It hangs plumb, from one point to another.
     Hangs([Vec2; 2]),
-    /// On a piece of a boundary.
+    /// It lies on a piece of a boundary.
     Lies(LyingStretch),
-    /// In one place.
+    /// It is heaped in one place.
     Heap(Heap),
-    /// Free between a support and a crest, with tension: from a point, with a force in the cable
-    /// there (N).
+    /// It spans freely between a support and a crest, with tension: from a point, with a force in
+    /// the cable there (N).
     Spans { from: Vec2, force: Vec2 },
 }
 
-/// A stretch of a boundary between two coordinates, with the friction that is mobilised against
-/// going on, as a coefficient.
+/// A stretch of a boundary between two coordinates, with the mobilised friction coefficient against
+/// forward motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct LyingStretch {
     pub curve: usize,

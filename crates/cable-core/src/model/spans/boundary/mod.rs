@@ -1,5 +1,5 @@
 //! These modules describe the boundary of an obstacle, the tension of a cable that slides along it
-//! and is remembered there, and cable that lies loose on it.
+//! with its friction memory, and cable that lies loose on it.
 //!
 //! | room | content |
 //! |---|---|

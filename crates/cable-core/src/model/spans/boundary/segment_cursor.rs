@@ -1,6 +1,6 @@
-//! A segment cursor holds one piece of a contact path as seen from a point of it: places on the
-//! same piece need no search, and their direction is that of the point turned by a small angle. It
-//! also finds where on a piece two tensions become equal.
+//! A segment cursor holds one piece of a contact path and a point of it: other places on the piece
+//! need no search, and their directions are that of the point turned by a small angle. It also
+//! finds where two tensions become equal on a piece.
 
 use std::cell::Cell;
 
@@ -10,14 +10,14 @@ use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
 use crate::model::spans::boundary::curve::{BoundaryPoint, ChainRange, Curve};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
-/// Part of a piece before which two tensions that meet are not searched for on it again. Larger:
-/// asked after all more often.
+/// Fraction of a piece up to which no second meeting of two tensions is searched on it. Larger:
+/// unneeded searches happen more often.
 const MEETING_SKIP_FRACTION: f64 = 0.9;
 
-/// Looks at both tensions before their meeting is sought within bounds.
+/// Number of evaluations of both tensions before their meeting is sought within bounds.
 const FREE_SEARCH_LOOKS: usize = 3;
 
-/// A point of a piece and how far that goes.
+/// A point of a piece, with the extent of the piece.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct CachedPiece {
     /// Boundary coordinate.
@@ -25,7 +25,7 @@ pub(in crate::model::spans) struct CachedPiece {
     pub at: BoundaryPoint,
     /// b·t and b·n there, N/m.
     load: [f64; 2],
-    /// Start and end of the piece; beyond the ends of its chain it goes on.
+    /// Start and end of the piece; beyond the ends of its chain it continues.
     ends: [f64; 2],
 }
 
@@ -88,7 +88,7 @@ impl CachedPiece {
         BoundaryPoint { at: at.at + (normal - at.normal) * at.stretch, tangent, normal, ..*at }
     }
 
-    /// As the law sees the point at p.
+    /// The values at p that the law needs.
     pub fn local_load(&self, p: f64) -> LocalLoad {
         let local_load = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
         local_load.on(p - self.coordinate)
@@ -96,7 +96,7 @@ impl CachedPiece {
 }
 
 impl LocalLoad {
-    /// So far on along its piece.
+    /// The cached point moved by a distance along its piece.
     fn on(self, way: f64) -> Self {
         if !self.turns || way == 0.0 {
             return self;
@@ -106,12 +106,12 @@ impl LocalLoad {
     }
 }
 
-/// A tension that slides on with m.
+/// A tension that changes by sliding with m.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Sliding {
     /// Tension, N.
     pub tension: f64,
-    /// The friction coefficient called upon, with its sign.
+    /// The mobilised friction coefficient, with its sign.
     pub mobilised: f64,
 }
 
@@ -128,10 +128,10 @@ impl SegmentCursor<'_> {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// The place before p₁ where two tensions, each with its m, that differ at its point become
-    /// equal, and both integrations up to there; None where that is not before p₁, and both
-    /// integrations up to p₁. On an edge both Θ are linear, round a sharp corner both T are
-    /// exponential, else about.
+    /// The place before p₁ where two different tensions, each with its m, become equal, and both
+    /// integrations up to there; None if there is no such place before p₁, with both integrations
+    /// up to p₁. On an edge both Θ are linear, round a sharp corner both T are exponential, and
+    /// elsewhere approximately so.
     pub fn crossing(
         &self,
         p1: f64,
@@ -143,7 +143,7 @@ impl SegmentCursor<'_> {
         let about = if !self.from.turns {
             (law.theta(u) - law.theta(t)) / (law.edge_rate(&self.from, m) - law.edge_rate(&self.from, n))
         } else {
-            // As if the load were that of its start all along.
+            // This estimate takes the load at the start for the whole piece.
             let held = |t: f64, m: f64| {
                 let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
                 let [bt, bn] = self.from.load;
@@ -151,7 +151,7 @@ impl SegmentCursor<'_> {
             };
             (held(u, n) / held(t, m)).ln() / (m - n)
         };
-        // Parallel: nowhere. NaN is not inside either.
+        // Parallel tensions meet nowhere; NaN counts as outside, too.
         let part = about / whole;
         let exact = !self.from.turns || self.from.stretch == 0.0;
         if exact {
@@ -171,7 +171,7 @@ impl SegmentCursor<'_> {
         if end > 0.0 {
             return (None, [a, b]);
         }
-        // Where friction goes to and fro over the same stretch.
+        // This occurs if a contact slides back and forth over the same stretch.
         if end.abs() <= TENSION_ROUNDING * t.abs() {
             return (Some(p1), [a, b]);
         }
@@ -180,8 +180,8 @@ impl SegmentCursor<'_> {
         (Some(at), ways)
     }
 
-    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from
-    /// the derivatives alone.
+    /// As [`Self::crossing`] round an arc, from an estimate `about` of the place: Newton's method,
+    /// with the last step from the derivatives alone.
     fn closing(
         &self,
         about: f64,
@@ -194,7 +194,7 @@ impl SegmentCursor<'_> {
             let [(a, one), (b, two)] = [(t, m), (u, n)].map(|(t, m)| there.slide(self.law, t, m));
             let apart = a.tension - b.tension;
             let [first, second, third] = [0, 1, 2].map(|k| one.tension[k] - two.tension[k]);
-            // Halley's step, and from there one of Newton's on what is known to third order.
+            // Halley's step, followed by a Newton step with values known to third order.
             let by = -apart / (first - 0.5 * second * apart / first);
             let rest = apart + by * (first + 0.5 * by * (second + by / 3.0 * third));
             let by = by - rest / (first + by * (second + 0.5 * by * third));

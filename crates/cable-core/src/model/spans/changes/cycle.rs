@@ -1,20 +1,20 @@
-//! A cycle of changes is found where a section comes back to contacts that it had: from there the
-//! same changes would follow again.
+//! This module detects a cycle of changes: a section returns to contacts that it had before, from
+//! which the same changes would follow again.
 
 use crate::model::spans::boundary::Mode;
 use crate::model::spans::section::{CableSection, Contact};
 
-/// Contacts are the same that lie alike within this part of the cable's length. Smaller: rounding
-/// hides a cycle. Larger: changes that converge are taken for one.
+/// Difference of contacts that count as the same, as a fraction of the cable's length. Smaller:
+/// round-off hides a cycle. Larger: changes that converge pass for a cycle.
 const SAME_PLACE_FRACTION: f64 = 1e-7;
-/// Times that the contacts come back before that is a cycle: once may be a near miss.
+/// Number of returns of the contacts that make a cycle: a single one may be a near miss.
 const REPEATS: usize = 2;
-/// The change after which contacts are first kept: most solves need fewer.
+/// Number of changes after which contacts are first stored: most solves need fewer.
 const FIRST_KEPT: usize = 4;
 
 /// A search for cycles among the solves of one section (R. P. Brent, "An improved Monte Carlo
-/// factorization algorithm", BIT 20, 1980): contacts are kept after 4, 8, 16 … changes, and those
-/// that follow compared with them.
+/// factorization algorithm", BIT 20, 1980): contacts are stored after 4, 8, 16 … changes, and later
+/// ones are compared with them.
 #[derive(Debug, Default)]
 pub(super) struct CycleSearch {
     changes: usize,
@@ -23,7 +23,7 @@ pub(super) struct CycleSearch {
 }
 
 impl CycleSearch {
-    /// Takes a solved section; returns whether it goes round in a cycle.
+    /// Records a solved section; returns whether it is in a cycle.
     pub fn returns(&mut self, section: &CableSection) -> bool {
         self.changes += 1;
         if self.changes >= FIRST_KEPT && self.changes.is_power_of_two() {
@@ -59,7 +59,7 @@ mod tests {
     use crate::model::spans::boundary::{ChainRange, Ends, TensionProfile};
     use crate::model::spans::section::Connection;
 
-    /// A section of 10 m with a contact from each arc length on, m.
+    /// A section of 10 m with a contact that begins at each arc length, m.
     fn section(from: &[f64]) -> CableSection {
         let contact = |s: &f64| Contact {
             curve: 0,

@@ -1,18 +1,18 @@
-//! Ends of contacts go over edges: along an edge nothing turns, and Newton's method does not find
-//! across it.
+//! This module moves ends of contacts over edges: along an edge the direction is constant, so
+//! Newton's method cannot move an end across it.
 
 use crate::math::{Vec2, smaller};
 use crate::model::spans::boundary::{ChainRange, Curve};
 use crate::model::spans::section::{CableSection, SolveContext};
 
-/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
-/// Newton's steps go beyond it by less.
+/// Distance from the end of an arc within which an end of a contact counts as being there, as a
+/// fraction of the arc: Newton's steps go beyond the end by less.
 const ARC_END_FRACTION: f64 = 1e-8;
 
-/// G: contacts that route to the end of an arc, with their span turned on into the edge behind it,
-/// go on to the corner at the edge's far end, those that route to its start, with their span lifted
-/// off the edge before it, back to the near one; whether there was one. A stiff taut cable turns by
-/// w/T a metre along an edge: next to nothing.
+/// Moves contacts whose end is at the end of an arc, with the span turned into the edge behind it,
+/// to the corner at the far end of the edge; and contacts whose end is at the start of an arc, with
+/// the span lifted off the edge before it, back to the near corner. Returns whether there was one.
+/// A stiff taut cable turns by only w/T per metre along an edge.
 pub(super) fn follow_edges(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut any = false;
     for j in 0..section.contacts.len() {
@@ -66,8 +66,8 @@ fn move_end_over_edges(
     true
 }
 
-/// Moves an end of contact j that lies at the start of an arc, seen along the contact, back over
-/// the edge before it where its span leaves that edge; returns whether it moved.
+/// Moves an end of contact j at the start of an arc (in the direction of the contact) back over the
+/// edge before it if its span leaves that edge; returns whether it moved.
 fn move_end_back_over_edge(section: &mut CableSection, context: &SolveContext, j: usize, side: usize) -> bool {
     let Some(far) = section.span_ends(context, j + side)[side] else { return false };
     let c = &mut section.contacts[j];
@@ -92,11 +92,10 @@ fn move_end_back_over_edge(section: &mut CableSection, context: &SolveContext, j
     moved != 0.0
 }
 
-/// The boundary coordinate to which a contact's end at p goes on: over each edge into which the
-/// span there leads, to the corner behind it. Along an edge nothing turns, and Newton's method does
-/// not find across it.
+/// The boundary coordinate to which a contact's end at p moves: over each edge into which the span
+/// there leads, to the corner behind it.
 ///
-/// `far` is the other end of the span; `leans` its direction at the contact, where that is known
+/// `far` is the other end of the span; `leans` is its direction at the contact, if that is known
 /// better than by its far end.
 pub(super) fn beyond_edges(
     curve: &Curve,
@@ -117,7 +116,7 @@ pub(super) fn beyond_edges(
             break;
         }
         let way = leans.unwrap_or_else(|| (far - curve.place(p, chain_range).at) * forward);
-        // An arc on which the cable comes to run along the way does not lead on to its edge.
+        // If the cable becomes tangent on the arc itself, the arc does not lead on to its edge.
         if curve.is_arc(i) && curve.beyond_arc(i, way) != step {
             break;
         }
@@ -129,7 +128,8 @@ pub(super) fn beyond_edges(
         if below.dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
             break;
         }
-        // The place is on the arc itself: the border with the edge before it counts as that edge.
+        // The place must be on the arc itself: its border with the edge before it counts as that
+        // edge.
         let border = curve.end(arc) - ARC_END_FRACTION * curve.piece(arc).extent;
         (p, i) = (smaller(curve.with_tangent(arc, on), border), arc);
     }

@@ -1,4 +1,4 @@
-//! A span that runs into an obstacle is laid down on it.
+//! This module lays a span that runs into an obstacle down on it.
 
 use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::contact::{Gap, World};
@@ -12,20 +12,19 @@ use crate::model::spans::contact::release_below;
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
 
-/// Depth inside an obstacle from which a span touches it, of the section: points nearer than that
-/// are one.
+/// Depth inside an obstacle from which a span touches it, as a fraction of the section.
 const DEPTH_FRACTION: f64 = 1e-9;
 
 /// The purpose of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// To find a first equilibrium: contacts found on the way have not rubbed.
+    /// A first equilibrium is sought: contacts found meanwhile are frictionless.
     FirstEquilibrium,
-    /// To follow a step in time.
+    /// A step in time is followed.
     Step,
 }
 
-/// Lays each span down on the obstacle it is deepest in. Returns whether there was any.
+/// Lays each span down on the obstacle in which it is deepest; returns whether there was any.
 pub(super) fn touch_obstacles(
     section: &mut CableSection,
     context: &SolveContext,
@@ -37,7 +36,7 @@ pub(super) fn touch_obstacles(
     }
     let deep = DEPTH_FRACTION * (section.to - section.from);
     let mut any = false;
-    // From the last span, so that those before keep their number.
+    // The loop starts at the last span, so that the earlier ones keep their indices.
     for k in (0..section.spans()).rev() {
         if let Some(landing) = load_landing::find(section, context, world, k, deep) {
             load_landing::touch(section, context, k, &landing)?;
@@ -65,8 +64,8 @@ struct NearestPoint {
     force: Vec2,
 }
 
-/// Lays the cable on a corner through which it has passed on its way from its route. Returns
-/// whether there was one.
+/// Lays the cable on a corner through which it has passed since its route; returns whether there
+/// was one.
 pub(super) fn touch_passed_corner(
     section: &mut CableSection,
     context: &SolveContext,
@@ -115,8 +114,8 @@ pub(super) fn touch_passed_corner(
     Ok(true)
 }
 
-/// Lays span k down where it is deepest in an obstacle: the contact beside it is drawn out to
-/// there, or a new one begins.
+/// Lays span k down where it is deepest in an obstacle: the contact beside it is extended to there,
+/// or a new one is made.
 fn lay_down_span(
     section: &mut CableSection,
     context: &SolveContext,
@@ -132,7 +131,7 @@ fn lay_down_span(
     // The feature of a kink has no piece of its own: its edges have.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
     let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(impossible) };
-    // A cable cannot lie on a wall or an underside: it goes round the nearer corner.
+    // A cable cannot lie on a wall or an underside, so it goes round the nearer corner.
     let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
     let Some((i, chain_range)) = found else { return Err(impossible) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
@@ -148,8 +147,7 @@ fn lay_down_span(
         Some(end) => release_below::nearest_turn(p, end),
         None => p,
     };
-    // A contact on the underside of a post goes on over its bottom only where tension presses it
-    // on.
+    // A contact on the underside of a post continues over its bottom only if tension presses it on.
     let bears = |c: &Contact, (from, to): (f64, f64)| {
         let contact_path = context.contact_path(c);
         let mut bears = true;
@@ -188,8 +186,8 @@ struct NewContact {
     force: f64,
 }
 
-/// Inserts a contact at a point of span k. One that reaches the held end of the cable on the same
-/// chain goes on to there.
+/// Inserts a contact at a point of span k. If the held end of the cable lies on the same chain, the
+/// contact is extended to it.
 fn insert_contact(
     section: &mut CableSection,
     context: &SolveContext,
@@ -224,7 +222,7 @@ fn insert_contact(
             let s = if side == 0 { section.from } else { section.to };
             held_ends[side] = Some(end);
             (contact.ends.place[side], contact.ends.material[side]) = (end, s);
-            // The length that is laid from the held end to the other.
+            // This is the length that is laid from the held end to the other.
             let laid = contact_path.slide(end, p, force, 0.0).material;
             if held_ends[1 - side].is_none() {
                 contact.ends.material[1 - side] = s + laid;

@@ -1,5 +1,5 @@
-//! Loads and ends of the cable that come down onto a boundary are found and put down where they
-//! did; `point_load` says what they are there.
+//! This module finds loads and ends of the cable that come down onto a boundary, and lays them down
+//! there; `point_load` has their laws.
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
@@ -9,16 +9,16 @@ use crate::model::spans::section::{
     CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
 };
 
-/// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
+/// A load of span k, or the tip of it, that is deeper than `deep` (m) inside an obstacle.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Landing {
     arc_length: f64,
     at: Vec2,
-    /// Direction of the cable there, about, of any length.
+    /// Approximate direction of the cable there, of any length.
     along: Vec2,
     gap: Gap,
     body: usize,
-    /// The end of the section that it is.
+    /// The end of the section, if it is one.
     tip: Option<usize>,
 }
 
@@ -61,7 +61,7 @@ pub(in crate::model::spans) fn find(
     worst
 }
 
-/// Lays down what has landed of span k.
+/// Lays down the load or end of span k that has landed.
 pub(in crate::model::spans) fn touch(
     section: &mut CableSection,
     context: &SolveContext,
@@ -74,14 +74,13 @@ pub(in crate::model::spans) fn touch(
         _ => Vec2::zeros(),
     };
     let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFT_FRACTION * drawn.norm();
-    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in
-    // a heap.
+    // An end that nothing presses down slides on with its load, or forms a heap.
     let load = context.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
     let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
     let Some(curve) = context.curves.get(index) else { return Err(impossible) };
-    // In a kink there is nothing but its edges.
+    // A kink has no piece of its own, only its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
     let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
     let Some((i, chain_range)) = found else { return Err(impossible) };
@@ -116,7 +115,7 @@ pub(in crate::model::spans) fn touch(
         if !(rate > 0.0) {
             return Err(Failure::Compressed { s: l.arc_length, at: l.at, tension: 0.0 });
         }
-        // So much of it hangs below the surface, and lies along it.
+        // This length hangs below the surface, and is laid along it.
         let hangs = if l.along.norm() > 0.0 { l.along } else { load };
         let steep = hangs.dot(&place.normal).abs() / hangs.norm();
         let below = -l.gap.gap_m / larger(steep, 0.1);

@@ -1,4 +1,4 @@
-//! Two neighbouring contacts of one chain become one.
+//! This module merges two neighbouring contacts of one chain.
 
 use crate::model::spans::boundary::{ContactPath, Mode};
 use crate::model::spans::contact::release_below;

@@ -1,5 +1,5 @@
-//! A section is solved with the contacts that belong to its answer: after each solve one kind of
-//! change is made, until none is needed.
+//! These modules find the contacts of a section's answer: after each solve one kind of change is
+//! made, until none is needed.
 //!
 //! | room | what changes |
 //! |---|---|
@@ -34,10 +34,10 @@ use crate::model::spans::newton;
 use crate::model::spans::newton::{Converged, Workspace};
 use crate::model::spans::section::{CableSection, Failure, SolveContext};
 
-/// Solves a section with the contacts that belong to its answer.
+/// Solves a section and changes its contacts until they are consistent with its answer.
 ///
-/// `route` is the shape that a first equilibrium is sought from, which may be far away: the cable
-/// touches the corners between.
+/// `route` is the shape from which a first equilibrium is sought. It may be far away: then the
+/// cable touches the corners between.
 pub(in crate::model::spans) fn solve(
     section: &mut CableSection,
     context: &mut SolveContext,
@@ -90,8 +90,8 @@ pub(in crate::model::spans) fn solve(
             }
             || touch_obstacles(section, context, world, purpose)?;
         if !changed {
-            // Other contacts may press the cable on to its wheel again: it is off its wheel when
-            // nothing else changes.
+            // Other contacts may press the cable on to its wheel again, so it counts as off its
+            // wheel only when nothing else changes.
             return lifted_wheel(section, context).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }

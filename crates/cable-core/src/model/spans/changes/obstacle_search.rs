@@ -1,9 +1,9 @@
 //! This search finds where a free span runs into an obstacle.
 //!
-//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t =
-//! 0, which is one division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0,
-//! which is a root of one variable. Those points are asked of the obstacle's signed distance, so
-//! that a point is inside only if nothing nearer says otherwise.
+//! Under a constant load a catenary is deepest in an edge where it is parallel to it, F × t = 0,
+//! which costs one division, and nearest to a corner or a centre v where (x − v)·F = 0, a root of
+//! one variable. At these points the obstacle's signed distance is evaluated, which takes the
+//! nearest feature into account.
 
 use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
@@ -12,12 +12,12 @@ use crate::math::{Vec2, cross, larger, perp};
 use crate::model::spans::acceptance::{Side, tangent};
 use crate::model::spans::section::{CableSection, SolveContext};
 
-/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
-/// branches of a deep catenary is seen from one only.
+/// Number of stretches of a catenary that are searched for points nearest to a corner. Smaller: a
+/// corner near both branches of a deep catenary is found from one only.
 const SAMPLES: usize = 8;
-/// Halvings of a root.
+/// Maximum number of bisections of a root.
 const MAX_HALVINGS: usize = 60;
-/// Roots are found to this part of the catenary.
+/// Accuracy of roots, as a fraction of the catenary.
 const ROOT: f64 = 1e-12;
 
 /// A point of a span inside an obstacle.
@@ -28,20 +28,20 @@ pub(super) struct Penetration {
     pub at: Vec2,
     /// Direction of the cable there.
     pub tangent: Vec2,
-    /// The gap to the obstacle it is inside of; `gap_m` < 0.
+    /// The gap to the obstacle that contains it; `gap_m` < 0.
     pub gap: Gap,
     /// Index of the body.
     pub body: usize,
 }
 
-/// One catenary at its place.
+/// One catenary at its position.
 struct SpanArc<'a> {
     s0: f64,
     at: Vec2,
     shape: &'a Catenary,
     load: Vec2,
     /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them.
-    /// None where it hangs along the load.
+    /// None if it hangs along the load.
     sides: [Option<Side>; 2],
 }
 
@@ -52,13 +52,13 @@ impl<'a> SpanArc<'a> {
         Self { s0, at, shape, load, sides }
     }
 
-    /// True if a point is at least so far from it, seen from the tangents at its ends.
+    /// True if the tangents at its ends prove that a point is at least so far from it.
     fn misses(&self, v: Vec2, by: f64) -> bool {
         self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
     }
 
-    /// True if all of edge k and of the one before it face it from at least so far, seen from one
-    /// of those tangents.
+    /// True if one of those tangents proves that all of edge k and of the one before it face it
+    /// from at least so far.
     fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
         let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
         let edges = [Some(k), before].map(|k| k.and_then(|k| body.edges.get(k)));
@@ -78,7 +78,7 @@ impl<'a> SpanArc<'a> {
         self.at + self.shape.position_at(s)
     }
 
-    /// The box it lies in: it is widest at its ends and where it runs along an axis.
+    /// Its bounding box: the extremes are at its ends and where it is parallel to an axis.
     fn bounds(&self) -> (Vec2, Vec2) {
         let (a, b) = (self.at, self.at + self.shape.span().chord);
         let (mut low, mut high) = (a.inf(&b), a.sup(&b));
@@ -92,7 +92,7 @@ impl<'a> SpanArc<'a> {
         (low, high)
     }
 
-    /// The material point where it runs along a direction.
+    /// The material point where it is parallel to a direction.
     fn along(&self, t: Vec2) -> Option<f64> {
         let s = cross(self.shape.force_at(0.0), t) / cross(self.load, t);
         (s > 0.0 && s < self.length()).then_some(s)
@@ -130,7 +130,7 @@ impl<'a> SpanArc<'a> {
     }
 }
 
-/// The deepest point of span k inside anything, if deeper than `tolerance` (m).
+/// The deepest point of span k inside an obstacle, if deeper than `tolerance` (m).
 pub(super) fn deepest(
     section: &CableSection,
     context: &SolveContext,
@@ -191,8 +191,8 @@ fn search(arc: &SpanArc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64,
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.from;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            // A deep point is nearest to an edge, or to the kink beside it, that it does not lie
-            // straight below.
+            // A deep point may be nearest to an edge, or to a kink beside it, that is not directly
+            // above it.
             let aside = larger(body.offset, -height);
             if height < body.offset - tolerance && x > -aside && x < e.length() + aside {
                 found(s);

@@ -1,14 +1,14 @@
-//! Contacts are released that would have to pull, or that have vanished.
+//! This module releases contacts that would have to pull, or that have vanished.
 
 use crate::model::spans::boundary::{Breakpoint, Mode, TensionProfile};
 use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
 
-/// Extent (m or rad) by which the interval of a contact has turned round when it is released:
-/// rounding of a contact in a point.
+/// Negative extent (m or rad) of the interval of a contact from which it is released; smaller ones
+/// are round-off of a point contact.
 const RELEASE_OVERLAP: f64 = 1e-10;
 
-/// Releases the contact whose interval has turned round most: it would have to pull. Returns
-/// whether there was one.
+/// Releases the contact whose interval has the most negative extent, because it would have to pull;
+/// returns whether there was one.
 pub(super) fn release_turned_contact(section: &mut CableSection, context: &mut SolveContext) -> Result<bool, Failure> {
     let turned = |c: &Contact| c.ends.place[1] - c.ends.place[0];
     let worst = (0..section.contacts.len())
@@ -20,21 +20,21 @@ pub(super) fn release_turned_contact(section: &mut CableSection, context: &mut S
     remove_contact(section, context, j)
 }
 
-/// True if a contact is a wheel with a radius: the cable passes it on one side. An eye it may pass
-/// on either.
+/// True if a contact is a wheel with a radius, which the cable passes on one side. It may pass an
+/// eye on either side.
 fn is_round_wheel(c: &Contact, context: &SolveContext) -> bool {
     c.wheel.is_some() && context.contact_path(c).place(c.ends.place[0]).stretch > 0.0
 }
 
-/// The wheel on which the interval has turned round most, if on any: it would have to pull there.
+/// The wheel whose interval has the most negative extent, if there is one: it would have to pull.
 pub(super) fn lifted_wheel(section: &CableSection, context: &SolveContext) -> Option<usize> {
     let wheels = section.contacts.iter().filter(|c| is_round_wheel(c, context));
     let turned = |c: &&Contact| c.ends.place[1] - c.ends.place[0];
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
-/// Releases a contact that has shrunk to next to nothing beside a load, whose weight a span that
-/// turned round past it would count. Returns whether there was any.
+/// Releases a contact that has nearly vanished beside a load; a span that was reversed past the
+/// load would count its weight. Returns whether there was any.
 pub(super) fn release_vanishing_contact(
     section: &mut CableSection,
     context: &mut SolveContext,
@@ -48,7 +48,7 @@ pub(super) fn release_vanishing_contact(
     remove_contact(section, context, j)
 }
 
-/// Removes contact j: the spans beside it become one. A wheel cannot be removed, and an eye is
+/// Removes contact j and merges the spans beside it. A wheel cannot be removed, and an eye is
 /// passed on its other side.
 fn remove_contact(section: &mut CableSection, context: &mut SolveContext, j: usize) -> Result<bool, Failure> {
     if let Some(support) = section.contacts[j].wheel {
@@ -63,7 +63,7 @@ fn remove_contact(section: &mut CableSection, context: &mut SolveContext, j: usi
     if let Some(before) = j.checked_sub(1).and_then(|i| section.contacts.get_mut(i)) {
         before.next.end_pocket();
     }
-    // Beside a load there was no span; now there is the one that was on the other side.
+    // Beside a load there was no span; now it has the span that was on the other side.
     let before = j.checked_sub(1).is_some_and(|i| section.contacts[i].next.part());
     if before || contact.next == Connection::Joined {
         let (k, other) = if contact.next == Connection::Joined { (j + 1, j) } else { (j, j + 1) };
@@ -110,7 +110,7 @@ fn pass_eye_on_other_side(c: &mut Contact) {
         tension: c.ends.tension[k],
         mobilised: 0.0,
     };
-    // Its interval is a point: the friction memory keeps the material that is there.
+    // Its interval is a point: the friction memory keeps the material at it.
     let held = c.history.breakpoints().first().map_or(s, |k| k.arc_length);
     c.history = TensionProfile::new(
         Breakpoint { arc_length: held, ..breakpoint(0) },

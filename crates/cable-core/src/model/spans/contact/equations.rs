@@ -1,16 +1,16 @@
-//! A contact has two equations for its material; they stand here with their derivatives.
+//! This module computes the two equations of a contact for its material, with their derivatives.
 //!
-//! A contact of which some sticks, with fronts at p_l and p_r and A the material between end and
-//! front as it slides, obeys
+//! A contact with a stick zone between fronts at p_l and p_r, and A the sliding material between
+//! end and front, obeys
 //!
 //! ```text
 //! s₁ + A₁ − s_old(p_l) = 0,      s₂ − A₂ − s_old(p_r) = 0
 //! ```
 //!
-//! A contact of which all slides with m obeys s₂ − s₁ − A = 0 and T₂ = the tension the law makes of
-//! T₁. Moving an end by dp under the same end tension is the same as a tension there changed by
-//! −T'(p) dp, so every derivative by p follows from the one by tension. At a front both stretches
-//! have the same tension, so that moving it changes nothing.
+//! A contact that slides completely with m obeys s₂ − s₁ − A = 0 and T₂ = the tension that the law
+//! gives from T₁. Moving an end by dp at constant end tension is equivalent to changing the tension
+//! there by −T'(p) dp, so every derivative by p follows from the one by tension. At a front both
+//! stretches have the same tension, so moving the front has no first-order effect.
 
 use crate::math::larger;
 use crate::model::spans::boundary::{BoundaryPoint, ContactPath, Ends, Mode, SlipFront, StickZone, TensionProfile};
@@ -24,10 +24,10 @@ pub(in crate::model::spans) struct ContactEquations {
     pub of_tension: [bool; 2],
 }
 
-/// The rows of a contact in a mode, and where it sticks if it does.
+/// The rows of a contact in a mode, and its stick zone if it has one.
 ///
-/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself;
-/// `end_points`: the places of its ends.
+/// `pinned` marks ends that are held on the boundary, so that their tension is an unknown of its
+/// own; `end_points` are the places of its ends.
 pub(in crate::model::spans) fn rows(
     contact_path: &ContactPath<'_>,
     history: &TensionProfile,
@@ -36,7 +36,7 @@ pub(in crate::model::spans) fn rows(
     mode: Mode,
     pinned: [bool; 2],
 ) -> (ContactEquations, Option<StickZone>) {
-    // Lifted (Newton looks there): a point without friction.
+    // A lifted contact, which Newton's method may try, counts as a point without friction.
     let lifted = e.place[1] < e.place[0];
     match if lifted { Mode::Slip(0.0) } else { mode } {
         Mode::Slip(m) if contact_path.floored && !lifted => (drawn(contact_path, e, end_points, m), None),
@@ -44,8 +44,8 @@ pub(in crate::model::spans) fn rows(
         Mode::Stick => {
             let held = history.hold(contact_path, e);
             let (mut out, fronts) = match held {
-                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the
-                // rows.
+                // Beyond the friction cone the rows of sticking continue smoothly: the mode
+                // changes, not the rows.
                 StickZone::Between(fronts) | StickZone::Beyond(_, fronts) => {
                     (holding(contact_path, e, end_points, &fronts), fronts)
                 }
@@ -65,11 +65,11 @@ pub(in crate::model::spans) fn rows(
     }
 }
 
-/// The row of an end that is held on the boundary, made linear in its tension.
+/// Makes the row of an end that is held on the boundary linear in its tension.
 ///
-/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the
-/// difference of the slopes of tension at the front: flat at x = 0, where Newton starts. Its root
-/// √|φ| is straight. Where the end has not moved the answer is x = 0, with nothing to solve.
+/// Near the old tension a change x moves the material φ = ∓ k x|x|, k = 1/(2·D·EA·τ), with D the
+/// difference of the slopes of tension at the front. This is flat at x = 0, where Newton's method
+/// starts; its root √|φ| is linear. If the end has not moved, x = 0 and there is nothing to solve.
 fn pin(
     out: &mut ContactEquations,
     contact_path: &ContactPath<'_>,
@@ -93,13 +93,13 @@ fn pin(
     let place = contact_path.place(e.place[side]);
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let target = -sign * gap;
-    // The way the tension will have to go decides the slope of the sliding there.
+    // The sign of the required change of tension decides the direction of sliding there.
     let m = front.mobilised.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.place[side] + (e.place[1 - side] - e.place[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(contact_path, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
-        // It slides on as it slid: the material follows the tension along the whole of the old
-        // sliding, evenly, which a tension that has not changed yet does not show.
+        // It continues to slide as before: the material follows the tension along the whole old
+        // sliding zone, smoothly, which the unchanged tension does not yet show.
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
@@ -114,7 +114,7 @@ fn pin(
     let root = |v: f64| v.signum() * v.abs().sqrt();
     let flat = phi.abs() <= 1e-3 * gap.abs();
     let value = if flat { x * k.sqrt() } else { root(phi) };
-    // The root of rounding is no rounding.
+    // The root of round-off is much larger than round-off.
     out.residual[side] = if solved { 0.0 } else { (value - root(target)) / k.sqrt() };
     let factor = sign / (2.0 * phi.abs().sqrt() * k.sqrt());
     for (i, by) in out.by[side].iter_mut().enumerate() {
@@ -128,8 +128,8 @@ fn pin(
     }
 }
 
-/// Equations of a contact that slides. A cable that runs away is followed with a drag η: T₂ less
-/// what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
+/// Equations of a sliding contact. A cable that runs away is followed with a drag η: T₂ less the
+/// tension that the law gives from T₁ is η times the slip, η (s_old(p₁) − s₁).
 fn sliding(
     contact_path: &ContactPath<'_>,
     history: &TensionProfile,
@@ -169,8 +169,8 @@ fn sliding(
     }
 }
 
-/// Friction fully mobilised, or none: from the end that is drawn the tension falls by the law, to
-/// nothing at most.
+/// Equations with fully mobilised friction, or without friction: from the drawn end the tension
+/// falls by the law, at most to zero.
 fn drawn(contact_path: &ContactPath<'_>, e: &Ends, end_points: &[BoundaryPoint; 2], m: f64) -> ContactEquations {
     let from = e.drawn_side(m);
     let to = 1 - from;
@@ -213,8 +213,8 @@ fn holding(
     out
 }
 
-/// Terms added where the fronts meet: the meeting point moves with both tensions, and the old
-/// tension there differs from the new one.
+/// Adds terms if the fronts meet: the meeting point moves with both tensions, and the old tension
+/// there differs from the new one.
 fn meeting(
     out: &mut ContactEquations,
     contact_path: &ContactPath<'_>,
@@ -243,11 +243,11 @@ fn meeting(
     }
 }
 
-/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the
-/// wrong way holds.
+/// The next mode: a sticking contact beyond its friction cone slides; one that would slide the
+/// wrong way sticks.
 ///
-/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing
-/// to change.
+/// `held` is its stick zone; `patience` is the multiple of round-off by which the mode must be
+/// wrong, 1 while changes cost nothing.
 pub(in crate::model::spans) fn next_mode(
     contact_path: &ContactPath<'_>,
     history: &TensionProfile,
@@ -265,7 +265,7 @@ pub(in crate::model::spans) fn next_mode(
     match mode {
         Mode::Stick => match held.unwrap_or_else(|| history.hold(contact_path, e)) {
             StickZone::Beyond(m, _) => {
-                // Rounding at the edge of the cone is not sliding.
+                // Round-off at the edge of the friction cone is not sliding.
                 let reached = contact_path.slide(e.place[0], e.place[1], e.tension[0], m).tension;
                 if (e.tension[1] - reached).abs() > cone * e.tension[1].abs() { Mode::Slip(m) } else { mode }
             }
@@ -276,16 +276,16 @@ pub(in crate::model::spans) fn next_mode(
                 let (old_t, old_s) = history.at(contact_path, e.place[side]);
                 if (e.material[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.material[0].abs() + e.material[1].abs())
                 {
-                    // A point that does not move is drawn the more the more the rest slides away
-                    // from it.
+                    // The more the rest slides away from a point that does not move, the greater
+                    // the tension there.
                     let drawn = (e.tension[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.tension[0].abs(), e.tension[1].abs());
                     return if drawn < -rounding { Mode::Stick } else { mode };
                 }
             }
-            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at
-            // every p. The slip is least where the tension is what it was: before it the one
-            // stretch is the greater, after it the other.
+            // With m = +μ material moves along p, so s < s_old at every p. The slip is least where
+            // the tension has its old value: before that place one strain is greater, after it the
+            // other.
             let (old, _) = history.at(contact_path, e.place[0]);
             let least = if (old - e.tension[0]) * m > 0.0 {
                 history.front(contact_path, e.place[0], e.tension[0], e.place[1]).coordinate
@@ -299,17 +299,17 @@ pub(in crate::model::spans) fn next_mode(
     }
 }
 
-/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding;
-/// larger: creep.
+/// Relative excess of a tension over the friction cone that counts as round-off. Smaller: chatter
+/// by round-off; larger: creep.
 const CONE_ROUNDING: f64 = 1e-13;
-/// Part of the material coordinate that is rounding.
+/// Relative round-off of the material coordinate.
 const ROUNDING: f64 = 1e-15;
-/// Part of a tension by which it is changed to see what that moves.
+/// Relative step of a tension for a difference quotient.
 const DIFFERENCE_STEP: f64 = 1e-6;
-/// Slopes of tension nearer to each other than this part of the load are one.
+/// Difference of slopes of tension below which they are equal, as a fraction of the load.
 const SLOPE_DIFFERENCE_FRACTION: f64 = 1e-6;
-/// Part of the material coordinate that an end held on the boundary may be off without having
+/// Relative difference of the material coordinate below which an end held on the boundary has not
 /// moved.
 const END_MOVE_TOLERANCE: f64 = 1e-14;
-/// Part of the material coordinate that is no movement: rounding.
+/// Relative difference of the material coordinate that is round-off and not slip.
 const STICK_ROUNDING: f64 = 1e-15;

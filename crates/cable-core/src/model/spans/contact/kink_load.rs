@@ -1,20 +1,21 @@
-//! A load in a concave kink of a boundary is held by both its edges.
+//! This module handles a load in a concave kink of a boundary, which is held by both its edges.
 //!
 //! A load that slides into a kink stays there as long as the force V on it lies between the
-//! friction cones of the two edges. It leaves along its own edge if V·t away from the kink is more
-//! than μN, with N = −V·n of that edge alone, and likewise along the other. The cable beside it may
-//! rest on either edge, joined to the load.
+//! friction cones of the two edges. It leaves along its own edge if V·t away from the kink exceeds
+//! μN, with N = −V·n of that edge alone, and likewise along the other. The cable beside it may lie
+//! on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::{Breakpoint, Mode, TensionProfile};
 use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
 use crate::model::spans::section::{CableSection, Contact, Failure, Kink, RestingLoad, SolveContext};
 
-/// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
+/// Distance (m or rad) beyond the end of its chain from which a load is in the kink there. Smaller:
+/// round-off decides.
 const CHAIN_END_ROUNDING: f64 = 1e-12;
-/// Part of the forces that is rounding.
+/// Relative round-off of the forces.
 const CONE_ROUNDING: f64 = 1e-12;
-/// Part of the section that a contact gives way by where a load leaves it, to begin with.
+/// First displacement of a contact's end where a load leaves it, as a fraction of the section.
 const GIVE_WAY_FRACTION: f64 = 1e-6;
 
 /// The piece beyond the kink at an end of a contact's chain, and p of the kink.
@@ -32,8 +33,8 @@ fn other(context: &SolveContext, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)
     Some((place.tangent, place.normal))
 }
 
-/// The way V pushes the load out of its kink: away along its own edge, or on along the other
-/// (`true`).
+/// The direction in which V pushes the load out of its kink: along its own edge (`false`) or along
+/// the other (`true`); None if it stays.
 fn leaves(context: &SolveContext, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
     let out = |along: f64, press: f64| along > context.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
@@ -43,7 +44,7 @@ fn leaves(context: &SolveContext, c: &Contact, kink: Kink, f: &LoadBalance, room
     out(kink.sign() * f.sum.dot(&tangent), -f.sum.dot(&normal)).then_some(true)
 }
 
-/// N of both edges together.
+/// Sum of the normal forces of both edges, N.
 pub(in crate::model::spans) fn press(context: &SolveContext, c: &Contact, f: &LoadBalance) -> f64 {
     match c.kink().and_then(|kink| other(context, c, kink)) {
         Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
@@ -51,7 +52,7 @@ pub(in crate::model::spans) fn press(context: &SolveContext, c: &Contact, f: &Lo
     }
 }
 
-/// True if the load keeps its kink, to a part of its forces.
+/// True if the load stays in its kink, to a relative tolerance of its forces.
 pub(in crate::model::spans) fn holds(
     context: &SolveContext,
     c: &Contact,
@@ -62,7 +63,7 @@ pub(in crate::model::spans) fn holds(
     leaves(context, c, kink, f, room).is_none()
 }
 
-/// K: loads that have come into a kink stay there; whether there was one.
+/// Attaches loads that have come into a kink to it; returns whether there was one.
 pub(in crate::model::spans) fn enter(section: &mut CableSection, context: &SolveContext) -> bool {
     for c in section.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
@@ -85,7 +86,7 @@ pub(in crate::model::spans) fn enter(section: &mut CableSection, context: &Solve
     false
 }
 
-/// Lets the load that is contact j out of its kink; whether it left.
+/// Releases the load of contact j from its kink; returns whether it left.
 pub(in crate::model::spans) fn leave_kink(
     section: &mut CableSection,
     context: &SolveContext,
@@ -118,8 +119,8 @@ pub(in crate::model::spans) fn leave_kink(
     Ok(true)
 }
 
-/// Separates by a span a contact that is joined to the load that is contact j but lies on another
-/// chain.
+/// Inserts a span between the load of contact j and a contact that is joined to it but lies on
+/// another chain.
 fn part(section: &mut CableSection, context: &SolveContext, j: usize, side: usize) {
     if !section.is_joined(j, side) {
         return;
@@ -133,7 +134,7 @@ fn part(section: &mut CableSection, context: &SolveContext, j: usize, side: usiz
     section.resolve_span(context, j + side);
 }
 
-/// An end of contact i gives way by a little, for a span to begin there.
+/// Shortens contact i a little at an end, so that a span can begin there.
 pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, end: usize) {
     let gives = GIVE_WAY_FRACTION * (section.to - section.from);
     let e = &mut section.contacts[i].ends;
@@ -143,7 +144,7 @@ pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, en
     e.place[end] += sign * 0.5 * (e.place[1] - e.place[0]) * if most > 0.0 { by / most } else { 0.0 };
 }
 
-/// True if contact `c` lies on the chain beyond the kink that a load is in, on that side.
+/// True if contact `c` lies on the chain beyond the kink of a load, on that side.
 pub(in crate::model::spans) fn follows(context: &SolveContext, load: &Contact, c: &Contact, side: usize) -> bool {
     load.kink().is_some_and(|kink| {
         kink.side() == side
@@ -154,7 +155,7 @@ pub(in crate::model::spans) fn follows(context: &SolveContext, load: &Contact, c
                     Kink::Ahead => (c.chain_range.first, curve.origin(c.chain_range.first)),
                     Kink::Back => (c.chain_range.last, curve.end(c.chain_range.last)),
                 };
-                // Of a closed boundary that is counted from another turn nothing is said.
+                // For a closed boundary counted from another turn the answer is false.
                 first == i && at == p
             })
     })

@@ -1,4 +1,4 @@
-//! The forces on a dead load that lies on a boundary, see `point_load`.
+//! This module computes the forces on a dead load that lies on a boundary, see `point_load`.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::section::{CableSection, EndCondition, SolveContext};
@@ -6,7 +6,7 @@ use crate::model::spans::section::{CableSection, EndCondition, SolveContext};
 /// Forces on a load.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct LoadBalance {
-    /// V, N, and what of it does not turn with the boundary.
+    /// V, N, and the part of it that does not turn with the boundary.
     pub sum: Vec2,
     pub fixed: Vec2,
     pub tangent: Vec2,
@@ -22,7 +22,7 @@ impl LoadBalance {
     }
 }
 
-/// Forces on the load that is contact j.
+/// Forces on the load of contact j.
 pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &SolveContext, j: usize) -> LoadBalance {
     let c = &section.contacts[j];
     let place = context.contact_path(c).place(c.ends.place[0]);
@@ -45,7 +45,7 @@ pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &So
     LoadBalance { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
 }
 
-/// P of the load that is contact j, N.
+/// P of the load of contact j, N.
 fn load(section: &CableSection, context: &SolveContext, j: usize) -> Vec2 {
     let s = section.contacts[j].ends.material[0];
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {

@@ -1,18 +1,17 @@
-//! A dead load may lie on a boundary, inside the cable or at an end of it.
+//! This module handles a dead load that lies on a boundary, inside the cable or at an end of it.
 //!
-//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it
-//! the next number, so that what is summed up to there has the load in it, and what is summed up to
-//! before it has not). With F₋ and F₊ the force of the cable before and after it, pressed by N n
-//! and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
+//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is fixed (after it the
+//! next floating-point number, so that sums up to there include the load, and sums up to the point
+//! before it do not). With F₋ and F₊ the force of the cable before and after it, the normal force N
+//! n and friction −mN t (see `capstan`), and V = F₊ − F₋ + P:
 //!
 //! ```text
 //! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks
 //! ```
 //!
-//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the
-//! same chain, F = T t, and there is no span between the two: they are *joined*, and T stands where
-//! the force of that span would stand. At an end of the cable nothing is beyond it, and P is what
-//! draws the end.
+//! The cable beside it is a span that ends in q at any angle; or it lies on the same chain, F = T
+//! t, without a span between the two: they are *joined*, and T is stored in the place of the force
+//! of that span. At an end of the cable there is nothing beyond the load, and P draws the end.
 
 use crate::catenary::PointForce;
 use crate::error::EquilibriumFault;
@@ -25,17 +24,18 @@ use crate::model::spans::section::{
     CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
 };
 
-/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger:
-/// creep.
+/// Relative round-off of the forces at a load. Smaller: chatter at the edge of the friction cone.
+/// Larger: creep.
 const CONE_ROUNDING: f64 = 1e-12;
-/// Part of the material coordinate that is no movement.
+/// Relative difference of the material coordinate that is round-off and not slip.
 const MATERIAL_ROUNDING: f64 = 1e-15;
-/// Part of a dead force that lifts an end off what it lies on, or presses it down.
+/// Normal component of a dead force that lifts an end off its boundary, or presses it down, as a
+/// fraction of the force.
 pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
-/// Equations must hold to this part of the forces; the solver stops at 1e-11.
+/// Relative error of the balance of forces; the solver stops at 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
 
-/// The mode that the load that is contact j asks for.
+/// The mode that the load of contact j requires.
 pub(in crate::model::spans) fn next_mode(
     section: &CableSection,
     context: &SolveContext,
@@ -65,8 +65,8 @@ pub(in crate::model::spans) fn next_mode(
     }
 }
 
-/// The friction of what came down in a step that is not remembered yet, of the force there: loads
-/// have had none, and cable rubs as if it had come down where it was found.
+/// The missing friction of contacts that came down in this step, as a fraction of the force there:
+/// loads have had none, and cable has friction as if it had come down where it was found.
 pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, context: &SolveContext) -> f64 {
     let missing = |j: usize| {
         let c = &section.contacts[j];
@@ -84,8 +84,8 @@ pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, con
     (0..section.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// True if all of a section is about to slide `way` (1: towards its end, −1: towards its start): at
-/// each contact the tensions are those of sliding, but for this part of them.
+/// True if all of a section is about to slide in a direction (1: towards its end, −1: towards its
+/// start): at each contact the tensions are those of sliding within the relative tolerance `near`.
 pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &SolveContext, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * context.friction(c);
@@ -102,12 +102,12 @@ pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &Solve
     !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
 }
 
-/// The place of a load in the state before, p.
+/// The place p of a load in the previous state.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
     c.history.breakpoints().first().map_or(c.ends.place[0], |k| k.coordinate)
 }
 
-/// Checks the load that is contact j against its laws.
+/// Checks the load of contact j against its laws.
 pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveContext, j: usize) -> Result<(), Failure> {
     let c = &section.contacts[j];
     let f = load_balance(section, context, j);
@@ -136,8 +136,8 @@ pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveCon
     Ok(())
 }
 
-/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed
-/// down rub, and what lies on one chain beside a load is joined to it; whether there was any.
+/// Releases loads that lift off, sets down loads within a contact, gives friction to ends that are
+/// pressed down, and joins contacts on the chain of a load to it; returns whether anything changed.
 pub(in crate::model::spans) fn settle(section: &mut CableSection, context: &SolveContext) -> Result<bool, Failure> {
     for j in 0..section.contacts.len() {
         if section.contacts[j].is_load() {
@@ -156,7 +156,7 @@ pub(in crate::model::spans) fn settle(section: &mut CableSection, context: &Solv
     Ok(false)
 }
 
-/// Lets the load that is contact j go.
+/// Releases the load of contact j.
 fn lift(section: &mut CableSection, context: &SolveContext, j: usize) {
     for side in 0..2 {
         if section.is_joined(j, side) {
@@ -183,7 +183,7 @@ fn lift(section: &mut CableSection, context: &SolveContext, j: usize) {
     section.resolve_span(context, j);
 }
 
-/// Joins loads to what lies on their chains beside them.
+/// Joins loads to the contacts beside them on their chains.
 pub(in crate::model::spans) fn join(section: &mut CableSection, context: &SolveContext) -> Result<(), Failure> {
     let mut j = 0;
     while j < section.contacts.len() {
@@ -193,7 +193,7 @@ pub(in crate::model::spans) fn join(section: &mut CableSection, context: &SolveC
     Ok(())
 }
 
-/// Joins one more contact beside the load that is contact j, and says whether there was one.
+/// Joins one more contact beside the load of contact j; returns whether there was one.
 fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Result<bool, Failure> {
     let load = section.contacts[j].clone();
     for side in 0..2 {
@@ -206,7 +206,7 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
         if c.is_load() {
-            // Cable between two loads of one chain lies, too.
+            // Cable between two loads on one chain lies on it, too.
             let [a, b] = [first, first + 1].map(|k| section.contacts[k].ends);
             if !same || !(b.place[0] > a.place[0]) {
                 return Err(Failure::LoadInContact { s: load.ends.material[side] });
@@ -242,8 +242,8 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
     Ok(false)
 }
 
-/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the
-/// load rests with. The load that is nearest to an end is set down; whether there was one.
+/// If Newton's method stalls, an end of a contact may have come to a load: then the contact ends
+/// there. Sets down the load that is nearest to an end; returns whether there was one.
 pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
     let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.material[0] == s);
@@ -292,7 +292,8 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &Solve
     true
 }
 
-/// So far (m, either way) along a boundary from p, to the end of its chain at most.
+/// The place at a distance `way` (m, in either direction) along a boundary from p, limited to its
+/// chain.
 fn walk(contact_path: &ContactPath<'_>, mut p: f64, way: f64) -> f64 {
     let (first, last) = (
         contact_path.curve.origin(contact_path.chain_range.first),
@@ -312,10 +313,10 @@ fn walk(contact_path: &ContactPath<'_>, mut p: f64, way: f64) -> f64 {
     p
 }
 
-/// Sets a load within contact j down where it lies.
+/// Sets a load within contact j down at its place.
 fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> bool {
     let c = &section.contacts[j];
-    // A load at an end of the section draws that end.
+    // A load at an end of the section belongs to that end.
     let [from, to] = [larger(c.ends.material[0], section.from), smaller(c.ends.material[1], section.to)];
     let Some(s) = context.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0)
     else {
@@ -332,8 +333,8 @@ fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> boo
     });
     let tension = c.history.at(&contact_path, q).0;
     let breakpoints = c.history.breakpoints();
-    // Cable that had been laid before stays; where it is only now coming to lie nothing has rubbed
-    // yet.
+    // Cable that was laid before keeps its friction memory; cable that is only now coming down has
+    // none yet.
     let fresh = c.smooth
         || !breakpoints.first().zip(breakpoints.last()).is_some_and(|(a, b)| q >= a.coordinate && q <= b.coordinate);
     let (first, second) = c.history.split(&contact_path, q);
@@ -353,7 +354,8 @@ fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> boo
     true
 }
 
-/// An end that lies on contact j and is pressed down by what draws it rubs by itself.
+/// Gives an end on contact j that its load presses down its own friction; returns whether there was
+/// one.
 fn press_end(section: &mut CableSection, context: &SolveContext, j: usize) -> bool {
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
         let EndCondition::Loose(force) = section.end_conditions[side] else { continue };
@@ -376,7 +378,7 @@ fn press_end(section: &mut CableSection, context: &SolveContext, j: usize) -> bo
 /// The past of a load on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FrictionPast {
-    /// Nothing has rubbed yet.
+    /// There was no friction yet.
     None,
     /// Friction has held it.
     Held,
@@ -388,7 +390,7 @@ impl FrictionPast {
     }
 }
 
-/// A load on what a contact lies on.
+/// A load on the boundary of a contact.
 fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
     let fresh = past == FrictionPast::None;
     Contact {

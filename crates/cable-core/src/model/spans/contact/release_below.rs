@@ -1,17 +1,19 @@
-//! A cable round a post may hang free below it, where its tension is too small to bear it there.
+//! This module parts a contact below a post, where the tension is too small to carry the cable and
+//! it hangs free.
 //!
-//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so that P e^{−mψ} falls up
-//! to the *bottom* of the arc, where b·t = 0 with the load away from the centre, and grows behind
-//! it: if P is not below nothing at a bottom it is so nowhere near it. What pulls is a stretch
-//! about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one
-//! post with a bottom between them are two until they meet.
+//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so P e^{−mψ} falls up to
+//! the *bottom* of the arc, where b·t = 0 with the load away from the centre, and grows behind it:
+//! if P is not negative at a bottom, it is not negative near it. A pulling stretch lies about a
+//! bottom; the contact is parted there and replaced by a span. Two contacts of one post with a
+//! bottom between them remain separate until they meet.
 
 use crate::model::spans::boundary::{ContactPath, Ends, Mode, TensionProfile};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
-/// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than
-/// what the check lets pass: contacts that it refuses are not parted.
+/// Pull on a post that counts as round-off, as a fraction of the tensions at the ends of the
+/// contact. If it were larger than the tolerance of the acceptance check, contacts that the check
+/// refuses would not be parted.
 const PULL_ROUNDING: f64 = 1e-9;
 
 /// True if a bottom of a round boundary lies between two places on it.
@@ -21,12 +23,13 @@ pub(in crate::model::spans) fn hangs_between(contact_path: &ContactPath<'_>, fro
     found
 }
 
-/// A place on a round boundary counted on the turn on which it is nearest to another.
+/// A place on a round boundary, counted on the turn on which it is nearest to another place.
 pub(in crate::model::spans) fn nearest_turn(p: f64, to: f64) -> f64 {
     p + std::f64::consts::TAU * ((to - p) / std::f64::consts::TAU).round()
 }
 
-/// L: parts the contact that pulls most about the place where it does; whether there was one.
+/// Parts the contact with the greatest pull about the place where it pulls; returns whether there
+/// was one.
 pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut worst: Option<(f64, usize, f64, TensionProfile)> = None;
     for (j, c) in section.contacts.iter().enumerate() {
@@ -96,7 +99,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
     true
 }
 
-/// The profile that the contact remembers after the present state.
+/// The friction memory of the contact after the present state.
 fn after(contact_path: &ContactPath<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
     past.commit(contact_path, &c.ends, c.mode, c.held, &mut TensionProfile::default());

@@ -1,33 +1,34 @@
-//! A pocket is slack in a concave kink.
+//! This module handles pockets: slack cable in a concave kink.
 //!
 //! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size
-//! goes with its tension, x = T tan(δ/2)/w on each edge. Where there is more cable than that the
-//! span shrinks to nothing: the cable lies in the kink without tension, and what is over lies there
-//! loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on both, with as much
-//! material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the
-//! cable draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
+//! is proportional to its tension, x = T tan(δ/2)/w on each edge. With more cable the span shrinks
+//! to nothing: the cable lies in the kink without tension, and the surplus lies there loose. Such
+//! a *pocket* is two ends of contacts held in the kink, T = 0 on both, with the surplus material
+//! between them, surplus = s₁ − s₂ ≥ 0. When the surplus is used up, the cable forms a span across
+//! the kink again. The transition is continuous: T → 0 as surplus → 0.
 //!
-//! The surplus is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
-//! it. The two edges have to carry it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their
-//! normals; else by the one edge it lies on, within its cone. A heap that neither carries slides on
-//! down (see [`heap`]).
+//! The surplus is a heap in the kink with the weight B = −b·surplus, and the weight of dead loads
+//! in it. The two edges carry it by pressure alone, N₁n₁ + N₂n₂ = −B, if −B is between their
+//! normals; else the one edge on which it lies carries it within its friction cone. A heap that
+//! neither carries slides down (see [`heap`]).
 //!
-//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ
-//! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
+//! A span that replaces a surplus of −e is an arc tangent to both edges at the distance x from the
+//! kink. It is δ x/tan(δ/2) long, so e = x (2 − δ/tan(δ/2)), with the tension w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
-/// A pocket opens when material is short by this part of the section. Smaller: rounding opens it.
-/// Larger: the cable there is too short by as much.
+/// Shortage of material from which a pocket opens, as a fraction of the section. Smaller: round-off
+/// opens it. Larger: the cable there is too short by as much.
 pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
-/// Ends of two chains this near to each other (m) are one kink.
+/// Distance (m) of the ends of two chains within which they form one kink.
 const KINK_DISTANCE_M: f64 = 1e-9;
-/// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
+/// Excess over the friction cone of a heap's edge that counts as round-off, as a fraction of the
+/// heap's weight.
 const HEAP_CONE_ROUNDING: f64 = 1e-9;
 
-/// The places at which the ends of the contacts before and after span k would lie in a kink: p on
-/// both, the turn, rad.
+/// The coordinates p at which the ends of the contacts before and after span k would lie in a kink,
+/// and its turn, rad.
 fn kink(section: &CableSection, context: &SolveContext, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (section.contacts.get(k.checked_sub(1)?)?, section.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
@@ -41,7 +42,7 @@ fn kink(section: &CableSection, context: &SolveContext, k: usize) -> Option<([f6
         .then_some((p, turn))
 }
 
-/// Spans that may become pockets, those of the least tension first.
+/// Lists spans that may become pockets, with the least tension first.
 pub(in crate::model::spans) fn candidates(section: &CableSection, context: &SolveContext, out: &mut Vec<(f64, usize)>) {
     out.clear();
     let most = context.settings.changes.pocket_tension_fraction * context.law.load.norm() * (section.to - section.from);
@@ -76,13 +77,13 @@ pub(in crate::model::spans) struct BearingContact {
     /// Normal of the edge, and its direction of growing arc length.
     pub normal: Vec2,
     pub tangent: Vec2,
-    /// Force on the cable along both, N.
+    /// Force on the cable along the normal, N.
     pub press: f64,
+    /// Force on the cable along the tangent, N.
     pub friction: f64,
 }
 
-/// The edges that carry the heap between contacts k − 1 and k; None where nothing does, and it
-/// slides.
+/// The edges that carry the heap between contacts k − 1 and k; None if none can, so that it slides.
 pub(in crate::model::spans) fn heap(
     section: &CableSection,
     context: &SolveContext,
@@ -94,7 +95,7 @@ pub(in crate::model::spans) fn heap(
         BearingContact { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
     };
     let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
-    // Material that rounding alone tells from none weighs nothing.
+    // Material within round-off of zero has no weight.
     if b.ends.material[0] <= a.ends.material[1] {
         return Some(borne);
     }
@@ -112,7 +113,8 @@ pub(in crate::model::spans) fn heap(
     (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 
-/// U: draws a span across the kink whose material is shortest.
+/// Opens the pocket with the greatest shortage of material into a span; returns whether there was
+/// one.
 pub(in crate::model::spans) fn open(section: &mut CableSection, context: &SolveContext) -> bool {
     let surplus = |k: usize| section.contacts[k].ends.material[0] - section.contacts[k - 1].ends.material[1];
     let pockets = (1..section.contacts.len()).filter(|&k| section.contacts[k - 1].next == Connection::Pocket);

@@ -1,10 +1,11 @@
-//! A support may come to lie on a boundary, slide along it, or lift the cable off it.
+//! This module handles a support that comes to lie on a boundary, slides along it, or lifts the
+//! cable off it.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::section::{CableSection, EndCondition, SolveContext};
 
-/// Moves an end that is held to `at`, m.
+/// Moves a held end to `at`, m.
 pub(in crate::model::spans) fn place(section: &mut CableSection, context: &SolveContext, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { section.contacts.len().wrapping_sub(1) };
     let on = section.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
@@ -18,7 +19,7 @@ pub(in crate::model::spans) fn place(section: &mut CableSection, context: &Solve
             let gap = p - c.ends.place[side];
             c.ends.place[side] = p;
             if gap != 0.0 {
-                // The tension starts from what was at its place.
+                // The tension starts from the old one at its place.
                 c.ends.tension[side] = c.history.at(&context.contact_path(c), p).0;
             }
         }
@@ -35,7 +36,7 @@ fn beyond(section: &CableSection, j: usize, side: usize, p: f64) -> bool {
     if side == 0 { p <= e.place[0] } else { p >= e.place[1] }
 }
 
-/// Lays an end of the section on the boundary, which takes its span away.
+/// Lays an end of the section on the boundary, which removes its span.
 fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
     section.end_conditions[side] = EndCondition::Lies(p);
     let s = if side == 0 { section.from } else { section.to };
@@ -43,7 +44,7 @@ fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
     (e.place[side], e.material[side]) = (p, s);
 }
 
-/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
+/// Lifts an end off the boundary: a span begins where a parabola of the height h and tension T
 /// there would, x = √(2Th/w_n).
 fn lift(section: &mut CableSection, context: &SolveContext, side: usize, j: usize, at: Vec2) {
     let c = &mut section.contacts[j];
@@ -60,7 +61,7 @@ fn lift(section: &mut CableSection, context: &SolveContext, side: usize, j: usiz
     let least = (foot - other).abs() * (1.0 - context.settings.changes.lying_fraction);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { section.from } else { section.to };
-    // Of the material there is some must remain for the span.
+    // Some of the material must remain for the span.
     let span = ((at - contact_path.place(p).at).norm()) / context.law.stretch(c.ends.tension[side]);
     let s = end + sign * span;
     let inner = c.ends.material[1 - side];

@@ -1,9 +1,9 @@
 //! This module gives models with spans of their own the friction of one wheel: its memory, and the
 //! two equations of the cable on it.
 //!
-//! The law is that of every contact here (`capstan`, `friction_memory`, `equations`). Slip is seen
-//! at points fixed to the wheel, since where the cable meets and leaves it wanders with its
-//! directions and moves no material.
+//! The law is that of every contact here (`capstan`, `friction_memory`, `equations`). Slip is
+//! measured at points fixed to the wheel, because the points where the cable meets and leaves it
+//! move with its directions without moving material.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::{
@@ -13,8 +13,9 @@ use crate::model::spans::contact::equations;
 
 /// A wheel is one arc.
 const WHEEL_RANGE: ChainRange = ChainRange { first: 0, last: 0 };
-/// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer
-/// decides; more: a cable that holds is let slide, for as much of its tension.
+/// Distance from the edge of the friction cone within which an adopted cable counts as sliding, as
+/// a fraction of the cone. Smaller: the round-off of the answer decides; larger: a sticking cable
+/// starts to slide, with that relative error of its tension.
 const SLIDING_CONE_TOLERANCE: f64 = 1e-7;
 
 /// Load (N/m), 1 + αΔT and EA (N) of the cable.
@@ -80,7 +81,8 @@ impl WheelFriction {
         }
     }
 
-    /// The angle at which the cable has a direction, the one nearest to another.
+    /// The angle at which the cable has the direction `along`, counted on the turn nearest to
+    /// `near`.
     pub fn angle(&self, along: Vec2, near: f64) -> f64 {
         let p = self.curve.with_tangent(0, along);
         p + std::f64::consts::TAU * ((near - p) / std::f64::consts::TAU).round()
@@ -92,8 +94,7 @@ impl WheelFriction {
         [place.tangent, place.normal]
     }
 
-    /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points
-    /// in order.
+    /// Begins the memory from angle (rad), material (m) and tension (N) at points in order.
     pub fn begin(&mut self, on: &CableProperties, points: &[[f64; 3]]) {
         let breakpoints: Vec<Breakpoint> = points
             .iter()
@@ -122,8 +123,8 @@ impl WheelFriction {
         WheelEquations { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
 
-    /// Goes over to sliding or holding where the law asks for it at these ends; whether it did.
-    /// `patience` is how many times rounding a violation must be.
+    /// Changes the mode to slip or stick if the law requires it at these ends; returns whether it
+    /// did. `patience` is the multiple of round-off that a violation must have.
     pub fn change_mode(&mut self, on: &CableProperties, ends: &WheelEnds, patience: f64) -> bool {
         let e = Ends::from(ends);
         let next =
@@ -133,7 +134,7 @@ impl WheelFriction {
         changed
     }
 
-    /// Takes what came of a step as the new past.
+    /// Stores the outcome of a step in the memory.
     pub fn commit(&mut self, on: &CableProperties, ends: &WheelEnds) {
         let e = Ends::from(ends);
         let mut history = std::mem::take(&mut self.history);
@@ -141,7 +142,7 @@ impl WheelFriction {
         self.history = history;
     }
 
-    /// Tension (N) and material (m) at an angle as they were last.
+    /// Tension (N) and material (m) at an angle after the last step.
     pub fn at(&self, on: &CableProperties, p: f64) -> (f64, f64) {
         self.history.at(&self.contact_path(on), p)
     }

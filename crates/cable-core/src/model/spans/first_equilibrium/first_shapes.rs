@@ -1,20 +1,21 @@
-//! The first shapes from which an equilibrium is sought are tried in a fixed order.
+//! This module lists the first shapes from which an equilibrium is sought, in the order in which
+//! they are tried.
 //!
-//! Every first shape has one energy, and each law below says what can keep Newton's method from its
-//! minimum. The shapes of [`FIRST_SHAPES`] are tried in order, the cheapest first, and each gives
-//! up one thing that the shapes before it assume:
+//! All first shapes have the same energy, and each reason below can keep Newton's method from its
+//! minimum. The shapes of [`FIRST_SHAPES`] are tried in order, the cheapest first, and each drops
+//! one assumption of the shapes before it:
 //!
 //! - **Friction.** The equilibrium with the least sliding lies nearest to the route, so friction
 //!   acts from there. A cable whose route is far from every such equilibrium slides to one: it is
 //!   sought without friction, where the energy alone decides, and friction holds it from then on. A
 //!   cable that is not held at both ends would run away, and keeps its friction.
-//! - **Slack.** The spans of a slack cable are no function of its ends. Shrunk until a tension of a
-//!   few weights draws it taut along its route, it is let out again step by step; more tension,
-//!   where the first was not enough.
-//! - **Tension.** A contact that would have to push shows that cable has no tension left there
+//! - **Slack.** The spans of a slack cable are not determined by its ends. The cable is shrunk
+//!   until a tension of a few weights draws it taut along its route, and paid out again step by
+//!   step; with more tension if the first was not enough.
+//! - **Tension.** A contact that would be compressed shows that the cable has no tension left there
 //!   ([`Failure::Compressed`]): only then may it lie loose on the ground.
-//! - **Posts as polygons.** A cable that nothing but friction holds may pass between the points
-//!   that stand for a post: more points, for it alone ([`posts_seen_nearer`]).
+//! - **Posts as polygons.** A cable held by friction alone may pass between the points that
+//!   represent a post: such a cable gets more points ([`posts_seen_nearer`]).
 
 use crate::model::spans::initial::{POST_POLYGONS, PostPolygon};
 use crate::model::spans::section_layout::SectionLayout;
@@ -26,7 +27,7 @@ pub(in crate::model::spans) struct FirstShape {
     pub(super) friction: FirstFriction,
     pub(super) length: FirstLength,
     pub(super) slack: SlackCable,
-    /// The points that stand for a post.
+    /// The points that represent a post.
     pub(super) posts: PostPolygon,
 }
 
@@ -35,7 +36,7 @@ pub(in crate::model::spans) struct FirstShape {
 pub(in crate::model::spans) enum FirstFriction {
     /// All of it.
     FromTheStart,
-    /// None until the cable rests, then all of it.
+    /// No friction until the cable rests, then the full friction.
     OnceAtRest,
 }
 
@@ -53,15 +54,16 @@ pub(in crate::model::spans) enum FirstLength {
 /// The places at which a cable may lie without tension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SlackCable {
-    /// Nowhere.
+    /// The cable has tension everywhere.
     Nowhere,
-    /// A section that spreads on the ground along its route.
+    /// A section may spread on the ground along its route.
     AlongRoute,
-    /// That, and cable that comes down on a smooth contact and has no tension left.
+    /// As `AlongRoute`, and cable may lie loose on a frictionless contact where it has no tension
+    /// left.
     WhereTensionEnds,
 }
 
-/// All of the cable along its route with friction: most cables rest next to it.
+/// The whole cable along its route with friction: most cables rest near it.
 pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
     friction: FirstFriction::FromTheStart,
     length: FirstLength::Whole,
@@ -72,27 +74,27 @@ pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
 /// The same cable, drawn taut.
 pub(super) const TAUT: FirstShape = FirstShape { length: FirstLength::Taut, ..ALONG_ROUTE };
 
-/// The first shapes in the order in which they are tried, each with what makes it necessary.
+/// The first shapes in the order in which they are tried, each with the reason for it.
 pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
     ALONG_ROUTE,
-    // Friction holds no place near the route.
+    // Friction holds no equilibrium near the route.
     FirstShape { friction: FirstFriction::OnceAtRest, ..ALONG_ROUTE },
-    // Slack keeps Newton's method from the place without friction.
+    // Slack keeps Newton's method from the frictionless equilibrium.
     FirstShape { friction: FirstFriction::OnceAtRest, ..TAUT },
-    // A contact would have to push: cable there has no tension.
+    // A contact would be compressed, so the cable there has no tension.
     FirstShape { slack: SlackCable::WhereTensionEnds, ..ALONG_ROUTE },
-    // Slack keeps Newton's method from the place with friction.
+    // Slack keeps Newton's method from the equilibrium with friction.
     TAUT,
     // A stiff cable stretches so little that a few weights do not draw it taut.
     FirstShape { friction: FirstFriction::OnceAtRest, length: FirstLength::VeryTaut, ..ALONG_ROUTE },
 ];
 
-/// The first shapes that are tried after [`FIRST_SHAPES`] if nothing but friction holds a section.
+/// The first shapes that are tried after [`FIRST_SHAPES`] if friction alone holds a section.
 pub(super) fn posts_seen_nearer(layout: &SectionLayout) -> impl Iterator<Item = FirstShape> {
     shapes_with_friction(layout).into_iter().skip(1)
 }
 
-/// The first shapes with friction that can tell how much of it a cable needs.
+/// The first shapes with friction from which the friction that a cable needs is found.
 pub(in crate::model::spans) fn shapes_with_friction(layout: &SectionLayout) -> Vec<FirstShape> {
     let held_by_friction = layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none));
     let rings = if held_by_friction { &POST_POLYGONS[..] } else { &POST_POLYGONS[..1] };
@@ -101,7 +103,7 @@ pub(in crate::model::spans) fn shapes_with_friction(layout: &SectionLayout) -> V
 }
 
 impl FirstLength {
-    /// The tension, in weights of the cable, to which it is shrunk; None: not at all.
+    /// The tension, in weights of the cable, to which it is shrunk; None if it is not shrunk.
     pub(super) fn tension_weights(self, tuned: &ContinuationSettings) -> Option<f64> {
         match self {
             Self::Whole => None,

@@ -1,5 +1,5 @@
-//! A homotopy in length: a slack cable is shortened until it is taut along its route, and paid out
-//! again step by step once it has an equilibrium.
+//! This module is a homotopy in length: a slack cable is shortened until it is taut along its
+//! route, and paid out again step by step once it has an equilibrium.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::{LooseSection, Mode};
@@ -12,7 +12,7 @@ use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 
 impl CableEquilibrium {
-    /// Lays the cable along its route in hardly any tension, whether or not it could lie there
+    /// Lays the cable along its route with a very small tension, whether or not it could lie there
     /// loose.
     pub(in crate::model::spans) fn lay_in_tension(
         &mut self,
@@ -23,8 +23,8 @@ impl CableEquilibrium {
         self.lay_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, workspace)
     }
 
-    /// Lays the cable along its route and finds its equilibrium: with all of its length, or shrunk
-    /// until it is taut and then let out again.
+    /// Lays the cable along its route and finds its equilibrium: with its whole length, or shrunk
+    /// until it is taut and then paid out again.
     pub(in crate::model::spans) fn lay_along_route(
         &mut self,
         layout: &SectionLayout,
@@ -61,7 +61,7 @@ impl CableEquilibrium {
         Ok(taken.and(self.advance_load(layout, goal, tuned.first_step, workspace)?))
     }
 
-    /// Lays each section along its route; returns the routes, none for a section that lies loose.
+    /// Lays each section along its route; returns the routes, an empty one for a loose section.
     fn lay_sections(
         &mut self,
         layout: &SectionLayout,
@@ -91,8 +91,8 @@ impl CableEquilibrium {
         Ok(routes)
     }
 
-    /// Lets the contacts rub that were met on the way to an equilibrium; returns whether there were
-    /// any.
+    /// Gives friction to the contacts that were met on the path to an equilibrium; returns whether
+    /// there were any.
     fn end_smoothness(&mut self) -> bool {
         let mut met = false;
         for c in self.sections.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
@@ -105,8 +105,8 @@ impl CableEquilibrium {
         met
     }
 
-    /// The factor on lengths with which a tension of so many weights draws the cable along its
-    /// route.
+    /// The factor of lengths with which the cable lies along its route at a tension of so many
+    /// weights.
     fn shrunk_thermal(&self, layout: &SectionLayout, goal: &BoundaryConditions, taut: f64) -> f64 {
         let p = &layout.problem;
         let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();

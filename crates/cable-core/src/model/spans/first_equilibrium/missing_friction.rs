@@ -1,5 +1,5 @@
-//! A cable that nothing but friction holds slides if there is too little of it: this module finds
-//! how much it would need, and what a cable keeps that was drawn.
+//! A cable held by friction alone slides if there is too little of it: this module finds how much
+//! it would need, and the equilibrium after the cable was drawn.
 
 use crate::model::spans::contact::point_load;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
@@ -7,20 +7,20 @@ use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection};
 use crate::model::spans::section_layout::SectionLayout;
 
-/// Part of the friction that is missing to which it is found: three digits are shown.
+/// Relative accuracy of the missing friction: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
 
-/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little
-/// has no answer and no cause.
+/// Missing friction below which none is missing (round-off), as a fraction of the friction. Larger:
+/// a cable that lacks so little has no answer and no reported cause.
 const LEAST_MISSING_PART: f64 = 1e-7;
 
 impl CableEquilibrium {
-    /// The least multiple of its friction with which a cable that nothing else holds would rest
-    /// along its route. None where it rests with its own friction, or where it is not known to
-    /// slide.
+    /// The least multiple of its friction with which a cable held by friction alone would rest
+    /// along its route. None if it rests with its own friction, or is not known to slide.
     ///
-    /// With less friction every contact of the section slides the same way. Contacts that all but
-    /// slide just above the multiple prove that friction is missing, and not the search's success.
+    /// With less friction every contact of the section slides the same way. The proof is that
+    /// contacts are about to slide just above the multiple, so a failed search alone does not
+    /// count.
     pub fn friction_needed(
         layout: &SectionLayout,
         instant: &BoundaryConditions,
@@ -65,8 +65,8 @@ impl CableEquilibrium {
         unheld.map(|(_, s)| s).any(slides).then_some(high)
     }
 
-    /// The balance in which all friction acts against a cable that was drawn one way (1: towards
-    /// its end, −1: towards its start). None where there is none.
+    /// The equilibrium in which all friction acts against a cable that was drawn one way (1:
+    /// towards its end, −1: towards its start). None if there is none.
     pub fn fully_mobilised(&self, layout: &SectionLayout, way: f64, workspace: &mut Workspace) -> Option<Self> {
         let mut cable_equilibrium = self.clone();
         cable_equilibrium.context.mobilised = way;

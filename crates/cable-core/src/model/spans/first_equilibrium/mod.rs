@@ -1,12 +1,13 @@
-//! The first equilibrium of a cable is sought from its route.
+//! These modules search the first equilibrium of a cable from its route.
 //!
 //! | room | content |
 //! |---|---|
 //! | `mod.rs` | the search: one first shape after the other; equilibria from other answers and in heaps |
 //! | `first_shapes.rs` | the list of first shapes, and the law that makes each necessary |
 //! | `length_homotopy.rs` | a cable is shortened until it is taut, and paid out again |
-//! | `multiple_equilibria.rs` | slack elsewhere: equilibria that run away, and other resting places |
-//! | `missing_friction.rs` | how much friction a sliding cable would need; what drawing leaves |
+//! | `multiple_equilibria.rs` | unstable equilibria of slack cables, and their other equilibria |
+//! | `missing_friction.rs` | the friction that a sliding cable would need; the equilibrium after
+//! drawing |
 
 mod first_shapes;
 mod length_homotopy;
@@ -28,12 +29,12 @@ use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 
-/// Places at which the search for a first equilibrium may begin.
+/// Friction with which the search for a first equilibrium may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SearchStart {
     /// With friction only.
     Rubbing,
-    /// Without friction, too: friction holds the cable from then on.
+    /// Without friction as well: friction holds the cable from then on.
     Either,
     /// Without friction only.
     Frictionless,
@@ -44,7 +45,7 @@ pub(in crate::model::spans) enum SearchStart {
 pub(in crate::model::spans) struct NotFound {
     /// The reason why there is none.
     pub failure: Failure,
-    /// The cable as far as it was let out, where that stopped the search.
+    /// The cable as far as it was paid out, if that stopped the search.
     pub let_out: Option<Box<CableEquilibrium>>,
 }
 
@@ -67,14 +68,14 @@ impl CableEquilibrium {
         Self::along_route_from(layout, instant, SearchStart::Either, workspace)
     }
 
-    /// The same, with the places where the search may begin.
+    /// As [`Self::along_route`], with the friction with which the search may begin.
     pub fn along_route_from(
         layout: &SectionLayout,
         instant: &BoundaryConditions,
         start: SearchStart,
         workspace: &mut Workspace,
     ) -> Result<(Self, StepStats), NotFound> {
-        // A cable that is not held at both ends would run to where it needs no friction.
+        // A cable that is not held at both ends would run to a place where it needs no friction.
         let is_held = layout.sections.iter().all(|s| s.supports.iter().all(Option::is_some));
         let without_friction = start != SearchStart::Rubbing && is_held;
         let with_friction = start != SearchStart::Frictionless && instant.friction > 0.0;
@@ -94,7 +95,7 @@ impl CableEquilibrium {
             }
             let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
             cable_equilibrium.context.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
-            // A rest that is known bounds what the search for another may cost.
+            // If an equilibrium is known, the cost of the search for another is limited.
             if shape.length != FirstLength::Whole {
                 let may_lie_loose = *loose.get_or_insert_with(|| Self::in_heaps(layout, instant).is_some());
                 workspace.work_left = may_lie_loose.then_some(layout.settings.continuation.max_work_beside_loose);
@@ -136,7 +137,8 @@ impl CableEquilibrium {
         Ok(StepStats { found_without_friction: true, ..taken.and(more) })
     }
 
-    /// The cable in heaps where it comes down, hanging over crests, without tension where it lies.
+    /// The equilibrium of a cable in heaps where it comes down, hanging over crests, and without
+    /// tension where it lies.
     pub fn in_heaps(layout: &SectionLayout, instant: &BoundaryConditions) -> Option<Self> {
         let context = layout.context(layout.curves(), instant);
         let section = |k: usize| slack::loose_section(layout, k, &context, instant, LooseShapes::AnyTension);
@@ -144,7 +146,7 @@ impl CableEquilibrium {
         Some(Self { sections, context, instant: instant.clone() })
     }
 
-    /// The same, where every section is too long to rest in tension.
+    /// As [`Self::in_heaps`], only if every section is too long to rest in tension.
     pub fn too_long_for_tension(layout: &SectionLayout, instant: &BoundaryConditions) -> Option<Self> {
         let context = layout.context(layout.curves(), instant);
         let exceeds = |k: usize| slack::exceeds_tension(layout, k, &context, instant);
@@ -178,7 +180,7 @@ impl CableEquilibrium {
         Err(first.unwrap_or(Failure::ContactImpossible { s: 0.0, at }))
     }
 
-    /// Lets friction act on a cable that rests without it, and rests with it all the more.
+    /// Lets friction act on a cable that rests without it.
     fn apply_friction(
         &mut self,
         layout: &SectionLayout,

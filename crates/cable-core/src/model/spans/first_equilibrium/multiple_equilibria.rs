@@ -1,8 +1,8 @@
-//! Of the equilibria of a slack cable that slides without friction some run away; the others are
-//! resting places of their own.
+//! A slack cable without friction may have several equilibria, some of them unstable. This module
+//! leaves unstable ones and finds the others.
 //!
-//! A loop that hangs down pulls the harder the longer it is, so that slack may rest on either side
-//! of a contact. The cable leaves one balance for another by sliding under a drag.
+//! A hanging loop pulls harder the longer it is, so slack may rest on either side of a contact. The
+//! cable leaves one equilibrium for another by sliding under a drag.
 
 use crate::math::{bounded, larger, smaller};
 use crate::model::spans::continuation::StepStats;
@@ -14,20 +14,20 @@ use crate::model::spans::section_layout::SectionLayout;
 /// Factor of the drag after a step that failed.
 const DRAG_RISE: f64 = 8.0;
 
-/// Least factor of the drag after a step: it falls as the force that is left does.
+/// Least factor of the drag after a step; the drag falls with the remaining force.
 const LEAST_DRAG_FALL: f64 = 0.25;
 
-/// A length of material to be passed on at one contact.
+/// A length of material that is moved past one contact.
 #[derive(Clone, Copy, Debug)]
 struct SlackMove {
     /// Index of the contact among those of all sections.
     contact: usize,
-    /// Material that it passes on along the cable, m.
+    /// Material that is moved along the cable past the contact, m.
     passed_on_m: f64,
 }
 
 impl CableEquilibrium {
-    /// Leaves a balance that runs away for a stable one; a stable one is kept, and on an error
+    /// Leaves an unstable equilibrium for a stable one; a stable one is kept, and on an error
     /// nothing has changed.
     pub fn leave_unstable(
         &mut self,
@@ -46,8 +46,8 @@ impl CableEquilibrium {
         })
     }
 
-    /// Finds other balances of a slack cable that slides without friction. Slack is moved from each
-    /// side of each contact to the other, and on from each balance that is found so.
+    /// Finds other equilibria of a slack cable without friction. Slack is moved from each side of
+    /// each contact to the other, and again from each equilibrium found in this way.
     pub fn other_equilibria(&self, layout: &SectionLayout, workspace: &mut Workspace) -> Vec<Self> {
         let tuned = &layout.settings.continuation;
         let mut found = vec![self.clone()];
@@ -71,8 +71,8 @@ impl CableEquilibrium {
         found.split_off(1)
     }
 
-    /// The moves that bring the slack of either side of a contact to the other, at contacts on both
-    /// sides of which cable hangs.
+    /// The moves that bring the slack of either side of a contact to the other, at contacts with
+    /// hanging cable on both sides.
     fn moves_of_slack(&self, layout: &SectionLayout) -> Vec<SlackMove> {
         let least = layout.settings.continuation.least_slack_fraction;
         let mut moves = Vec::new();
@@ -92,18 +92,18 @@ impl CableEquilibrium {
         moves
     }
 
-    /// True if two balances have the same material at the same contacts.
+    /// True if two equilibria have the same material at the same contacts.
     fn is_same_balance(&self, other: &Self, layout: &SectionLayout) -> bool {
         let near = layout.settings.continuation.other_balance_fraction * layout.problem.length;
         let [here, there] = [self, other].map(Self::material_at_contacts);
         here.len() == there.len() && here.iter().zip(&there).all(|(a, b)| (a - b).abs() <= near)
     }
 
-    /// Lets the cable slide to a stable balance, under a drag, from where the material at each
-    /// contact is passed on by a length, m; on an error it is anywhere.
+    /// Lets the cable slide to a stable equilibrium under a drag, after the material at each
+    /// contact was moved by a length, m; on an error its state is undefined.
     ///
-    /// The drag is lowered as the forces that are left fall, so that it stays while they grow
-    /// (switched evolution relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
+    /// The drag is lowered as the remaining forces fall, and stays while they grow (switched
+    /// evolution relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
     fn slide_from(
         &mut self,
         layout: &SectionLayout,
@@ -155,7 +155,7 @@ impl CableEquilibrium {
         self.sections.iter().flat_map(|s| &s.contacts).map(|c| c.ends.material[0]).collect()
     }
 
-    /// True if every section is a stable rest and not a balance that runs away.
+    /// True if the equilibrium of every section is stable.
     pub fn is_stable(&self, workspace: &mut Workspace) -> bool {
         self.sections.iter().all(|s| newton::stable(s, &self.context, workspace))
     }

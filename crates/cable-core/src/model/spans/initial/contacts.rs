@@ -1,5 +1,5 @@
-//! The first guess of a section has contacts where the shortest path of its route bends, and its
-//! material spread evenly along the route.
+//! This module makes the first guess of a section: contacts where the shortest path of its route
+//! bends, and material spread evenly along the route.
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
@@ -13,7 +13,7 @@ use crate::model::spans::section::{BoundaryConditions, CableSection, Connection,
 use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
-/// A wrap: something that the cable bends round, in order.
+/// A body that the cable bends round.
 #[derive(Clone, Debug)]
 struct Wrap {
     curve: usize,
@@ -21,14 +21,14 @@ struct Wrap {
     /// First and last piece.
     pieces: [i64; 2],
     wheel: Option<usize>,
-    /// First and last of it along the route, m.
+    /// Its first and last point along the route, m.
     way: [f64; 2],
-    /// Turn of the string there, rad; not that at a wheel.
+    /// Turn of the taut string there, rad; unused at a wheel.
     turn: f64,
 }
 
-/// The section laid along its route, and the points of the route. None where the string of the
-/// route finds no end.
+/// The section laid along its route, and the points of the route. None if the taut string of the
+/// route is not found.
 pub(in crate::model::spans) fn section_along_route(
     layout: &SectionLayout,
     index: usize,
@@ -108,8 +108,8 @@ fn along(
     }
     spread(&mut section, context);
     solve_spans(&mut section, context)?;
-    // Without a route the way is straight from support to support: round a wheel from tangent to
-    // tangent.
+    // Without a route the way is straight from support to support, and round a wheel from tangent
+    // to tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
     if (slack > tuned.route_excess_fraction || tangent_ways)
@@ -121,7 +121,7 @@ fn along(
     Some(section)
 }
 
-/// Ends that lie on a boundary. An end that a load lifts does not.
+/// The ends that lie on a boundary; an end that a load lifts does not.
 fn lying_ends(
     layout: &SectionLayout,
     part: &SectionBounds,
@@ -147,19 +147,19 @@ fn lying_ends(
     })
 }
 
-/// The material of a section spread along its route: evenly; from the end that is held, strained by
-/// what draws the other, where that is not held.
+/// The material of a section spread along its route: evenly if both ends are held; otherwise from
+/// the held end, with the strain of the force that draws the free one.
 struct SpreadAlongRoute {
     material: [f64; 2],
     /// Length of the route, m.
     total: f64,
-    /// True for ends that nothing holds.
+    /// True for free ends.
     loose: [bool; 2],
-    /// Force that draws the end that is not held, N.
+    /// Force that draws the free end, N.
     drawn: f64,
-    /// Length of a metre of material that is drawn so.
+    /// Stretched length of a metre of material under that force.
     stretch: f64,
-    /// Strain of material that is as long as the route, negative where there is more of it.
+    /// Strain with which the material is as long as the route; negative if it is longer.
     slack: f64,
 }
 
@@ -199,7 +199,7 @@ impl SpreadAlongRoute {
         }
     }
 
-    /// The tension with which it is laid first, N.
+    /// The tension with which it is first laid, N.
     fn tension(&self, context: &SolveContext) -> f64 {
         if self.loose.contains(&true) {
             self.drawn
@@ -211,7 +211,7 @@ impl SpreadAlongRoute {
     }
 }
 
-/// Forces of spans whose ends and material are known.
+/// Solves the forces of spans whose ends and material are known.
 pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, context: &SolveContext) -> Option<()> {
     for k in 0..section.spans() {
         if section.has_span(k) {
@@ -253,8 +253,8 @@ fn lies_whole(
     section
 }
 
-/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0
-/// where they do not meet.
+/// Half of the length Tδ/w of the span that joins two stretches at a kink of δ, m; 0 if they do not
+/// meet.
 fn joint(context: &SolveContext, heads: &[Option<EndContact>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
@@ -308,7 +308,8 @@ fn bends(
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
         let curve = &context.curves[wrap.curve];
-        // That of a wheel is known from the rounds beside it; an eye turns it either way.
+        // The turn at a wheel is known from the rounds beside it; an eye turns the cable either
+        // way.
         let turn = match (wrap.wheel, rounds[k + 1][0]) {
             (Some(_), (centre, radius, sense)) if radius > 0.0 => {
                 turn_through_centre(sense, centre - rounds[k][1].0, rounds[k + 2][0].0 - centre)
@@ -317,17 +318,17 @@ fn bends(
         };
         let p1 = curve.with_tangent(wrap.pieces[0], arrive);
         let p2 = curve.with_tangent(wrap.pieces[1], leave);
-        // The turn of the string, brought to where the tangents are.
+        // The turn of the string is adjusted to the tangents.
         let p2 = if curve.is_round() { p1 + angle_near(p2 - p1, turn) } else { p2 };
-        // An eye has no side of its own: it is passed on the one on which the string bends.
+        // An eye has no side of its own: the cable passes it on the side on which the string bends.
         let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
         let curve = &context.curves[index];
-        // One that the string passes without a bend touches in one point, seen from either end.
+        // A wrap that the string passes without a bend touches in one point.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
         let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / context.law.stretch(tension);
-        // Round a post the string's points are not those of the cable: where it comes and goes on
-        // the route itself.
+        // Round a post the string's points are not those of the cable: its ends are taken from the
+        // route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, wrap.chain_range);
             if curve.is_round() {
@@ -344,7 +345,7 @@ fn bends(
     Some(contacts)
 }
 
-/// A section whose ends are in one place: nothing but a span.
+/// A section whose ends are in one place: a single span.
 fn bare(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSection> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
@@ -359,12 +360,12 @@ fn bare(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSecti
     })
 }
 
-/// Length of a route from an end that hangs to the highest of its points, about where it is first
-/// held, m.
+/// Length of a route from a hanging end to its highest point, which is about the first point that
+/// holds it, m.
 fn tail(part: &SectionBounds, instant: &BoundaryConditions, way: &RoutePolyline, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
-    // Of several the one nearest to that end.
+    // If there are several, the nearest to that end counts.
     let higher = |best: usize, k: usize| if high(&k) > high(&best) { k } else { best };
     let top = match side {
         0 => (0..way.points.len()).reduce(higher),
@@ -376,7 +377,7 @@ fn tail(part: &SectionBounds, instant: &BoundaryConditions, way: &RoutePolyline,
     if length < whole { length } else { whole }
 }
 
-/// An end that lies at p.
+/// The end condition of an end that lies at p.
 fn end_tie(tie: EndCondition, p: f64) -> EndCondition {
     match tie {
         EndCondition::Fixed(_) => EndCondition::Lies(p),
@@ -414,12 +415,12 @@ struct EndContact {
     curve: usize,
     chain_range: ChainRange,
     coordinates: [f64; 2],
-    /// Points of the route that lie, the end included.
+    /// Number of points of the route that lie, with the end.
     count: usize,
 }
 
-/// True if the first points of a route (the last, for side 1) lie on one chain: the end and the
-/// others as `near` as that, m.
+/// The first points of a route (the last ones for side 1) that lie on one chain, within the
+/// distances `near` (m) for the end and the others; None if the end does not lie.
 fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<EndContact> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
@@ -443,7 +444,8 @@ fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2],
     })
 }
 
-/// The bodies that the string bends round, pulleys among them; posts are seen as rings of points.
+/// The bodies that the string bends round, with the pulleys; posts are represented by rings of
+/// points.
 fn wraps(
     layout: &SectionLayout,
     part: &SectionBounds,
@@ -483,7 +485,7 @@ fn wraps(
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let chain_range = ChainRange { first: 0, last: 0 };
-            // The route may be drawn round it: where it comes and where it goes.
+            // The route may be drawn round it: these are its first and last points there.
             let radius = context.curves[curve].place(0.0, chain_range).stretch;
             let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
@@ -494,7 +496,7 @@ fn wraps(
     Some(out)
 }
 
-/// Adds a bend to what there is, or to the last wrap where it goes on there.
+/// Adds a bend to the last wrap if it continues that, else as a new wrap.
 fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = context.curves.get(curve_index)?;
@@ -513,14 +515,14 @@ fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, tur
     Some(())
 }
 
-/// Lets each wrap go on to the corner beside it where the string comes up to its corner, or leaves
-/// it, through the edge between the two; the rounds of all.
+/// Extends each wrap to a neighbouring corner if the string reaches or leaves it through the edge
+/// between the two; returns the rounds of all wraps.
 ///
-/// The string of points passes just by such a corner, that of the cable's radius bends round it:
-/// along the edge nothing turns, and Newton's method does not find across it.
+/// A string without thickness just passes such a corner, whereas a cable with a radius bends round
+/// it: along the edge the direction is constant, so Newton's method cannot move an end across it.
 fn stretched(context: &SolveContext, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
     let mut found = rounds(context, wraps, ends[0], ends[1]);
-    // It ends by itself: every round but the last extends a wrap, within its chain.
+    // The loop terminates: every pass but the last extends a wrap within its chain.
     loop {
         let mut changed = false;
         for (k, wrap) in wraps.iter_mut().enumerate() {

@@ -1,11 +1,10 @@
-//! Sections are set up where another model's answer has the cable, with the friction it has there.
+//! This module sets up sections from another model's answer, with its friction.
 //!
 //! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from
 //! its outer nodes to the points where the cable beside it is tangent, with the material of the
-//! arc's length. The friction memory is set up from the tensions midway between the nodes: a chain
-//! of bars has its tensions there, and jumps at the nodes. Between two neighbouring tensions the
-//! single mobilised friction coefficient m is used that connects them, limited to the friction
-//! cone.
+//! arc's length. The friction memory is set up from the tensions midway between the nodes, because
+//! the tensions of bars jump at the nodes. Two neighbouring tensions are connected by a single
+//! mobilised friction coefficient m, limited to the friction cone.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::{
@@ -16,7 +15,7 @@ use crate::model::spans::section::{BoundaryConditions, CableSection, Connection,
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 
-/// Of the material of a section, what is kept between two contacts at least.
+/// Least material between two contacts, as a fraction of the section.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
 /// A point of the cable, with the tensions before and after it.
@@ -25,7 +24,7 @@ struct Station {
     arc_length: f64,
     at: Vec2,
     tension: [f64; 2],
-    /// Boundary, chain and p, where it lies on one.
+    /// Boundary, chain and p, if it lies on one.
     boundary_point: Option<(usize, ChainRange, f64)>,
     wheel: Option<usize>,
 }
@@ -36,8 +35,8 @@ impl Station {
     }
 }
 
-/// The sections of a cable in the shape of an answer, with at most a part of the cone of friction
-/// called upon; None where the answer does not show them.
+/// The sections of a cable in the shape of an answer, with at most the fraction `within` of the
+/// friction cone mobilised; None if the answer does not determine them.
 pub(in crate::model::spans) fn sections_of(
     layout: &SectionLayout,
     context: &SolveContext,
@@ -57,7 +56,8 @@ pub(in crate::model::spans) fn sections_of(
     layout.sections.iter().map(section).collect()
 }
 
-/// The nodes of a stretch of material; of two at one place the tensions before and after.
+/// The nodes of a stretch of material; two nodes at one place give the tensions before and after
+/// it.
 fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
     let mut out: Vec<Station> = Vec::with_capacity(nodes.len());
     let rounding = 1e-9 * (to - from);
@@ -171,7 +171,7 @@ fn laid(
     Some(section)
 }
 
-/// Material in order, some of it in every span.
+/// Keeps material in order, with some of it in every span.
 fn keep_apart(section: &mut CableSection) -> Option<()> {
     let least = CONTACT_SPACING_FRACTION * (section.to - section.from);
     let mut before = section.from;
@@ -189,19 +189,19 @@ fn keep_apart(section: &mut CableSection) -> Option<()> {
     (before < section.to - least || !section.end_conditions[1].has_span()).then_some(())
 }
 
-/// Stations, one after the other, that lie on one chain.
+/// Successive stations that lie on one chain.
 struct Run<'a> {
     curve: &'a Curve,
     index: usize,
     chain_range: ChainRange,
     first: usize,
     last: usize,
-    /// Part of the cone that is called upon.
+    /// Fraction of the friction cone that may be mobilised.
     within: f64,
 }
 
 impl Run<'_> {
-    /// The contact; the end conditions of the section that lie on it do so from now on.
+    /// Makes the contact; the end conditions of the section on it become lying ends.
     fn contact(&self, section: &mut CableSection, context: &SolveContext, stations: &[Station]) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
@@ -254,8 +254,8 @@ impl Run<'_> {
         }
         breakpoints.push(breakpoint(1));
         let contact_path = context.contact_path(&contact);
-        // A difference beyond the cone goes to where the tension is known without friction: away
-        // from an end that lies, to one that is not held.
+        // A difference beyond the friction cone is moved to the end where the tension is known
+        // without friction: away from a lying end, to a free one.
         let tied = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = section.end_conditions.map(|t| matches!(t, EndCondition::Hangs(_) | EndCondition::Loose(_)));
@@ -265,22 +265,22 @@ impl Run<'_> {
         } else {
             TensionProfile::through(&contact_path, &breakpoints, self.within)
         };
-        // Other models' nodes have their material as their bars have it, not as the tension between
-        // them strains it: what that is off goes to the span beyond, where there is one.
+        // The material of other models' nodes follows from their bars, not from the strain between
+        // nodes: the difference goes to the span beyond, if there is one.
         if !at_end[usize::from(!back)] {
             contact.history.measure(&contact_path, if back { SweepDirection::Left } else { SweepDirection::Right });
             if let [first, .., last] = contact.history.breakpoints() {
                 contact.ends.material = [first.arc_length, last.arc_length];
             }
         }
-        // The cone changes only the tension at an end that lies.
+        // The friction cone changes only the tension at a lying end.
         if let (Some(k), EndCondition::Lies(_)) = (contact.history.breakpoints().last(), section.end_conditions[1]) {
             contact.ends.tension[1] = k.tension;
         }
         Some(contact)
     }
 
-    /// Place, material and tension where the contact begins (side 0) or ends.
+    /// Boundary coordinate, material and tension at the start of the contact (side 0) or its end.
     fn end(
         &self,
         section: &mut CableSection,
@@ -302,7 +302,8 @@ impl Run<'_> {
                             section.end_conditions[side] = EndCondition::Lies(p);
                             return Some((p, s, tension));
                         }
-                        // Held just above: the next node is the first that lies.
+                        // The end is held just above the boundary, so the next node is the first
+                        // that lies.
                         None if self.first < self.last => {
                             let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
                             return Some((next.boundary_point?.2, next.arc_length, next.tension[side]));
@@ -314,7 +315,7 @@ impl Run<'_> {
                     section.end_conditions[side] = EndCondition::Loose(force);
                     let place = self.curve.place(p, self.chain_range);
                     let along = force.dot(&place.tangent);
-                    // An end that is pressed down rubs by itself.
+                    // An end that is pressed down has friction of its own.
                     let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
                     return Some((
                         p,

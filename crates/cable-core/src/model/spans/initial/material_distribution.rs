@@ -1,15 +1,15 @@
-//! These functions lay the material of a cable along its taut string.
+//! This module distributes the material of a cable along its taut string.
 
 use crate::math::smaller;
 use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, TensionProfile};
 use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 
-/// Rounds of moving a free end to where the material ends. What is off is in each the strain times
-/// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.
+/// Rounds of moving a free end to the end of the material. Each multiplies the error by the strain:
+/// six leave 1e-12 of it at a strain of 1 %, which is round-off.
 const END_FIT_ROUNDS: usize = 6;
 
-/// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
-/// from the first contact as the route has it where none is.
+/// Sets the material along the taut string, strained by `stretch`, from the held end; if none is
+/// held, from the first contact at its material of the route.
 pub(in crate::model::spans) fn measure(
     section: &mut CableSection,
     context: &SolveContext,
@@ -44,7 +44,7 @@ pub(in crate::model::spans) fn measure(
     }
 }
 
-/// Keeps material in order, and some of it in each span.
+/// Keeps the material in order, with some of it in each span.
 pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &SolveContext) {
     let least = context.settings.changes.least_material_fraction * (section.to - section.from);
     let n = section.contacts.len();
@@ -79,7 +79,7 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..END_FIT_ROUNDS {
-                // Laid from a free end it is the other end that does not fit.
+                // A contact laid from a free end does not fit at its other end.
                 let other = if free[1 - side] { side } else { 1 - side };
                 let (tension, s) = c.history.at(&contact_path, c.ends.place[other]);
                 let off = (s - c.ends.material[other]) * context.law.stretch(tension);
@@ -90,9 +90,9 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
     }
 }
 
-/// A contact as it is laid: from its end that is free, where its tension is known, or held, where
-/// its material is; else from its middle. With two free ends it is laid with the tension of the one
-/// that draws less.
+/// The profile of a newly laid contact: from its free end, where its tension is known, or its held
+/// end, where its material is known; else from its middle. With two free ends it has the tension of
+/// the one that draws less.
 fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
     let end = |side: usize| Breakpoint {
         coordinate: e.place[side],

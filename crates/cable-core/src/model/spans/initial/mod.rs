@@ -1,5 +1,5 @@
-//! These modules make the initial shape: route, shortest path, contacts and tension, or another
-//! answer.
+//! These modules make the initial shape: from route, shortest path, contacts and tension, or from
+//! another answer.
 //!
 //! | room | content |
 //! |---|---|

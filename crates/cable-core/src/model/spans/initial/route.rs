@@ -1,5 +1,5 @@
-//! The route of a section is that of the scene, or goes from support to support and over what is in
-//! the way.
+//! This module makes the route of a section: that of the scene, or a route from support to support
+//! and over obstacles.
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
@@ -7,8 +7,8 @@ use crate::model::spans::section::BoundaryConditions;
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::problem::way_over::bodies_in_the_way;
 
-/// Part of the way from one end to the other by which a route that is led over things keeps clear
-/// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.
+/// Clearance of a route over obstacles, as a fraction of the distance between its ends. Smaller:
+/// round-off may let it touch. Larger: it goes round more obstacles than necessary.
 const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
 
 /// A route with the length along it.
@@ -30,8 +30,8 @@ impl RoutePolyline {
         self.along.last().copied().unwrap_or(0.0)
     }
 
-    /// Arc length at which it comes nearest to a point, not before `from`, up to the end of leg
-    /// `last`.
+    /// Length along it (m) at which it is nearest to a point, not before `from`, up to the end of
+    /// leg `last`.
     pub fn nearest(&self, at: Vec2, from: f64, last: Option<usize>) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, from);
         let pieces = self.points.len().saturating_sub(1);
@@ -44,7 +44,7 @@ impl RoutePolyline {
             let u = bounded((at - self.points[k]).dot(&d) / l, 0.0, l);
             let u = if self.along[k] + u < from { from - self.along[k] } else { u };
             let distance = (self.points[k] + d * (u / l) - at).norm();
-            // Of equals the first, as a post is passed by several turns alike.
+            // Of equal distances the first counts, because several turns round a post are alike.
             if distance < best * (1.0 - 1e-6) - 1e-12 {
                 (best, found) = (distance, self.along[k] + u);
             }
@@ -52,7 +52,7 @@ impl RoutePolyline {
         found
     }
 
-    /// Arc length at which it comes nearest to a point, within so much of `around`.
+    /// Length along it (m) at which it is nearest to a point, within a distance of `around`.
     pub fn close(&self, at: Vec2, around: f64, within: f64) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, around);
         for k in 0..self.points.len().saturating_sub(1) {
@@ -71,7 +71,7 @@ impl RoutePolyline {
         found
     }
 
-    /// The stretch about a length along it that is no further than this from a point, m.
+    /// The stretch about a length along it that is no farther than `within` (m) from a point.
     pub fn beside(&self, center: Vec2, w: f64, within: f64) -> [f64; 2] {
         let leg = self.leg(w);
         let Some(at) = self.point(w) else { return [w; 2] };
@@ -109,7 +109,8 @@ impl RoutePolyline {
     }
 }
 
-/// Part of the way d from a, both from a centre, at which it leaves a circle of this radius.
+/// Fraction of the displacement d from the point a (relative to a centre) at which it leaves a
+/// circle of this radius.
 fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
     let (square, along) = (d.norm_squared(), a.dot(&d));
     let root = along * along - square * (a.norm_squared() - radius * radius);
@@ -119,7 +120,7 @@ fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
     bounded((root.sqrt() - along) / square, 0.0, 1.0)
 }
 
-/// The route of a section, and where its pulleys are on it.
+/// The route of a section, and the places of its pulleys on it.
 pub(in crate::model::spans) fn section_route(
     layout: &SectionLayout,
     part: &SectionBounds,
@@ -168,7 +169,7 @@ pub(in crate::model::spans) fn section_route(
     RoutePolyline::new(points)
 }
 
-/// A way from `a` to `b` where the straight one is blocked: out from under what either is under,
+/// A way from `a` to `b` if the straight one is blocked: out from under obstacles above either end,
 /// then above everything that is in the way.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
@@ -199,7 +200,7 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     way
 }
 
-/// A point beside what is above p and a little below it, on the side of `to`.
+/// A point beside the obstacle above p and a little below its edge, on the side of `to`.
 fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
     let side = if to.x < p.x { -1.0 } else { 1.0 };
     let mut far: Option<(f64, f64)> = None;

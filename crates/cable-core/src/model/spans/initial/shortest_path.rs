@@ -1,37 +1,36 @@
-//! The shortest path keeps the same obstacles on the same sides as a route, turns round posts
-//! included.
+//! This module finds the shortest path that keeps the same obstacles on the same sides as a route,
+//! including turns round posts.
 //!
-//! The route's end is drawn along it, the string from the last corner it bends round to the end
-//! sweeping a triangle. Two things can happen first: a corner comes on to the string, which then
-//! bends round it; or the string at its last corner becomes straight and leaves it. Corners are
-//! points here, posts a few points well inside them: it is the order and the side that is sought,
-//! not the place.
+//! The string's end is moved along the route, and the string between its last corner and the end
+//! sweeps a triangle. Two events can happen: the string meets a corner, and then bends round it; or
+//! it becomes straight at its last corner, and leaves it. Corners are points here, and posts are a
+//! few points well inside them: only the order and the sides are sought, not the places.
 
 use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross};
 
-/// Points that stand for a post.
+/// Points that represent a post.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct PostPolygon {
     pub points: usize,
-    /// Part of its radius on which they lie: inside it, as routes drawn as polygons cut into a
-    /// post.
+    /// Their distance from the centre, as a fraction of the radius: inside the post, because routes
+    /// drawn as polygons cut into it.
     pub part: f64,
 }
 
-/// Resolutions of posts: coarse at first, finer where the coarse one shows nothing to lie on and
-/// nothing else holds the cable: a string that hardly bends round a post passes between few points
-/// far inside it. Nearer at once: routes drawn roughly pass on the wrong side.
+/// Polygons of posts: coarse at first, finer if the coarse one gives no contact and nothing else
+/// holds the cable, because a string that hardly bends round a post passes between few points far
+/// inside it. If the fine ones came first, roughly drawn routes would pass on the wrong side.
 pub(in crate::model::spans) const POST_POLYGONS: [PostPolygon; 3] = [
     PostPolygon { points: 12, part: 0.5 },
     PostPolygon { points: 24, part: 0.9 },
     PostPolygon { points: 96, part: 0.99 },
 ];
-/// A move of the end smaller than this part of a leg is no move: the corner just left is not met
-/// again by rounding.
+/// Displacement of the end, as a fraction of a leg, below which nothing is met: otherwise round-off
+/// could meet the corner just left again.
 const SAME: f64 = 1e-12;
-/// Corners met or left along one leg at most, times the number of corners.
+/// Maximum number of events along one leg, in multiples of the number of corners.
 const MOST: usize = 8;
 
 /// A corner the string bends round.
@@ -39,7 +38,7 @@ const MOST: usize = 8;
 pub(in crate::model::spans) struct PathCorner {
     pub corner: ImpassableCorner,
     index: usize,
-    /// +1 where the string turns right round it (it lies on the right), −1 left.
+    /// +1 if the string turns right round it (it lies on the right), −1 if left.
     pub sense: f64,
     /// Leg of the route on which it was met.
     pub leg: usize,
@@ -65,7 +64,7 @@ pub(in crate::model::spans) fn corners(world: &World, ring: PostPolygon) -> Vec<
     out
 }
 
-/// The bodies that the string bends round, in order. None where it finds no end.
+/// The corners that the string bends round, in order. None if the search does not end.
 pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[ImpassableCorner]) -> Option<Vec<PathCorner>> {
     let start = *route.first()?;
     let mut bends: Vec<PathCorner> = Vec::new();
@@ -88,7 +87,7 @@ pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[Impassable
                     done = u;
                 }
                 (_, Some((u, index))) => {
-                    // It turns the way the end goes round the corner.
+                    // The string turns in the sense in which its end moves round the corner.
                     let sense = -cross(from + way * u - pivot, way).signum();
                     bends.push(PathCorner { corner: corners[index], index, sense, leg });
                     (done, skip) = (u, None);
@@ -100,8 +99,8 @@ pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[Impassable
     Some(bends)
 }
 
-/// Returns when the string leaves its last corner: the end crosses the line from the corner before
-/// through it.
+/// Returns the fraction of the leg at which the string leaves its last corner: its end crosses the
+/// line from the corner before through the last one.
 fn leaves(start: Vec2, bends: &[PathCorner], from: Vec2, way: Vec2, done: f64) -> Option<f64> {
     let last = bends.last()?;
     let before = bends.len().checked_sub(2).and_then(|k| bends.get(k)).map_or(start, |b| b.corner.at);
@@ -117,7 +116,7 @@ fn leaves(start: Vec2, bends: &[PathCorner], from: Vec2, way: Vec2, done: f64) -
     (u <= 1.0).then_some(u)
 }
 
-/// The first corner the string meets: how far along the leg, and which.
+/// The first corner that the string meets, and the fraction of the leg there.
 fn meets(
     corners: &[ImpassableCorner],
     pivot: Vec2,

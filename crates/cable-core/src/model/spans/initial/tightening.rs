@@ -4,7 +4,7 @@ use crate::model::spans::boundary::TensionProfile;
 use crate::model::spans::initial::material_distribution::{measure, spread};
 use crate::model::spans::section::{CableSection, Contact, SolveContext};
 
-/// Length of the taut string through what it touches, m.
+/// Length of the taut string through its contacts, m.
 pub(in crate::model::spans) fn taut_length(section: &CableSection, context: &SolveContext) -> f64 {
     let own = |c: &Contact| context.curves[c.curve].length(c.ends.place[0], c.ends.place[1], c.chain_range);
     let spans: f64 = (0..section.spans())
@@ -34,7 +34,7 @@ pub(in crate::model::spans) fn tighten(section: &mut CableSection, context: &Sol
     section.update_end_tensions(context);
 }
 
-/// Along its taut string, what touches with the tension of the spans beside it.
+/// Lays a section along its taut string, with each contact at the tension of the spans beside it.
 pub(in crate::model::spans) fn equalise_tensions(section: &mut CableSection, context: &SolveContext) {
     tighten(section, context);
     for c in &mut section.contacts {

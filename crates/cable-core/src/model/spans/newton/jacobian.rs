@@ -1,4 +1,4 @@
-//! The system of a section has its unknowns, its equations, and their derivatives.
+//! This module assembles the unknowns of a section, its equations, and their derivatives.
 
 use crate::linalg::PivotingBand;
 use crate::math::{Vec2, cross, larger};
@@ -6,7 +6,7 @@ use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mod
 use crate::model::spans::contact::{equations, load_balance, point_load};
 use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 
-/// A row sees the unknowns of its contact and of both spans beside it: four on either side.
+/// A row involves the unknowns of its contact and of both spans beside it: four on either side.
 type Band = PivotingBand<4, 13>;
 
 fn count(section: &CableSection) -> usize {
@@ -31,12 +31,12 @@ pub(super) fn has_tension_unknown(section: &CableSection, j: usize, side: usize)
     outer && matches!(section.end_conditions[side], EndCondition::Lies(_))
 }
 
-/// True for the ends of contact j that are held on the boundary.
+/// Marks the ends of contact j that are held on the boundary.
 pub(super) fn pinned(section: &CableSection, j: usize) -> [bool; 2] {
     [0, 1].map(|side| has_tension_unknown(section, j, side) || section.is_pinned(j, side))
 }
 
-/// True if that side of contact j is an end of the section that lies.
+/// True if that side of contact j is a lying end of the section.
 fn is_end(section: &CableSection, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == section.contacts.len() };
     outer && !section.end_conditions[side].has_span()
@@ -57,7 +57,7 @@ pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f
                 let (own, marked) = (has_tension_unknown(section, k, side), section.has_load_material(k, side));
                 let c = &mut section.contacts[k];
                 let e = &mut c.ends;
-                // The material of a load is what it is, to the last digit.
+                // The material of a load is exact, to the last digit.
                 if !marked {
                     e.material[side] = s;
                 }
@@ -82,7 +82,8 @@ pub(super) struct System {
     pub end_points: Vec<([BoundaryPoint; 2], CachedPiece)>,
 }
 
-/// Works out the equations of a section where it is, and where each of its contacts sticks.
+/// Assembles the equations of a section at its present state, and finds the stick zone of each
+/// contact.
 pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, system: &mut System) {
     let n = count(section);
     system.residual.clear();
@@ -99,10 +100,10 @@ pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, syste
     }
 }
 
-/// As [`assemble`], where nothing but the mode of contact j has changed since.
+/// As [`assemble`], if only the mode of contact j has changed since.
 pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
     if section.contacts[j].is_load() {
-        // A contact that is joined to it is held or let go with it.
+        // A contact that is joined to it sticks or slides with it.
         return assemble(section, context, system);
     }
     for row in 6 * j + 2..6 * j + 6 {
@@ -112,16 +113,17 @@ pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize
     contact_rows(section, context, j, system);
 }
 
-/// Unit of lengths in residuals, in parts of the section: lengths and tensions, in parts of the
-/// greatest, then stop an iteration at the same size. Smaller: shapes are found worse beside
-/// tensions; larger: tensions are. A choice, tuned on no campaign.
+/// Factor of relative lengths in residuals: lengths in hundredths of the section, and tensions
+/// relative to the greatest, then stop an iteration at the same size. Smaller: shapes are less
+/// accurate than tensions; larger: tensions are less accurate. A choice, tuned on no campaign.
 const LENGTH_UNITS: f64 = 100.0;
 
 /// Length of cable (m) whose load is the least force by which residuals of forces are divided.
-/// Smaller: contacts almost without tension never converge; larger: their friction is found worse.
+/// Smaller: contacts almost without tension never converge; larger: their friction is less
+/// accurate.
 const MIN_FORCE_LENGTH_M: f64 = 1e-9;
 
-/// Lengths in hundredths of the section.
+/// Factor that converts lengths (m) to hundredths of the section.
 fn scale(section: &CableSection) -> f64 {
     LENGTH_UNITS / (section.to - section.from)
 }
@@ -131,7 +133,7 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
     let (r, band) = (&mut system.residual, &mut system.band);
     let m = section.contacts.len();
     if k > 0 && section.is_joined(k, 0) {
-        // One place; the tension stands where the force would.
+        // Both are at one place; the tension is stored in the place of the force.
         r[row] = (section.contacts[k - 1].ends.place[1] - section.contacts[k].ends.place[0]) * scale;
         band.add(row, row - 2, scale);
         band.add(row, row + 2, -scale);
@@ -191,12 +193,12 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
     }
 }
 
-/// The rows of a load that lies, see `point_load`.
+/// Adds the rows of a load that lies on a boundary, see `point_load`.
 fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &mut System) {
     let (r, b, scale) = (&mut system.residual, &mut system.band, scale(section));
     let (c, place) = (&section.contacts[j], &system.end_points[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.place[0]);
-    // Its material stays as it is, and both of its ends are one.
+    // Its material is constant, and both of its ends coincide.
     b.add(row, row + 1, scale);
     b.add(row + 3, row + 3, scale);
     r[row + 2] = (c.ends.place[1] - p) * scale;
@@ -248,7 +250,7 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
         let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
         let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
         if section.in_pocket(j, side) {
-            // Held in the kink without tension: its material is what follows.
+            // It is held in the kink without tension, and its material is the unknown.
             b.add(tangency, p_column, 1.0);
             for i in 0..2 {
                 b.add(row + 1 + i, s_column, by(i, 1));
@@ -269,8 +271,8 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
             let s = if side == 0 { section.from } else { section.to };
             r[tangency] = (c.ends.material[side] - s) * scale;
             b.add(tangency, s_column, scale);
-            // A free end has no tension and finds its place; a held one has a place and finds its
-            // tension.
+            // A free end has a known tension and an unknown place; a held end has a known place and
+            // an unknown tension.
             let of = if has_tension_unknown(section, j, side) { 2 } else { 0 };
             for i in 0..2 {
                 b.add(row + 1 + i, p_column, by(i, of));
@@ -282,12 +284,13 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
         let place = &end_points[side];
         let t = force.norm();
         r[tangency] = cross(force, place.tangent) / t;
-        // Pointing back is not tangent: keep Newton from it.
+        // A force that points backwards is not tangent, and Newton's method must not converge to
+        // it.
         if force.dot(&place.tangent) < 0.0 {
             r[tangency] += 2.0 * r[tangency].signum();
         }
         let (load, u, g) = (context.law.load, force / t, 6 * (j + side));
-        // d(F × t)/T with F's own size held.
+        // This is d(F × t)/T at constant size of F.
         let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
         b.add(tangency, g, across.x);
         b.add(tangency, g + 1, across.y);

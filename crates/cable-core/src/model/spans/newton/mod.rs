@@ -1,11 +1,11 @@
-//! Newton's method solves a section: all spans and contacts at once, never a span solved inside
-//! another iteration.
+//! Newton's method solves a section: all spans and contacts at once, without nested iterations for
+//! single spans.
 //!
 //! | room | content |
 //! |---|---|
 //! | `jacobian.rs` | unknowns, residuals and band Jacobian of a section |
 //! | `slip_predictor.rs` | complementarity estimate of which contacts will slide, and how far |
-//! | `stability.rs` | is a frictionless equilibrium stable? |
+//! | `stability.rs` | stability test of a frictionless equilibrium |
 //!
 //! Six unknowns and six equations for each contact, two more for the last span, in the order span,
 //! contact, span …:
@@ -16,8 +16,8 @@
 //!          two rows for material and tension, see `contact/equations`   (2)
 //! ```
 //!
-//! At a lying end the tension takes the place of p among the unknowns, and s = its material that of
-//! the tangency.
+//! At a lying end the tension replaces p among the unknowns, and the equation of its material
+//! replaces that of tangency.
 
 pub(in crate::model::spans) mod jacobian;
 pub(in crate::model::spans) mod slip_predictor;
@@ -36,39 +36,38 @@ use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::section::{BoundaryConditions, CableSection, SolveContext};
 
-/// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times
-/// EA/T.
+/// Residual of round-off for EA/T = 1; the residual grows in proportion to EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
-/// Residual that no step makes smaller: rounding.
+/// Residual of round-off, which no step reduces.
 const RESIDUAL_ROUNDING: f64 = 5e-15;
-/// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding,
-/// less than matters.
+/// Distance by which a step to the end of a boundary piece goes beyond it, as a fraction of p: more
+/// than round-off, and negligible.
 const PIECE_END_OVERSHOOT: f64 = 1e-9;
 
-/// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing
-/// between two steps.
+/// Working memory of a solve, kept between steps. A copy starts empty, because the contents have no
+/// meaning between two steps.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
     system: System,
     rhs: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
-    /// Winding numbers of the search for corners passed through.
+    /// Winding numbers of the search for tunnelled corners.
     pub turns: Vec<i32>,
     /// The shape before and after a step.
     pub shapes: [Vec<Vec2>; 2],
     /// A section before a step, and with its ends moved.
     pub sections: [CableSection; 2],
-    /// All of them before a step.
+    /// All sections before a step.
     pub before: Vec<CableSection>,
-    /// Instants: before a step; where a way begins; where a step goes.
+    /// Instants: before a step, at the start of a path, and at the end of a step.
     pub instants: [BoundaryConditions; 3],
-    /// Scratch space of the slip predictor.
+    /// Working memory of the slip predictor.
     pub slip_predictor: SlipPredictor,
-    /// A contact's past as it was.
+    /// Copy of a contact's friction memory.
     pub past: TensionProfile,
-    /// Work that may still be done, in contacts and spans times iterations: after that no solve
-    /// converges. None: no limit.
+    /// Work that may still be done, in contacts and spans times iterations; when it is spent,
+    /// solves fail. None: no limit.
     pub work_left: Option<usize>,
 }
 
@@ -78,13 +77,13 @@ impl Clone for Workspace {
     }
 }
 
-/// Newton did not converge.
+/// Newton's method did not converge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NotConverged {
     pub iterations: usize,
     /// Scaled residual left.
     pub residual: f64,
-    /// The contact or span with the greatest residual, as contacts count.
+    /// Index of the contact with the greatest residual, or of the contact after the span with it.
     pub at: usize,
 }
 
@@ -112,16 +111,15 @@ fn squares(r: &[f64]) -> f64 {
     r.iter().map(|v| v * v).sum()
 }
 
-/// The residual that will do, of a section whose contacts have the tensions of the spans beside
-/// them.
+/// The accepted residual of a section whose contacts have the tensions of the spans beside them.
 fn tolerance(section: &CableSection, context: &SolveContext) -> f64 {
     let (least, wanted) = (least_tension(section, context), context.settings.newton.residual);
     let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * context.law.stiffness / least } else { 0.0 };
     larger(wanted, stiff.min(1e3 * wanted))
 }
 
-/// True if a residual that suffices leaves forces with too great an error: a length that is missing
-/// is strain, and that times EA is force.
+/// True if an accepted residual still means a large error of forces: a missing length is a strain,
+/// and that times EA is a force.
 fn is_rough(section: &CableSection, context: &SolveContext, residual: f64) -> bool {
     let least = least_tension(section, context);
     least.is_finite()
@@ -153,7 +151,7 @@ fn least_tension(section: &CableSection, context: &SolveContext) -> f64 {
     least
 }
 
-/// Largest part of a step that keeps spans and does not jump turns.
+/// Greatest fraction of a step that keeps material in spans and does not jump a turn.
 fn max_step(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64]) -> f64 {
     let tuned = &context.settings.newton;
     let mut alpha = 1.0f64;
@@ -182,11 +180,11 @@ fn max_step(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64]
     alpha
 }
 
-/// Parts of a step after which each end of a contact is just beyond the piece of boundary it was
-/// on: (index, part) for each that comes so far.
+/// Calls back with (index, fraction of the step) for each end of a contact that gets just beyond
+/// its boundary piece in the step.
 ///
 /// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per
-/// metre: a step that is right on one of them says nothing of the other, and half of it less.
+/// metre: a step that is right on one piece is meaningless on the other.
 fn borders(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
     for (k, c) in section.contacts.iter().enumerate() {
         let contact_path = context.contact_path(c);
@@ -208,7 +206,7 @@ fn borders(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64],
     }
 }
 
-/// Solves a section from where it is. On an error it is left wherever the iteration was.
+/// Solves a section from its present state. On an error it holds the last iterate.
 pub(super) fn solve(
     section: &mut CableSection,
     context: &SolveContext,
@@ -237,14 +235,14 @@ pub(super) fn solve(
             if changed {
                 (worst, at) = norm(&workspace.system.residual);
                 (best, stalled) = (f64::INFINITY, 0);
-                // In rounding at the edge of the cone another mode changes nothing: nothing is left
-                // to solve.
+                // Within round-off at the edge of the friction cone another mode changes nothing:
+                // the section is solved.
                 if worst <= tolerance(section, context) {
                     continue;
                 }
             } else if done {
-                // For as long as it gains: where a tension vanishes, Newton's method is of the
-                // first order.
+                // Polish as long as it helps: where a tension vanishes, Newton's method converges
+                // only linearly.
                 if content && worst < 0.5 * polished && is_rough(section, context, worst) {
                     (polished, iterations) = (worst, iterations + 1);
                     if step(section, context, workspace) {
@@ -270,7 +268,7 @@ pub(super) fn solve(
             if !over && change_modes(section, context, tuned.max_mode_changes, &mut workspace.system).0 {
                 continue;
             }
-            // Rounding: nothing is gained any more.
+            // At round-off no step helps any more.
             return if worst <= tuned.stalled_residual_factor * tolerance(section, context)
                 && modes_agree(section, context, &workspace.system)
             {
@@ -282,7 +280,7 @@ pub(super) fn solve(
     }
 }
 
-/// The mode that the state of contact j asks for.
+/// The mode that the state of contact j requires.
 fn required_mode(section: &CableSection, context: &SolveContext, system: &System, j: usize, patience: f64) -> Mode {
     let c = &section.contacts[j];
     if context.mobilised != 0.0 && c.kink().is_none() {
@@ -291,7 +289,7 @@ fn required_mode(section: &CableSection, context: &SolveContext, system: &System
     if c.is_load() {
         return point_load::next_mode(section, context, j, patience);
     }
-    // A contact that holds within its cone goes on so, and a smooth one slides.
+    // A contact that sticks within its friction cone stays so, and a frictionless one slides.
     if matches!((c.mode, c.held), (Mode::Stick, Some(StickZone::Between(_) | StickZone::Meet(_))))
         && context.friction(c) > 0.0
     {
@@ -301,17 +299,18 @@ fn required_mode(section: &CableSection, context: &SolveContext, system: &System
     equations::next_mode(&contact_path, &c.history, &c.ends, c.held, c.mode, pinned(section, j), patience)
 }
 
-/// True if every contact is in the mode that its state asks for; the system is that of the state.
+/// True if every contact is in the mode that its state requires; `system` is assembled at that
+/// state.
 fn modes_agree(section: &CableSection, context: &SolveContext, system: &System) -> bool {
     let tuned = &context.settings.newton;
-    // Rounding grows with the stiffness as the residual does.
+    // Like the residual, round-off grows with the stiffness.
     let patience = tuned.cycle_rounding_factor * tolerance(section, context) / tuned.residual;
     (0..section.contacts.len())
         .all(|j| required_mode(section, context, system, j, patience) == section.contacts[j].mode)
 }
 
-/// Gives contacts the mode they ask for; whether any was changed, and whether none asked for
-/// another.
+/// Gives contacts the mode that they require; returns whether any was changed, and whether all have
+/// the required mode.
 fn change_modes(section: &mut CableSection, context: &SolveContext, most: u32, system: &mut System) -> (bool, bool) {
     let tuned = &context.settings.newton;
     let (mut changed, mut content) = (false, true);
@@ -336,8 +335,8 @@ fn change_modes(section: &mut CableSection, context: &SolveContext, most: u32, s
     (changed, content)
 }
 
-/// One Newton step with a line search on the sum of squares; false where none makes it smaller. The
-/// system is that of where the section then is.
+/// Takes one Newton step with a line search on the sum of squares; false if no step reduces it. The
+/// system is assembled at the new state.
 fn step(section: &mut CableSection, context: &SolveContext, workspace: &mut Workspace) -> bool {
     if let Some(left) = &mut workspace.work_left {
         *left = left.saturating_sub(section.contacts.len() + 1);
@@ -359,7 +358,8 @@ fn step(section: &mut CableSection, context: &SolveContext, workspace: &mut Work
 }
 
 fn search(section: &mut CableSection, context: &SolveContext, before: f64, workspace: &mut Workspace) -> bool {
-    // Part of the step at which the first contact comes to the end of its piece of boundary.
+    // `first` is the fraction of the step at which the first contact reaches the end of its
+    // boundary piece.
     let (mut alpha, mut first) = (max_step(section, context, &workspace.saved, &workspace.rhs), None);
     for round in 0..context.settings.newton.max_halvings {
         if round > 1 {
@@ -368,8 +368,8 @@ fn search(section: &mut CableSection, context: &SolveContext, before: f64, works
         workspace.best.clear();
         workspace.best.extend(workspace.saved.iter().zip(&workspace.rhs).map(|(x, d)| x + alpha * d));
         if round == 1 {
-            // At first only what changes its piece of boundary stops there; after that everything
-            // does.
+            // At first only the contacts that change their boundary piece stop there; after that
+            // the whole step is cut.
             borders(section, context, &workspace.saved, &workspace.rhs, |index, part| {
                 if part > 0.0 && part < alpha {
                     first = Some(first.map_or(part, |first| smaller(part, first)));

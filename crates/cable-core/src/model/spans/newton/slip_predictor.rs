@@ -1,49 +1,50 @@
-//! The slip predictor estimates, before a step is solved, which contacts will slide in it and how
-//! far.
+//! The slip predictor estimates before a step which contacts will slide in it, and how far.
 //!
-//! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong
-//! set: of ten contacts in a row one after the other is found to slide. To first order the whole
-//! question is one of scalars. With d the gap that a span's force leaves after its ends have moved,
-//! C its compliance, t the cable's direction and f = λt at its two ends a, b, and σ the material
-//! that has slid back through the contact before and after it (s at a fixed place grows by σ),
+//! With a wrong set of sliding contacts Newton's method ends at a state that shows only the next
+//! wrong set: ten contacts in a row are found to slide one after the other. To first order the
+//! problem involves scalars only. With d the closure gap of a span after its ends have moved, C its
+//! compliance, t the cable's direction and f = λt at its two ends a, b, and σ the material that has
+//! slid back through the contacts before and after it (s at a fixed place grows by σ),
 //!
 //! ```text
 //! ΔG = −C⁻¹(d + f_b σ_after − fₐ σ_before),      ΔT_a = tₐ·(ΔG − b σ_before),      ΔT_b = t_b·(ΔG − b σ_after)
 //! contact: σ = 0 where T₂ is within what sliding makes of T₁ at ±μ; σ ≤ 0 at +μ, σ ≥ 0 at −μ
 //! ```
 //!
-//! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This
-//! is a linear complementarity problem with three diagonals, solved by changing what is on the
-//! wrong side until nothing is: G. Zoutendijk's active sets in their simplest form. After each of a
-//! few rounds of it the ends of contacts on arcs follow the directions of their spans, and the next
-//! begins from there: with another wrap. All that is a guess: Newton's method for the whole starts
-//! there and judges each contact again.
+//! (a motion of a contact's end along the boundary takes as much from the cable as from the chord).
+//! This is a tridiagonal linear complementarity problem, solved by changing the sides that are
+//! wrong until none is: G. Zoutendijk's active sets in their simplest form. After each of a few
+//! rounds the ends of contacts on arcs follow the directions of their spans, and the next round
+//! begins with the new wraps. All this is only a first guess: Newton's method starts from it and
+//! decides the mode of each contact again.
 
 use crate::math::{Vec2, angle, exp, larger};
 use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Ends, Mode};
 use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::settings::SlipSettings;
 
-/// A span whose force changes by no more than this part in a round is where it was. Larger: the
+/// Relative change of a span's force in a round below which it counts as unchanged. Larger: the
 /// guess is off by as much.
 const FORCE_TOLERANCE: f64 = 1e-8;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
 struct LinearSpan {
-    /// Start and end, m; None where it keeps its force.
+    /// Start and end, m; None if its force is constant.
     ends: Option<[Vec2; 2]>,
-    /// G, N, and material at both ends, m.
+    /// Force G, N.
     force: Vec2,
+    /// Material at both ends, m.
     material: [f64; 2],
-    /// Change of G were nothing to slide, and by σ before and after it, N and N/m.
+    /// Change of G without slip (N), and by σ before and after it (N/m).
     change: [Vec2; 3],
-    /// Tension at both ends, and were nothing to slide, N.
+    /// Present tension at both ends, N.
     was: [f64; 2],
+    /// Tension at both ends without slip, N.
     tension: [f64; 2],
     /// Change of tension at each end by σ before and after it, N/m.
     by: [[f64; 2]; 2],
-    /// True if the last round left it unmoved, so that its prediction holds on.
+    /// True if the last round did not change it, so that its linearisation stays valid.
     still: bool,
 }
 
@@ -52,20 +53,21 @@ struct LinearSpan {
 struct LinearContact {
     /// End places, material and tensions there.
     ends: Ends,
-    /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is
-    /// not ours to say.
+    /// Tension at the end after sliding with −μ and +μ (N), and its derivative; None if the contact
+    /// is not predicted.
     reach: Option<[(f64, f64); 2]>,
-    /// −1, 0, +1: slides back, sticks, slides on.
+    /// −1 if it slides back, 0 if it sticks, +1 if it slides forward.
     side: i8,
-    /// Slip of this round, and slip before it, m.
+    /// Slip of this round, m.
     sigma: f64,
+    /// Slip before this round, m.
     slid: f64,
 }
 
 /// The places of both ends of a contact, and the piece of the first.
 type ContactPlaces = ([BoundaryPoint; 2], CachedPiece);
 
-/// Memory of a guess.
+/// Working memory of a prediction.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::spans) struct SlipPredictor {
     bars: Vec<LinearSpan>,
@@ -76,8 +78,7 @@ pub(in crate::model::spans) struct SlipPredictor {
     tuned: SlipSettings,
 }
 
-/// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
-/// far as that can be predicted.
+/// Predicts the mode of each contact in the step, and the places of contacts and spans.
 pub(in crate::model::spans) fn predict_slip(
     section: &mut CableSection,
     context: &SolveContext,
@@ -113,7 +114,7 @@ pub(in crate::model::spans) fn predict_slip(
     }
 }
 
-/// A span as it is, to begin with.
+/// The linearised span at its present state.
 fn span(section: &CableSection, context: &SolveContext, end_points: &[ContactPlaces], k: usize) -> LinearSpan {
     if !section.has_span(k) {
         return LinearSpan::default();
@@ -126,7 +127,7 @@ fn span(section: &CableSection, context: &SolveContext, end_points: &[ContactPla
         .and_then(|j| end_points.get(j))
         .map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.0[1].at));
     let after = end_points.get(k).map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.0[0].at));
-    // A span that hangs keeps its force.
+    // A hanging span keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
     LinearSpan { ends, force: section.forces[k], material: [from, to], tension, ..LinearSpan::default() }
@@ -140,7 +141,7 @@ impl LinearSpan {
         [start, start - context.load_between(from, to)]
     }
 
-    /// To first order from where it is; false where that cannot be told.
+    /// Linearises the span at its present state; false if that is impossible.
     fn renew(&mut self, context: &SolveContext, first: f64) -> bool {
         let Some([a, b]) = self.ends else { return true };
         if self.still {
@@ -185,14 +186,14 @@ fn link(section: &CableSection, context: &SolveContext, end_points: &[ContactPla
         let way = contact_path.slide(e.place[0], e.place[1], e.tension[0], m);
         (way.tension, way.by_tension)
     }));
-    // A smooth contact always slides.
+    // A frictionless contact always slides.
     out.side = if friction > 0.0 { 0 } else { 1 };
     out
 }
 
 impl SlipPredictor {
-    /// Newton's method for what slides: whether it came to an end, None where not even the modes
-    /// can be told.
+    /// Runs Newton's method for the slips; returns whether it converged, None if not even the modes
+    /// can be predicted.
     fn rounds(&mut self, section: &CableSection, context: &SolveContext) -> Option<bool> {
         let mut last = f64::INFINITY;
         for round in 0..self.tuned.newton_rounds {
@@ -243,7 +244,7 @@ impl SlipPredictor {
                     ends[1 - side] = place.at;
                 }
             }
-            // T₂ = T₁ e^{mψ} and the load along it, to first order of what the ends have moved.
+            // T₂ = T₁ e^{mψ} with the load along it, to first order in the motion of the ends.
             for (m, (made, by)) in
                 [-contact_path.friction, contact_path.friction].into_iter().zip(l.reach.iter_mut().flatten())
             {
@@ -257,8 +258,8 @@ impl SlipPredictor {
         }
     }
 
-    /// Takes what the round has found; the greatest change of tension as part of it, None where
-    /// that is wild.
+    /// Applies the result of the round; returns the greatest relative change of tension, None if
+    /// that is too large.
     fn step(&mut self) -> Option<f64> {
         let (mut greatest, limit) = (0.0, self.tuned.max_tension_factor);
         for k in 0..self.bars.len() {
@@ -290,7 +291,7 @@ impl SlipPredictor {
         Some(greatest)
     }
 
-    /// Finds sides and slips that agree; false where that comes to no end.
+    /// Finds consistent sides and slips; false if the iteration does not end.
     fn settle(&mut self) -> bool {
         for _ in 0..2 * self.links.len() + self.tuned.newton_rounds {
             if !self.solve() {
@@ -303,7 +304,7 @@ impl SlipPredictor {
         false
     }
 
-    /// The slips for the sides as they are: three diagonals.
+    /// Solves the slips for the present sides, a tridiagonal system.
     fn solve(&mut self) -> bool {
         self.swept.clear();
         let mut before = (0.0, 0.0);
@@ -316,7 +317,7 @@ impl SlipPredictor {
                 None => (0.0, -l.slid),
                 Some((made, by)) => {
                     let (one, two) = (&self.bars[j], &self.bars[j + 1]);
-                    // T₂ − what is made of T₁ = 0.
+                    // The row is T₂ − (tension from T₁) = 0.
                     let lower = -by * one.by[1][0];
                     let middle = two.by[0][0] - by * one.by[1][1];
                     let rest = made + by * (one.tension[1] - l.ends.tension[0]) - two.tension[0];
@@ -334,7 +335,7 @@ impl SlipPredictor {
         self.links.iter().all(|l| l.sigma.is_finite())
     }
 
-    /// Changes the sides that disagree with the slips; whether there was any.
+    /// Changes the sides that disagree with the slips; returns whether there was any.
     fn change(&mut self) -> bool {
         let sigma = |links: &[LinearContact], j: Option<usize>| j.and_then(|j| links.get(j)).map_or(0.0, |l| l.sigma);
         let mut changed = false;

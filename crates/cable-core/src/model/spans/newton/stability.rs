@@ -4,16 +4,16 @@ use crate::model::spans::boundary::Mode;
 use crate::model::spans::newton::{Workspace, assemble, has_tension_unknown};
 use crate::model::spans::section::{CableSection, Connection, EndCondition, SolveContext};
 
-/// True if a balance without friction is stable: it returns after a disturbance.
+/// True if an equilibrium without friction is stable: it returns after a disturbance.
 ///
-/// A contact that sticks keeps its material, one that slides has T₂ − T₁ = 0 instead, which must
-/// rise with the material s that comes to it. By s₁ = s₂ = s the two rows are [−1, 1] and [−∂T₁,
-/// ∂T₂], of determinant −∂(T₂ − T₁)/∂s, in place of 1. So the determinant of the Jacobian with the
-/// first k contacts sliding and the others held is that with all held times (−1)ᵏ times the kth
-/// leading minor of ∂(T₂ − T₁)/∂s, and all of these are positive where the matrix is (J. J.
-/// Sylvester): each contact that is let go turns the sign once (one that lies to its start does
-/// not: there T₁ takes the place of s₁). Nothing is said of what friction holds: that came there by
-/// its own motion.
+/// A sticking contact keeps its material; a sliding one has T₂ − T₁ = 0 instead, and that
+/// difference must rise with the material s that comes to it. With s₁ = s₂ = s the two rows are
+/// [−1, 1] and [−∂T₁, ∂T₂], of determinant −∂(T₂ − T₁)/∂s, in place of 1. So the determinant of the
+/// Jacobian with the first k contacts sliding and the others held is that with all held times (−1)ᵏ
+/// times the kth leading minor of ∂(T₂ − T₁)/∂s, and all of these are positive if the matrix is
+/// positive definite (J. J. Sylvester): each released contact changes the sign once (except one
+/// that lies up to its start, where T₁ replaces s₁). Contacts held by friction are not judged: the
+/// cable came there by its own motion.
 pub(in crate::model::spans) fn stable(
     section: &CableSection,
     context: &SolveContext,

@@ -5,7 +5,7 @@ use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};
 use crate::scene::{Load, Support, catalog};
 
-/// Part of the largest entry of a row by which an entry may be off: what differences leave.
+/// Error of an entry that differences may leave, as a fraction of the largest entry of its row.
 const CLOSE: f64 = 1e-4;
 
 /// A flexible cable over shapes, at rest, then moved.
@@ -52,18 +52,18 @@ fn loaded(
     (cable_equilibrium.sections.remove(0), cable_equilibrium.context)
 }
 
-/// Numbers in −1 … 1 that are the same each time.
+/// Reproducible numbers in −1 … 1.
 fn noise(k: usize) -> f64 {
     ((k as f64 + 1.0) * 12.9898).sin() * 43758.5453 % 1.0
 }
 
-/// Every entry of the Jacobian beside a difference of residuals, at a state a little off the
+/// Compares every entry of the Jacobian with a difference of residuals, at a state a little off the
 /// answer.
 fn compare(section: &CableSection, context: &SolveContext, seed: usize) {
     let mut x = Vec::new();
     gather(section, &mut x);
     let force = section.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
-    // Two forces, then place and material at both ends of a contact.
+    // The unknowns are two forces, then place and material at both ends of a contact.
     let size = |i: usize| if i % 6 < 2 { force } else { 1.0 };
     for (i, v) in x.iter_mut().enumerate() {
         *v += 1e-7 * size(i) * noise(97 * seed + i);
@@ -84,13 +84,12 @@ fn compare(section: &CableSection, context: &SolveContext, seed: usize) {
     let n = x.len();
     let largest: Vec<f64> =
         (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();
-    // A load in a kink stays there: its place, and the force of a span that is not there, are no
-    // unknowns.
+    // A load in a kink stays there: its place and the force of a missing span are not unknowns.
     let fixed = |j: usize| match j % 6 {
         0 | 1 => !section.has_span(j / 6),
         of => of % 2 == 0 && section.in_pocket(j / 6, (of - 2) / 2),
     };
-    // Nor is the material of a load, nor the place of what one that sticks holds.
+    // Neither are the material of a load and the place of a contact held by a sticking load.
     let fixed = |j: usize| {
         let (c, of) = (j / 6, j % 6);
         let joint = of == 0 && c > 0 && section.is_joined(c, 0);
@@ -108,7 +107,8 @@ fn compare(section: &CableSection, context: &SolveContext, seed: usize) {
         let linear = |i: &usize| !(i % 6 > 2 && i % 6 < 5 && section.is_pinned(i / 6, i % 6 - 3));
         for i in (0..n).filter(linear) {
             let exact = band.entry(i, j) * size(j);
-            // At a kink (a front at a corner) either side will do.
+            // If the residual has an angle (a front at a corner), either one-sided difference will
+            // do.
             let ways = [(up[i] - down[i]) / (2.0 * h), (up[i] - r[i]) / h, (r[i] - down[i]) / h];
             let off = ways.iter().map(|d| (d * size(j) - exact).abs()).fold(f64::INFINITY, f64::min);
             assert!(off <= CLOSE * largest[i], "row {i}, unknown {j} of {n}: {exact} and {ways:?} times {}", size(j));

@@ -1,11 +1,12 @@
-//! Boundary conditions are what is given at an instant: places of supports, loads, temperature.
+//! This module holds the boundary conditions at an instant: positions of supports, loads,
+//! temperature.
 
 use crate::math::Vec2;
 
 /// Supports, loads and temperature at an instant; two of them can be mixed.
 #[derive(Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct BoundaryConditions {
-    /// Place of each support, m (unused where it has none).
+    /// Position of each support, m (unused if it has none).
     pub places: Vec<Vec2>,
     /// Load per metre, N/m.
     pub load: Vec2,
@@ -13,10 +14,10 @@ pub(in crate::model::spans) struct BoundaryConditions {
     pub thermal: f64,
     /// Dead loads of the layout, N.
     pub forces: Vec<Vec2>,
-    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
-    /// that has weight.
+    /// Force (N) up to which forces come from the auxiliary weight of a weightless cable; 0 for a
+    /// cable with weight.
     pub hint: f64,
-    /// Part of the friction that acts: 1, less only while a rest is sought.
+    /// Fraction of the friction that acts: 1, or less while an equilibrium is sought.
     pub friction: f64,
 }
 
@@ -34,7 +35,7 @@ impl Clone for BoundaryConditions {
 }
 
 impl BoundaryConditions {
-    /// Becomes part f of the way from `from` to `to`.
+    /// Interpolates between `from` and `to` at the fraction f.
     pub fn between(&mut self, from: &Self, to: &Self, f: f64) {
         self.clone_from(to);
         if f >= 1.0 {

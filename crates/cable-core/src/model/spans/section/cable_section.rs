@@ -1,10 +1,11 @@
-//! A cable section is the free spans and contacts in a row between two end conditions.
+//! A cable section is a row of free spans and contacts between two end conditions.
 //!
-//! Unknown are for each span the force G that the cable would carry at the section's start if its
-//! law went on there, F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval
-//! (p₁, p₂) of the boundary and the material (s₁, s₂) at both ends. Material sliding through points
-//! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
-//! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
+//! The unknowns of each span are the force G that the cable would carry at the section's start if
+//! its law continued there, F(s) = G − b(s − s_a) − Σ P_k [s_k < s]; those of each contact are its
+//! interval (p₁, p₂) of the boundary and the material (s₁, s₂) at both ends. Material slides
+//! through points fixed in space, after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai,
+//! "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30
+//! (2011) 39.
 
 use std::sync::Arc;
 
@@ -16,20 +17,19 @@ use crate::model::spans::boundary::{
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
 
-/// Everything given at an instant.
+/// All given quantities at an instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct SolveContext {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
     pub law: CableLaw,
-    /// Drag against sliding, besides friction, while a cable that runs away is followed, N per m of
-    /// slip; else 0.
+    /// Drag against sliding in addition to friction, N per m of slip, while a cable that runs away
+    /// is followed; else 0.
     pub drag: f64,
     /// Direction in which friction is fully mobilised at every contact: 1 against a cable drawn
-    /// towards its end, −1 towards its start; 0 where friction does what the contact's past asks
-    /// for.
+    /// towards its end, −1 towards its start; 0 if friction follows the contact's memory.
     pub mobilised: f64,
-    /// True if cable on a smooth contact lies loose where it has no tension left, held by the
+    /// True if cable on a frictionless contact lies loose where it has no tension left, held by the
     /// friction of the ground.
     pub loose_where_tension_ends: bool,
     /// Dead loads inside the cable, in order, N.
@@ -40,13 +40,13 @@ pub(in crate::model::spans) struct SolveContext {
 /// Condition at an end of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum EndCondition {
-    /// Held in the air at a point, m.
+    /// The end is held in the air at a point, m.
     Fixed(Vec2),
-    /// Hangs free, drawn by a dead force, N.
+    /// The end hangs free, drawn by a dead force, N.
     Hangs(Vec2),
-    /// Held at p on the boundary of the contact beside it.
+    /// The end is held at p on the boundary of the contact beside it.
     Lies(f64),
-    /// Lying on the contact beside it, held by nothing but friction, and drawn by a dead force, N.
+    /// The end lies on the contact beside it, held by friction alone, and drawn by a dead force, N.
     Loose(Vec2),
 }
 
@@ -65,18 +65,18 @@ pub(in crate::model::spans) struct Contact {
     pub chain_range: ChainRange,
     pub ends: Ends,
     pub mode: Mode,
-    /// The stick zone under the tensions it has, where that was computed.
+    /// The stick zone at its present tensions, if it was computed.
     pub held: Option<StickZone>,
     pub history: TensionProfile,
-    /// The pulley it is, by its support.
+    /// Index of the pulley's support, if it is a wheel.
     pub wheel: Option<usize>,
-    /// Times the mode has changed in this solve.
+    /// Number of changes of the mode in this solve.
     pub mode_changes: u32,
     /// Connection to the next contact.
     pub next: Connection,
-    /// The point load that rests here, where it is one.
+    /// The point load that rests here, if there is one.
     pub load: Option<RestingLoad>,
-    /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
+    /// True if it is frictionless for now, because it was found while an equilibrium is sought.
     pub smooth: bool,
 }
 
@@ -103,7 +103,7 @@ impl Kink {
         }
     }
 
-    /// The end of the contact at which it is.
+    /// The end of the contact at which the kink is.
     pub fn side(self) -> usize {
         match self {
             Self::Back => 0,
@@ -115,17 +115,17 @@ impl Kink {
 /// Connection between a contact and the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::spans) enum Connection {
-    /// A span.
+    /// A free span.
     #[default]
     Span,
-    /// Nothing: both end in a kink without tension, see `slack_pocket`.
+    /// No span: both end in a kink without tension, see `slack_pocket`.
     Pocket,
-    /// Nothing: one of the two is a load that rests on the chain of the other, see `point_load`.
+    /// No span: one of the two is a load that rests on the chain of the other, see `point_load`.
     Joined,
 }
 
 impl Connection {
-    /// Parts what was joined, which leaves a span; returns whether it was.
+    /// Parts a joined connection, which leaves a span; returns whether it was joined.
     pub fn part(&mut self) -> bool {
         let joined = *self == Self::Joined;
         if joined {
@@ -148,7 +148,7 @@ impl Contact {
         self.load.is_some()
     }
 
-    /// The kink that its load is in.
+    /// The kink of its load.
     pub fn kink(&self) -> Option<Kink> {
         self.load.and_then(|load| load.kink)
     }
@@ -163,9 +163,9 @@ pub(in crate::model::spans) struct CableSection {
     pub end_conditions: [EndCondition; 2],
     /// In order along the cable.
     pub contacts: Vec<Contact>,
-    /// G of each span, N; one more than contacts.
+    /// The force G of each span, N; one more than contacts.
     pub forces: Vec<Vec2>,
-    /// The shape without tension, where the cable lies so: it has neither contacts nor spans then.
+    /// The shape without tension, if the cable is loose; then it has neither contacts nor spans.
     pub loose: Option<LooseSection>,
 }
 
@@ -183,7 +183,7 @@ impl Default for EndCondition {
     }
 }
 
-// By hand, so that what is copied over keeps its memory.
+// Clone is written by hand, so that `clone_from` reuses memory.
 impl Clone for Contact {
     fn clone(&self) -> Self {
         Self { history: self.history.clone(), ..*self }
@@ -235,7 +235,7 @@ impl SolveContext {
         if c.smooth { 0.0 } else { self.curves[c.curve].friction }
     }
 
-    /// Tension a dead force makes at an end that lies, N.
+    /// Tension that a dead force causes at a lying end, N.
     pub fn pull(&self, c: &Contact, side: usize, force: Vec2) -> f64 {
         let along = force.dot(&self.contact_path(c).place(c.ends.place[side]).tangent);
         if side == 0 { -along } else { along }
@@ -271,15 +271,15 @@ impl SolveContext {
 }
 
 impl CableSection {
-    /// Solves span `k` anew after a change; what has no answer stays.
+    /// Solves span `k` anew after a change; if there is no solution, it stays.
     pub fn resolve_span(&mut self, context: &SolveContext, k: usize) {
         if let Some(g) = self.solve_span(context, k) {
             self.forces[k] = g;
         }
     }
 
-    /// Calls back with each catenary of span k: its first material point, where that is, and its
-    /// shape.
+    /// Calls back with each catenary of span k: its first material point, the position of that, and
+    /// its shape.
     pub fn shapes(&self, context: &SolveContext, k: usize, mut each: impl FnMut(f64, Vec2, &Catenary)) {
         let (from, to) = self.material(k);
         let chain = context.chain(from, to);
@@ -294,7 +294,7 @@ impl CableSection {
         }
     }
 
-    /// Number of spans (those that are missing beside a lying end included).
+    /// Number of spans, including those that are missing beside a lying end.
     pub fn spans(&self) -> usize {
         self.contacts.len() + 1
     }
@@ -320,7 +320,7 @@ impl CableSection {
         (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Connection::Joined)
     }
 
-    /// True if the material at a side of contact j is that of a load.
+    /// True if the material at a side of contact j belongs to a load.
     pub fn has_load_material(&self, j: usize, side: usize) -> bool {
         self.contacts[j].is_load() || self.is_joined(j, side)
     }
@@ -338,7 +338,7 @@ impl CableSection {
         (from, to)
     }
 
-    /// Length that span k has to spare over its chord, and the chord, m; None where an end hangs.
+    /// Excess length of span k over its chord, and the chord, m; None if an end hangs.
     pub fn slack(&self, context: &SolveContext, k: usize) -> Option<[f64; 2]> {
         let [Some(a), Some(b)] = self.span_ends(context, k) else { return None };
         let (from, to) = self.material(k);
@@ -351,7 +351,7 @@ impl CableSection {
         self.forces.get(k).copied().unwrap_or_default() - context.load_between(self.from, s)
     }
 
-    /// Start and end of span k, m; None where the end hangs.
+    /// Start and end of span k, m; None for a hanging end.
     pub fn span_ends(&self, context: &SolveContext, k: usize) -> [Option<Vec2>; 2] {
         let tie = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
         let point = |c: &Contact, side: usize| Some(context.contact_path(c).place(c.ends.place[side]).at);
@@ -367,7 +367,7 @@ impl CableSection {
         ]
     }
 
-    /// G that brings span k from its start to its end.
+    /// The force G with which span k connects its start and its end.
     pub fn solve_span(&self, context: &SolveContext, k: usize) -> Option<Vec2> {
         let (from, to) = self.material(k);
         match self.span_ends(context, k) {
@@ -383,7 +383,7 @@ impl CableSection {
         }
     }
 
-    /// G of a hanging end.
+    /// The force G of a hanging end.
     pub fn hanging(&self, context: &SolveContext, side: usize) -> Option<Vec2> {
         match self.end_conditions[side] {
             EndCondition::Hangs(force) if side == 0 => Some(-force),
@@ -392,7 +392,7 @@ impl CableSection {
         }
     }
 
-    /// Writes the end tensions of contacts as the spans beside them have it.
+    /// Sets the end tensions of contacts to those of the spans beside them.
     pub fn update_end_tensions(&mut self, context: &SolveContext) {
         for j in 0..self.contacts.len() {
             for side in 0..2 {
@@ -403,7 +403,7 @@ impl CableSection {
                 } else if self.is_joined(j, side) {
                     self.contacts[j].ends.tension[side] = self.forces[j + side].x;
                 } else if self.contacts[j].is_load() {
-                    // Beyond it is nothing.
+                    // There is no cable beyond it.
                     let k = j + 1 - side;
                     let inner = self.force_at_contact(context, j, 1 - side);
                     self.contacts[j].ends.tension[side] = inner.map_or(self.forces[k].x, |f| f.norm());

@@ -1,11 +1,11 @@
-//! A section is a part of a cable between two grips: free spans and contacts in a row.
+//! A section is a part of a cable between two supports or ends: a row of free spans and contacts.
 //!
 //! | room | what it holds |
 //! |---|---|
 //! | `cable_section.rs` | free spans and contacts between two end conditions: the unknowns |
-//! | `boundary_conditions.rs` | what holds and pulls at an instant |
+//! | `boundary_conditions.rs` | supports, loads and temperature at an instant |
 //! | `failure.rs` | why a section has no equilibrium |
-//! | `tension_loss.rs` | did a step fail because the cable lost its tension, and where? |
+//! | `tension_loss.rs` | the place where the cable lost its tension, if a step failed by that |
 
 pub(in crate::model::spans) mod boundary_conditions;
 pub(in crate::model::spans) mod cable_section;

@@ -1,11 +1,10 @@
-//! A drained route is the way of a cable that has drained down from its route.
+//! A drained route is the shape of a route after it has fallen along the load on to obstacles.
 //!
-//! With enough cable, only what is below the cable holds it up: each point of the route falls along
-//! the load to the first boundary that faces it. It passes through nothing on the way down, so the
-//! result is on the same side of every obstacle as the route. The result is a word of two letters:
-//! the cable *lies* along a boundary, or *hangs* plumb where the boundary below it ends and the
-//! next one is lower or higher. If it returns over the stretch it has just come along, both are
-//! drawn back: the word is reduced as it is written.
+//! With enough cable, only obstacles below hold the cable up: each point of the route falls along
+//! the load to the first boundary that faces it. It passes through nothing while falling, so the
+//! result is on the same side of every obstacle as the route. The result is a sequence of two kinds
+//! of legs: the cable *lies* along a boundary, or *hangs* plumb where the boundary below it ends
+//! and the next one is lower or higher. If a leg returns over the one before it, both cancel.
 //!
 //! All coordinates are in the frame of the load: u across it, v against it.
 
@@ -13,20 +12,20 @@ use crate::contact::geometry::Body;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, SurfaceShape, UpperSurfaces};
 
-/// Upper surfaces that what does not hold slides down over at most.
+/// Maximum number of upper surfaces over which a cable that nothing holds slides down.
 const MOST_DOWN: usize = 1000;
 
-/// State of a cable on a part of the way.
+/// A leg of a drained route.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum RouteLeg {
-    /// Hangs plumb, from a height to another.
+    /// It hangs plumb, from one height to another.
     Hangs { u: f64, v: [f64; 2] },
-    /// Lies on a surface, from one place across the load to another.
+    /// It lies on a surface, from one coordinate across the load to another.
     Lies { surface: usize, u: [f64; 2] },
 }
 
 impl RouteLeg {
-    /// The same the other way.
+    /// The reversed leg.
     fn back(&self) -> Self {
         match *self {
             Self::Hangs { u, v: [a, b] } => Self::Hangs { u, v: [b, a] },
@@ -35,7 +34,7 @@ impl RouteLeg {
     }
 }
 
-/// The way that is left of a route.
+/// The legs of a drained route.
 pub(in crate::model::spans) struct DrainedRoute {
     pub legs: Vec<RouteLeg>,
 }
@@ -45,12 +44,12 @@ struct RouteDraining<'a> {
     bodies: &'a [Body],
     frame: Frame,
     legs: Vec<RouteLeg>,
-    /// Height of the end of the way so far.
+    /// Height of its end so far.
     height: f64,
 }
 
 impl DrainedRoute {
-    /// The part of a route that stays on obstacles; None where the cable falls off everything.
+    /// Drains a route; None if the cable falls off everything.
     pub fn new(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
         let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
         let (first, last) = (points.first()?, points.last()?);
@@ -60,13 +59,13 @@ impl DrainedRoute {
         }
         draining.hang(last.x, last.y);
         if !draining.legs.iter().any(|leg| matches!(leg, RouteLeg::Lies { .. })) {
-            // Plumb above each other, or in one place: down to what is below both. Down and up
-            // again do not cancel: what is over lies there.
+            // The ends are plumb above each other, or in one place: the route goes down to the
+            // surface below both. Down and up do not cancel here, because the surplus lies there.
             (draining.height, draining.legs) = (first.y, Vec::new());
             draining.down(first.x, smaller(first.y, last.y))?;
             let down = draining.legs.clone();
             draining.hang(last.x, last.y);
-            // Up again over what it came down on.
+            // It goes up again over the surface on which it came down.
             let last_lying = down.iter().rposition(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
             let from = down.iter().position(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
             if last_lying > from {
@@ -79,7 +78,7 @@ impl DrainedRoute {
         Some(Self { legs: draining.legs })
     }
 
-    /// From a point plumb down, or up to it from there.
+    /// The route from a point plumb down, or from below up to it.
     pub fn plumb(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: at.y };
@@ -93,7 +92,7 @@ impl DrainedRoute {
 }
 
 impl RouteDraining<'_> {
-    /// On to the first that is below a point.
+    /// Moves on to the first surface below a point.
     fn down(&mut self, u: f64, v: f64) -> Option<()> {
         let here = self.surfaces.over(u - NONE_M, u + NONE_M).filter_map(|k| {
             let surface = self.surfaces.all.get(k)?;
@@ -104,7 +103,7 @@ impl RouteDraining<'_> {
         self.hang(u, height);
         self.height = height;
         let mut u = on;
-        // Cable that does not hold there slides on down, to the first place that holds it.
+        // Cable that does not stick there slides down, to the first place that holds it.
         for _ in 0..MOST_DOWN {
             let here = &self.surfaces.all[surface];
             let slope = here.slope(u);
@@ -182,7 +181,7 @@ impl RouteDraining<'_> {
         Some(())
     }
 
-    /// The surface on which it falls where the same surfaces are below and above all the way.
+    /// The surface on which it falls, on a stretch where the order of the surfaces does not change.
     fn between(
         &self,
         low: f64,
@@ -200,7 +199,7 @@ impl RouteDraining<'_> {
         cuts.sort_by(f64::total_cmp);
         let mut at = low;
         for (k, cut) in cuts.iter().enumerate().skip(1) {
-            // The last one is never too near: the stretch as a whole is not.
+            // The last cut is never too near, because the whole stretch is not.
             if cut - at <= NONE_M && k + 1 < cuts.len() {
                 continue;
             }
@@ -214,8 +213,8 @@ impl RouteDraining<'_> {
         Some(())
     }
 
-    /// True if the route passes above a surface: where it cuts into its body, if that is from
-    /// above.
+    /// True if the route passes above a surface; where it cuts into the body of the surface, true
+    /// if it enters from above.
     fn is_below(&self, surface: usize, u: f64, v: f64) -> bool {
         let surface = &self.surfaces.all[surface];
         if surface.height(u) <= v + NONE_M {
@@ -226,7 +225,7 @@ impl RouteDraining<'_> {
         gap.is_some_and(|g| body.is_ground() || g.normal.dot(&self.frame.up) > 0.0)
     }
 
-    /// Plumb up, whatever comes before.
+    /// Adds a plumb leg upwards.
     fn rise(&mut self, u: f64, to: f64) {
         let v = [self.height, to];
         if v[1] - v[0] > NONE_M {

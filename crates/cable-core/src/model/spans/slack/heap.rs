@@ -1,18 +1,19 @@
 //! A heap is surplus cable folded in one place: if cable can rest without tension only at a foot or
-//! in a kink, all that is left over rests there.
+//! in a kink, the whole surplus rests there.
 //!
 //! If its weight points between the normals of a kink's two edges, both carry it by pressure alone;
-//! else the edge it rests on carries it within its friction cone.
+//! else the edge on which it rests carries it within its friction cone.
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::{BearingEdge, BoundaryPoint, Heap, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::Frame;
 
-/// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
+/// Excess of a crest over its friction cone that counts as round-off, as a fraction of the cable's
+/// weight.
 pub(super) const CREST_CONE_ROUNDING: f64 = 1e-9;
 
-/// The lowest place that holds a heap drawn by a force (N), and before which part that is.
+/// The lowest place that holds a heap drawn by a force (N), and the index of the part after it.
 pub(super) fn heap(parts: &[SlackPart], context: &SolveContext, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
     let side = |part: Option<&SlackPart>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
         Some((SlackForm::Lies(s), 0.0)) => Some((s, s.place(context, s.coordinates[end]))),

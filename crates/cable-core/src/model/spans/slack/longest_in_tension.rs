@@ -1,12 +1,12 @@
 //! The length of a drained route bounds every cable that rests in tension along it.
 //!
-//! Let a cable with tension everywhere pass all things on the side of its route, and go one way
-//! across the load. Where it touches what is below it, it lies on the drained route. Between two
-//! such touches it bends against the load only, in free spans and where it is pressed against
-//! something from below: it is convex, and nowhere below the drained route. A convex arc is no
+//! Let a cable with tension everywhere pass all obstacles on the side of its route, and run one way
+//! across the load. Where it touches an obstacle below, it lies on the drained route. Between two
+//! such contacts it bends against the load only, in free spans and where it is pressed against an
+//! obstacle from below: it is convex, and nowhere below the drained route. A convex arc is no
 //! longer than a line that encloses it from outside between the same ends (Archimedes, On the
-//! Sphere and Cylinder I, second assumption): no longer than the drained route there, with what
-//! hangs plumb. The sum over all of them bounds the stretched cable.
+//! Sphere and Cylinder I, second assumption), so it is no longer than the drained route there, with
+//! its plumb legs. The sum over all these arcs bounds the stretched cable.
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::SlackForm;
@@ -17,11 +17,11 @@ use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::slack_parts::{LooseShapes, SlackSolver};
 use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, UpperSurfaces};
 
-/// Part of the drained route by which a cable must be longer: rounding.
+/// Relative excess over the drained route that a cable must have (round-off).
 const ROUNDING_FRACTION: f64 = 1e-9;
 
-/// True if a section held at both ends is too long to rest in tension along its route. False also
-/// where the law does not say: over pulleys, with loads, and where the route turns back across the
+/// True if a section held at both ends is too long to rest in tension along its route. Also false
+/// if the bound does not apply: over pulleys, with loads, and if the route turns back across the
 /// load.
 pub(in crate::model::spans) fn exceeds_tension(
     layout: &SectionLayout,
@@ -35,7 +35,7 @@ pub(in crate::model::spans) fn exceeds_tension(
     })
 }
 
-/// Length of the drained route of a section, m; None where it bounds no cable.
+/// Length of the drained route of a section, m; None if it is no bound.
 fn drained_length(
     layout: &SectionLayout,
     index: usize,

@@ -1,4 +1,5 @@
-//! A loose cable pulls at its ends and presses on what carries it; some of it hangs, and some lies.
+//! This module computes the forces of a loose cable on its ends and obstacles, and its lengths that
+//! hang and lie.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::{LooseSection, SlackForm, SlackPart};
@@ -19,15 +20,15 @@ impl LooseSection {
         ends[0] - ends[1] - context.law.load * s - self.drawn
     }
 
-    /// The most that friction can hold of what lies, N.
+    /// Greatest friction force on the lying cable, N.
     pub fn friction(&self, context: &SolveContext) -> f64 {
         let press = |p: &SlackPart| p.held(context).norm() * p.form.friction(context);
         self.parts.iter().map(press).sum()
     }
 
-    /// True if nothing that lies has tension. Where it is drawn over crests, and where all that is
-    /// over is a heap in a kink, a section under hardly any tension is much the same, and can be
-    /// followed as it moves.
+    /// True if no lying cable has tension. (A section drawn over crests, or with all its surplus
+    /// heaped in a kink, is nearly equal to a section under very small tension, which can be
+    /// followed as it moves.)
     pub fn spreads(&self) -> bool {
         let is_slack = |p: &SlackPart| matches!(p.form, SlackForm::Hangs(_)) || p.is_loose();
         self.parts.iter().all(is_slack)

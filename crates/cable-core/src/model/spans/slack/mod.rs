@@ -1,39 +1,38 @@
-//! A section of cable rests on obstacles without tension.
+//! These modules handle a section of cable that rests on obstacles without tension.
 //!
-//! If there is more cable than its drained route needs (see `drained_route`), only the parts that
-//! hang have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and
-//! in each kink, where a cable under tension would not turn. Between two such points the cable
+//! If there is more cable than its drained route needs (see `drained_route`), only the hanging
+//! parts have tension. They hang plumb: F is the weight below. The tension vanishes at each foot
+//! and in each kink, where a cable under tension would not turn. Between two such points the cable
 //! passes over one crest; on both sides its tension falls as in a cable that slides down there,
 //!
 //! ```text
 //! dT/ds = −b·t ∓ μN,   T ≥ 0
 //! ```
 //!
-//! and the greater of the two is what friction has to hold: less than all of it, if the one falls
-//! below the other before its end. Where both are nothing the cable lies loose, and what is over
-//! lies there in folds. A plane cannot show where, nor in how many layers: they are spread evenly
-//! over that ground, which carries their weight where it carries the rest. Of a plumb end h long,
-//! stretched,
+//! and the greater of the two has to be held by friction: less than fully mobilised, if one falls
+//! below the other before its end. Where both are zero the cable lies loose, and the surplus lies
+//! there in folds. A plane model cannot tell where, or in how many layers: they are spread evenly
+//! over that ground, which carries their weight. A plumb end of stretched length h obeys
 //!
 //! ```text
 //! h = λ (s + b s²/2EA)
 //! ```
 //!
-//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what
-//! friction remembers. Where a crest is held by less friction than it takes, the cable runs over
-//! it: that is no such rest.
+//! In any other equilibrium of the same cable it pulls or leans somewhere, which needs friction
+//! memory. If there is less friction than a crest needs, the cable runs over it, and there is no
+//! such equilibrium.
 //!
 //! | room | content |
 //! |---|---|
-//! | `mod.rs` | the section that lies loose along its route, or in a heap |
+//! | `mod.rs` | the loose section along its route, or in a heap |
 //! | `drained_route.rs` | the route fallen along the load on to what is below it |
 //! | `upper_surfaces.rs` | the parts of boundaries that face the load |
 //! | `slack_parts.rs` | the points at which the tension vanishes, and the chains between them |
 //! | `over_crest.rs` | the tensions of a chain: the cable over one crest |
 //! | `stretch_tensions.rs`, `support_span.rs` | spans over kinks, and to a support |
 //! | `longest_in_tension.rs` | the length from which a cable cannot rest in tension |
-//! | `pay_out.rs`, `heap.rs` | the material of each part, and what is over |
-//! | `loose_forces.rs`, `report.rs` | forces on ends and obstacles; the answer |
+//! | `pay_out.rs`, `heap.rs` | the material of each part, and the surplus |
+//! | `loose_forces.rs`, `results.rs` | forces on ends and obstacles; the answer |
 
 pub(in crate::model::spans) mod drained_route;
 mod heap;
@@ -41,7 +40,7 @@ mod longest_in_tension;
 mod loose_forces;
 mod over_crest;
 mod pay_out;
-mod report;
+mod results;
 mod slack_parts;
 mod stretch_tensions;
 mod support_span;
@@ -61,7 +60,7 @@ use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 pub(in crate::model::spans) use crate::model::spans::slack::longest_in_tension::exceeds_tension;
 pub(in crate::model::spans) use crate::model::spans::slack::slack_parts::LooseShapes;
 
-/// The section where it lies loose at an instant; None where it cannot.
+/// The loose section at an instant; None if the cable cannot be loose.
 pub(in crate::model::spans) fn loose_section(
     layout: &SectionLayout,
     index: usize,
@@ -95,8 +94,8 @@ pub(in crate::model::spans) fn loose_section(
     match held {
         [Some(_), Some(_)] => section(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
-            // As the route lays it out on the ground; else it comes down in a heap below the
-            // support.
+            // The cable is laid out on the ground along its route, if it has one; else it comes
+            // down in a heap below the support.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
             let laid = if laid_out { along_route().and_then(&section) } else { None };
             laid.filter(|s| {

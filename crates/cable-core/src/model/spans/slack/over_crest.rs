@@ -1,5 +1,5 @@
-//! A chain is the cable over one crest, between two points without tension: its tension falls on
-//! both sides as in a cable that slides down there.
+//! This module computes a chain: the cable over one crest, between two points without tension. Its
+//! tension falls on both sides as in a cable that slides down there.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::{LyingStretch, SlackForm, SlackPart, SlideResult};
@@ -8,10 +8,10 @@ use crate::model::spans::slack::stretch_tensions::StretchTensions;
 use crate::model::spans::slack::support_span::SupportSpan;
 use crate::numerics::bisect;
 
-/// The tensions of the cable over one crest as they come from both sides.
+/// The tensions of the cable over one crest, computed from both sides.
 struct CrestTensions {
     stretches: Vec<LyingStretch>,
-    /// Material of what hangs behind each stretch, m: negative downwards.
+    /// Material of the plumb leg behind each stretch, m: negative downwards.
     walls: Vec<Option<f64>>,
     forth: StretchTensions,
     back: StretchTensions,
@@ -26,16 +26,16 @@ struct KinkSpan<'a> {
     part: &'a SlackPart,
     /// The stretch at which it ends.
     next: usize,
-    /// Places at which it leaves one stretch and meets the other.
+    /// Coordinates at which it leaves one stretch and meets the other.
     leaves: f64,
     meets: f64,
-    /// True if it has the tension that comes from the start.
+    /// True if its tension is the one computed from the start.
     by_start: bool,
 }
 
 impl CrestTensions {
-    /// The span that begins behind a stretch: that of the greater tension; up to a bridge only the
-    /// one towards it holds.
+    /// The span that begins behind a stretch, with the greater of the two tensions; next to a
+    /// bridge only the tension from the bridge's side applies.
     fn span_behind(&self, k: usize) -> Option<KinkSpan<'_>> {
         let [f, b] =
             [&self.forth, &self.back].map(|side| side.spans[k].as_ref().map_or(0.0, |(span, _)| span.tension[0]));
@@ -55,12 +55,11 @@ impl CrestTensions {
 }
 
 impl SlackSolver<'_> {
-    /// The stretches between two points without tension, or from or to a support. Where a support
-    /// hangs nearby and the crest draws the cable tight there, a span bridges to it; returns
-    /// whether that was done at the end.
+    /// Lays the stretches between two points without tension, or from or to a support. If a support
+    /// is nearby and the crest draws the cable tight there, a span bridges to it; returns whether
+    /// that was done at the end.
     ///
-    /// # Errors
-    /// On which side it is drawn tight, if that is it.
+    /// # Errors The side on which it is drawn tight, if that is the cause.
     pub(super) fn chain(
         &self,
         lines: &[SlackForm],
@@ -70,7 +69,7 @@ impl SlackSolver<'_> {
     ) -> Result<bool, Option<usize>> {
         let (first, last) = (self.hanging_length(lines.first()), self.hanging_length(lines.last()));
         if let ([_], Some(alone)) = (lines, first) {
-            // From a support down, or up to one.
+            // The cable goes down from a support, or up to one.
             let begins = held[0] && self.rise(alone.0) < 0.0;
             let ends = held[1] && self.rise(alone.0) > 0.0;
             out.push(self.hanging_part(alone.0, alone.1));
@@ -81,7 +80,7 @@ impl SlackSolver<'_> {
         }
         let crest = self.crest_tensions(lines, held, near, [first, last])?;
         if let Some(found) = crest.bridge.as_ref().filter(|_| crest.tight == Some(0)) {
-            // In the place of what hung.
+            // This replaces the plumb leg.
             out.pop();
             out.push(found.part.clone());
         }
@@ -95,7 +94,7 @@ impl SlackSolver<'_> {
         Ok(false)
     }
 
-    /// The ends of a line that hangs, and its material, m.
+    /// The ends of a plumb leg, and its material, m.
     fn hanging_length(&self, line: Option<&SlackForm>) -> Option<([Vec2; 2], f64)> {
         match line {
             Some(SlackForm::Hangs(ends)) => Some((*ends, plumb(self.context, self.rise(*ends).abs()))),
@@ -103,15 +102,15 @@ impl SlackSolver<'_> {
         }
     }
 
-    /// A part that hangs plumb, with so much material, m.
+    /// A plumb part with so much material, m.
     fn hanging_part(&self, ends: [Vec2; 2], s: f64) -> SlackPart {
         let t = self.context.law.load.norm() * s;
         let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
         SlackPart { arc_lengths: [0.0, s], tension, form: SlackForm::Hangs(ends) }
     }
 
-    /// Tensions over the crest from both sides, and the span to a support where the crest draws the
-    /// cable tight.
+    /// Computes the tensions over the crest from both sides, and the span to a support if the crest
+    /// draws the cable tight.
     fn crest_tensions(
         &self,
         lines: &[SlackForm],
@@ -192,14 +191,14 @@ impl SlackSolver<'_> {
         Ok(())
     }
 
-    /// A stretch in its parts: where the tension from its start holds, where there is none, where
-    /// that from its end does.
+    /// Divides a stretch into its parts: with the tension from its start, without tension, and with
+    /// the tension from its end.
     fn stretch(&self, s: &LyingStretch, [forth, back]: [f64; 2], out: &mut Vec<SlackPart>) {
         let (context, friction, [p0, p1]) = (self.context, s.friction(self.context), s.coordinates);
         let forth_at = |p: f64| if p == p0 { forth } else { s.slide(context, p0, p, forth, -friction).tension };
         let back_at = |p: f64| if p == p1 { back } else { s.slide(context, p1, p, back, friction).tension };
-        // Each ends at once or rises and falls again; from where it has fallen to nothing there is
-        // none.
+        // Each tension vanishes at once or rises and falls again; beyond the place where it
+        // vanishes there is none.
         let seek = |has: f64, not: f64, holds: &dyn Fn(f64) -> bool| {
             if holds(not) { not } else { bisect([has, not], HALVINGS, holds)[0] }
         };
@@ -218,7 +217,7 @@ impl SlackSolver<'_> {
         let mut ends = goes(forth, p0 + little, p1, &|p| forth_at(p) > 0.0);
         let mut begins = goes(back, p1 - little, p0, &|p| back_at(p) > 0.0);
         if begins < ends {
-            // Both: the greater.
+            // If both apply, the greater counts.
             let meet = if forth_at(ends) >= back_at(ends) {
                 ends
             } else if forth_at(begins) <= back_at(begins) {

@@ -1,5 +1,5 @@
-//! Material is paid out to the parts of a loose cable: what is over goes to those without tension,
-//! or into a heap.
+//! This module distributes material to the parts of a loose cable: the surplus goes to those
+//! without tension, or into a heap.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::{SlackForm, SlackPart};
@@ -7,19 +7,19 @@ use crate::model::spans::slack::heap::heap;
 use crate::model::spans::slack::slack_parts::SlackSolver;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 
-/// Part of the cable that there must be too much of: what is as long as its way lies along it, and
-/// remembers what friction does.
+/// Least surplus of a loose cable, as a fraction of the cable: a cable as long as its way lies
+/// along it in tension, with a friction memory.
 const EXCESS_CABLE_FRACTION: f64 = 1e-9;
 impl SlackPart {
-    /// True if it lies without tension, so that there may be more of it.
+    /// True if it lies without tension, so that it may take surplus material.
     pub(super) fn is_loose(&self) -> bool {
         matches!(self.form, SlackForm::Lies(_)) && self.tension == [0.0; 2]
     }
 }
 
-/// Gives each part its material, what is over to those without tension, or to a heap; None where
-/// nothing is over or nothing holds it. A free end lies where the cable ends if that is before the
-/// route does.
+/// Gives each part its material, and the surplus to parts without tension or to a heap; None if
+/// there is no surplus or nothing holds it. If the cable ends before the route, its free end lies
+/// there.
 pub(super) fn pay_out(
     mut parts: Vec<SlackPart>,
     drape: &SlackSolver<'_>,
@@ -49,8 +49,8 @@ pub(super) fn pay_out(
     Some(parts)
 }
 
-/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where
-/// it does not.
+/// Removes so much material (m) from a free end (0 for the start) that lies without tension; None
+/// if it does not.
 fn cut(parts: &mut Vec<SlackPart>, end: usize, mut off: f64) -> Option<()> {
     loop {
         let at = if end == 0 { 0 } else { parts.len().checked_sub(1)? };

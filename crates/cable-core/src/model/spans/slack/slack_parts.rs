@@ -1,5 +1,5 @@
-//! A drained way is divided at the points where the tension vanishes: at feet, and in kinks that a
-//! cable under tension would bridge.
+//! This module divides a drained route at the points where the tension vanishes: at feet, and in
+//! kinks that a cable under tension would bridge.
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult};
@@ -7,19 +7,19 @@ use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 
-/// Turn (rad) up to which two stretches are one, and by which what hangs beside a surface may be
+/// Turn (rad) up to which two stretches are one, and by which a plumb leg beside a surface may be
 /// off its end.
 pub(super) const STRAIGHT_TURN: f64 = 1e-6;
-/// Halvings of a stretch in the search for where its tension ends.
+/// Number of bisections in the search for the place where the tension of a stretch vanishes.
 pub(super) const HALVINGS: usize = 60;
 
 /// The shapes of loose cable that a search accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum LooseShapes {
-    /// Any.
+    /// Any shape.
     AnyTension,
-    /// Only those in which no cable that lies has tension (`LooseSection::spreads`). Then a crest
-    /// that draws ends the search, before the spans that it would hold are looked for.
+    /// Only shapes in which no lying cable has tension (`LooseSection::spreads`). Then a crest with
+    /// tension ends the search before its spans are computed.
     NoTension,
 }
 
@@ -29,7 +29,7 @@ impl LyingStretch {
         curve.place_on(self.piece, p - curve.origin(self.piece))
     }
 
-    /// The tension at another place of it that follows from the tension `t` at one.
+    /// The tension at the place `to` that follows from the tension `t` at the place `from`.
     pub(super) fn slide(&self, context: &SolveContext, from: f64, to: f64, t: f64, m: f64) -> SlideResult {
         context.law.along(&context.law.local_load(&self.place(context, from)), to - from, t, m)
     }
@@ -39,24 +39,24 @@ impl LyingStretch {
     }
 }
 
-/// Material that hangs plumb over a height, m.
+/// Material of a plumb leg of a height, m.
 pub(super) fn plumb(context: &SolveContext, height: f64) -> f64 {
     let law = &context.law;
     let free = height / law.thermal;
     2.0 * free / (1.0 + (1.0 + 2.0 * law.load.norm() * free / law.stiffness).sqrt())
 }
 
-/// A drained way under the laws of tension.
+/// Computes the tensions of a drained route.
 pub(super) struct SlackSolver<'a> {
     pub context: &'a SolveContext,
     pub frame: Frame,
-    /// Tension that is rounding, N.
+    /// Tension that counts as round-off, N.
     pub most: f64,
     pub sought: LooseShapes,
 }
 
 impl SlackSolver<'_> {
-    /// The lines of the legs of a drained way.
+    /// The forms of the legs of a drained route.
     pub fn lines(&self, surfaces: &UpperSurfaces, legs: &[RouteLeg]) -> Vec<SlackForm> {
         let line = |leg: &RouteLeg| match *leg {
             RouteLeg::Hangs { u, v } => SlackForm::Hangs(v.map(|v| self.frame.point(u, v))),
@@ -68,8 +68,8 @@ impl SlackSolver<'_> {
         legs.iter().map(line).collect()
     }
 
-    /// Every part with its tension, and the material that takes; None where a crest does not hold.
-    /// What is drawn tight in a kink goes on through it.
+    /// All parts with their tensions and their material; None if a crest does not hold. A cable
+    /// that is drawn tight in a kink continues through it.
     pub fn parts(&self, lines: &[SlackForm], held: [bool; 2]) -> Option<Vec<SlackPart>> {
         let mut stops = vec![0];
         for k in 1..lines.len() {
@@ -83,7 +83,7 @@ impl SlackSolver<'_> {
                 Ok(parts) => return Some(parts),
                 Err(stop) => stop?,
             };
-            // A support's own plumb line is not drawn at by merging.
+            // The plumb leg of a support itself is not merged.
             let inner = |k: usize| (k > 0 || !held[0]) && (k + 1 < lines.len() || !held[1]);
             match lines.get(tight.checked_sub(1)?..=tight)? {
                 [SlackForm::Lies(a), SlackForm::Lies(b)] if self.bends_in(a, b) => {}
@@ -95,8 +95,8 @@ impl SlackSolver<'_> {
         }
     }
 
-    /// The parts between such stops; else the stop, if that is it, at which a tension is not
-    /// nothing.
+    /// The parts between the points without tension; or the one of these points at which there is
+    /// tension, if that is the cause of failure.
     fn chains(&self, lines: &[SlackForm], stops: &[usize], held: [bool; 2]) -> Result<Vec<SlackPart>, Option<usize>> {
         let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &SlackForm, end: usize| match line {
@@ -118,13 +118,13 @@ impl SlackSolver<'_> {
         Ok(out)
     }
 
-    /// Height by which a plumb line rises, m.
+    /// Height by which a plumb leg rises, m.
     pub fn rise(&self, [from, to]: [Vec2; 2]) -> f64 {
         (to - from).dot(&self.frame.up)
     }
 
-    /// True if it has no tension between two lines: at a foot, and in a kink that a cable under
-    /// tension would bridge. None where it turns with nothing to turn it.
+    /// True if the tension vanishes between two forms: at a foot, and in a kink that a cable under
+    /// tension would bridge. None if the cable turns there without a contact.
     fn rests(&self, a: &SlackForm, b: &SlackForm) -> Option<bool> {
         let plumb =
             |s: &LyingStretch, p: f64| cross(s.place(self.context, p).tangent, self.frame.up).abs() <= STRAIGHT_TURN;

@@ -1,61 +1,62 @@
-//! This module finds tensions along stretches, and the spans over concave kinks in which the cable
-//! has some.
+//! This module finds tensions along stretches, and the spans over concave kinks where the cable has
+//! tension.
 //!
 //! On slopes steeper than the friction cone the cable pulls on the cable above it, through every
-//! kink on the way. With slopes m₁ and m₂ of the edges on either side, seen along the way, and H
-//! the force across the load, a span leaves the one and meets the other along its tangent:
+//! kink between. With slopes m₁ and m₂ of the edges on either side and H the force across the load,
+//! a span leaves one edge and meets the other along its tangent:
 //!
 //! ```text
 //! bσ = H (m₂ − m₁),   u = τ (Hσ/EA + H (asinh m₂ − asinh m₁)/b),   v = τ ((T₂ − T₁)/b + H² (m₂² − m₁²)/2bEA)
 //! x₁ t₁ + x₂ t₂ = (u, v),   T₁(x₁) = H √(1 + m₁²)
 //! ```
 //!
-//! with x₁ and x₂ the lengths of the edges that it does not touch and T₁(x₁) the tension that comes
-//! along the first: one equation for H.
+//! with x₁ and x₂ the lengths of the edges that it does not touch and T₁(x₁) the tension along the
+//! first. This is one equation for H.
 //!
-//! Up a wall the same span leaves what lies at its foot and meets the round above: from the point
-//! it leaves follow T₁, H and the whole catenary; of all such points that is the one whose catenary
-//! is as far from the centre of the round as its radius, where it is nearest.
+//! At a wall the span leaves the lying cable at the foot and meets the round above. The point where
+//! it leaves determines T₁, H and the whole catenary; the right point is the one whose catenary is
+//! tangent to the round.
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::slack_parts::{HALVINGS, LooseShapes, STRAIGHT_TURN, SlackSolver};
 use crate::numerics::bisect;
 
-/// Doublings of the force across the load in the search for one that is too large.
+/// Maximum number of doublings of the force across the load in the search for an upper bound.
 const MOST_DOUBLED: usize = 60;
 
-/// Distance from a round, of its radius, at which a span touches it. Larger: a place where the
-/// distance jumps could be taken for a root. Smaller: where tension hardly changes along the
-/// ground, rounding of p leaves more.
+/// Distance from a round within which a span touches it, as a fraction of its radius. Larger: a
+/// jump of the distance could pass for a root. Smaller: if tension hardly changes along the ground,
+/// the round-off of p leaves more.
 const TANGENCY_FRACTION: f64 = 1e-3;
 
-/// A span from one stretch to the next, seen from where its tension comes.
+/// A span from one stretch to the next, in the direction from which its tension is computed.
 #[derive(Clone, Copy, Debug)]
 struct KinkSpan {
-    /// Places at which it leaves the one and meets the other.
+    /// Coordinates at which it leaves one stretch and meets the other.
     coordinates: [f64; 2],
     /// Tensions where it leaves and where it meets, N.
     tension: [f64; 2],
     material: f64,
 }
 
-/// The tensions along stretches as they come from one end.
+/// The tensions along stretches, computed from one end.
 pub(super) struct StretchTensions {
-    /// Stretches as the spans over kinks leave them.
+    /// Stretches, shortened by the spans over kinks.
     pub stretches: Vec<LyingStretch>,
     /// Tension where each is entered, N.
     pub enters: Vec<f64>,
-    /// The span that begins behind each, as the cable goes, and the stretch at which it ends.
+    /// The span that begins after each stretch along the cable, and the index of the stretch at
+    /// which it ends.
     pub spans: Vec<Option<(SlackPart, usize)>>,
     /// Tension where the last one is left, N.
     pub leaves: f64,
 }
 
 impl SlackSolver<'_> {
-    /// Tensions along stretches from their start (side 0) or end, as little as friction lets them
-    /// have, from a tension there (N); `walls`: material up what hangs behind each, as the cable
-    /// goes, m. None where a kink cannot be bridged.
+    /// The least tensions that friction allows along stretches, from a tension (N) at their start
+    /// (side 0) or end; `walls` is the material of the plumb leg after each along the cable, m.
+    /// None if a kink cannot be bridged.
     pub(super) fn profile(
         &self,
         stretches: &[LyingStretch],
@@ -100,7 +101,7 @@ impl SlackSolver<'_> {
                     if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
                         break over;
                     }
-                    // From further away.
+                    // The span has to begin on an earlier stretch.
                     left = if side == 0 { left.checked_sub(1)? } else { left + 1 };
                     let between = if side == 0 { left } else { left - 1 };
                     if left >= n || walls[between].is_some() {
@@ -109,8 +110,8 @@ impl SlackSolver<'_> {
                     out.spans[between] = None;
                 },
                 Some(height) => {
-                    // It hangs plumb from the round, and draws at the foot by what it draws at the
-                    // round less its weight.
+                    // It hangs plumb from the round; the tension at the foot is that at the round
+                    // less its weight.
                     out.leaves = larger(out.leaves + self.context.law.load.norm() * height * way, 0.0);
                     if out.leaves > self.most {
                         return None;
@@ -133,8 +134,8 @@ impl SlackSolver<'_> {
         Some(out)
     }
 
-    /// Tension at p of a stretch that is entered on a side with another: as little as friction lets
-    /// it have, N.
+    /// The least tension (N) that friction allows at p of a stretch that is entered on a side with
+    /// the tension `enters`.
     fn least(&self, s: &LyingStretch, side: usize, enters: f64, p: f64) -> f64 {
         let friction = s.friction(self.context);
         let against = if side == 0 { -friction } else { friction };
@@ -147,9 +148,8 @@ impl SlackSolver<'_> {
         cross(before.tangent, after.tangent) * self.context.curves[a.curve].sense > STRAIGHT_TURN
     }
 
-    /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where
-    /// it is against it; from the tension at each p of the first. None where it does not leave and
-    /// meet them.
+    /// The span from one edge to the next, from the tension at each p of the first; `way` is 1
+    /// along the cable and −1 against it. None if it does not leave and meet them.
     fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<KinkSpan> {
         let end = usize::from(way > 0.0);
         let (kink, next) =
@@ -169,7 +169,7 @@ impl SlackSolver<'_> {
             ([(d.x * t[1].y - d.y * t[1].x) / det, (t[0].x * d.y - t[0].y * d.x) / det], material)
         };
         let room = |s: &LyingStretch| s.coordinates[1] - s.coordinates[0];
-        // Beyond the edge the tension is what it is at its start.
+        // Beyond the edge the tension is that at its start.
         let comes = |x: f64| tension(from.coordinates[end] - way * if x < room(from) { x } else { room(from) });
         let lacks = |h: f64| h * 1.0f64.hypot(m1) < comes(aside(h).0[0]);
         let (mut low, mut high) = (0.0, tension(from.coordinates[end]));
@@ -187,8 +187,8 @@ impl SlackSolver<'_> {
         (x1 < room(from) && x2 < room(to)).then_some(KinkSpan { coordinates: p, tension, material })
     }
 
-    /// The span from a stretch at the foot of a wall up to the round above it; from the tension at
-    /// each p of the first. Some(None) where it leaves from before that.
+    /// The span from a stretch at the foot of a wall up to the round above it, from the tension at
+    /// each p of the first. Some(None) if it leaves from before that stretch.
     fn climb(
         &self,
         [from, to]: [&LyingStretch; 2],
@@ -204,8 +204,8 @@ impl SlackSolver<'_> {
         let foot = from.place(self.context, from.coordinates[end]);
         let sight = SpanFrame::new(self, foot.tangent * way)?;
         let center = sight.seen(above.at - above.normal * radius);
-        // The catenary from p: its tension across the load, its slopes at both ends, the material,
-        // and how far it is from the round.
+        // The catenary from p: its force across the load, its slopes at both ends, its material,
+        // and its distance from the round.
         let seen = |p: f64| {
             let place = from.place(self.context, p);
             let t = sight.seen(place.tangent * way);
@@ -216,11 +216,12 @@ impl SlackSolver<'_> {
                 let (sin, cos) = angle.sin_cos();
                 at(angle).dot(&Vec2::new(cos, sin)) < 0.0
             });
-            // With the centre on its right: beyond it the span would be in the wall.
+            // The round's centre is on its right: beyond it the span would be in the wall.
             let (sin, cos) = low.sin_cos();
             (h, [m1, low.tan()], cross(Vec2::new(cos, sin), at(low)) - radius)
         };
-        // From the foot it leads into the wall, from where there is no tension plumb up beside it.
+        // From the foot the span leads into the wall; from a place without tension it leads plumb
+        // up beside it.
         let [_, near] = bisect([from.coordinates[1 - end], from.coordinates[end]], HALVINGS, |p| {
             !(tension(p) > 0.0) || seen(p).2 > 0.0
         });
@@ -232,7 +233,7 @@ impl SlackSolver<'_> {
             return None;
         }
         let (material, _) = sight.catenary(h, m1, m2);
-        // The direction in which it meets the round, as the cable goes.
+        // The direction along the cable in which it meets the round.
         let meets = sight.back(Vec2::new(1.0, m2).normalize()) * way;
         let turned = cross(above.tangent, meets).atan2(above.tangent.dot(&meets));
         let p = to.coordinates[1 - end] + turned / above.turn;
@@ -245,12 +246,12 @@ impl SlackSolver<'_> {
     }
 }
 
-/// The p of a stretch that is entered on a side.
+/// The coordinates of a stretch in order of p, from those where it is entered and left.
 fn bounds(side: usize, enters: f64, leaves: f64) -> [f64; 2] {
     if side == 0 { [enters, leaves] } else { [leaves, enters] }
 }
 
-/// The plane as a span sees it that goes to the right against the load.
+/// The frame of a span, with its direction to the right and the load down.
 struct SpanFrame<'a> {
     drape: &'a SlackSolver<'a>,
     /// 1 or −1.
@@ -258,7 +259,7 @@ struct SpanFrame<'a> {
 }
 
 impl<'a> SpanFrame<'a> {
-    /// That of a span that leaves in a direction; None where that is plumb.
+    /// The frame of a span that leaves in a direction; None if that is plumb.
     fn new(drape: &'a SlackSolver<'a>, leaves: Vec2) -> Option<Self> {
         let across = drape.frame.split(leaves).x;
         (across != 0.0).then(|| Self { drape, right: across.signum() })
@@ -273,8 +274,8 @@ impl<'a> SpanFrame<'a> {
         self.drape.frame.point(at.x * self.right, at.y)
     }
 
-    /// Material of a catenary with h across the load from one slope to another, m, and the way from
-    /// its start to its end.
+    /// Material of a catenary with the force h across the load from one slope to another, m, and
+    /// its chord.
     fn catenary(&self, h: f64, m1: f64, m2: f64) -> (f64, Vec2) {
         let law = &self.drape.context.law;
         let b = law.load.norm();

@@ -1,16 +1,16 @@
 //! A bridge is a span from a support to a crest that draws it tight.
 //!
-//! A support may be so near above a crest that what hangs beyond it pulls more than friction holds
-//! at the foot of its plumb line; the cable has then slid until it is a free span, tangent to the
-//! crest at p with the tension that friction leaves there. Seen from p, with H the force across the
-//! load, V that against it and V₁ = V + bσ,
+//! If a support is close above a crest, the cable that hangs beyond the crest may pull more than
+//! friction holds at the foot of the support's plumb leg. The cable has then slid until a free span
+//! is tangent to the crest at p, with the tension that friction leaves there. From p, with H the
+//! force across the load, V that against it and V₁ = V + bσ,
 //!
 //! ```text
 //! u = Hτ (σ/EA + (asinh V₁/H − asinh V/H)/b),      v = τ ((T₁ − T)/b + (V₁² − V²)/2bEA)
 //! ```
 //!
-//! σ follows from u, and p from v: at the foot the span is nothing and too low, where the crest
-//! falls plumb it rises beyond all bounds.
+//! σ follows from u, and p from v: at the foot the span has no length and ends too low; where the
+//! crest falls plumb its end rises without bound.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::{SlackForm, SlackPart};
@@ -18,14 +18,14 @@ use crate::model::spans::slack::slack_parts::{HALVINGS, SlackSolver};
 use crate::model::spans::slack::stretch_tensions::StretchTensions;
 use crate::numerics::bisect;
 
-/// Greatest distance from its support at which a span may end, of its length and the size of
-/// coordinates: next to plumb rounding of where it touches moves its end a thousand times as much.
-/// Larger: a jump could be taken for a root.
+/// Greatest distance from its support at which a span may end, as a fraction of its length and of
+/// the size of coordinates: for a nearly plumb span the round-off of the touching point moves its
+/// end a thousand times as much. Larger: a jump could pass for a root.
 const ENDS: f64 = 1e-10;
-/// Rounds of Newton's method for the length of a span: it is off by its strain at first.
+/// Rounds of Newton's method for the length of a span, whose first error is its strain.
 const ROUNDS: usize = 8;
 
-/// A span, and where it touches.
+/// A span and its touching point.
 pub(super) struct SupportSpan {
     /// Number of the stretch, and p on it.
     pub line: usize,
@@ -33,21 +33,22 @@ pub(super) struct SupportSpan {
     pub part: SlackPart,
 }
 
-/// A span seen from where it touches.
+/// A span computed from its touching point.
 #[derive(Clone, Copy)]
 struct Seen {
     length: f64,
     /// Height above the support at which it ends, m.
     over: f64,
-    /// Tension where it touches and its direction from there.
+    /// Tension at the touching point, N.
     tension: f64,
+    /// Direction of the span there.
     towards: Vec2,
     at: Vec2,
 }
 
 impl SlackSolver<'_> {
-    /// The span to a support at the start (side 0) or the end, from tensions that come from the
-    /// other one.
+    /// The span to a support at the start (side 0) or the end, from tensions computed from the
+    /// other end.
     pub(super) fn bridge(&self, profile: &StretchTensions, support: Vec2, side: usize) -> Option<SupportSpan> {
         let (context, other, stretches, tensions) = (self.context, 1 - side, &profile.stretches, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
@@ -68,8 +69,8 @@ impl SlackSolver<'_> {
             let found =
                 seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = context.law.load * found.length;
-            // The force there is what the rest of the cable pulls with, the load of the span on top
-            // at the support.
+            // The force there is the pull of the rest of the cable; at the support the load of the
+            // span is added.
             let (tension, form) = if side == 0 {
                 let force = -found.towards * found.tension + weight;
                 ([force.norm(), found.tension], SlackForm::Spans { from: support, force })
@@ -84,7 +85,7 @@ impl SlackSolver<'_> {
     }
 
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the
-    /// support; None where it never comes there.
+    /// support; None if it never reaches that line.
     fn seen(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.context.law, self.frame);
         let b = law.load.norm();
@@ -99,7 +100,7 @@ impl SlackSolver<'_> {
         if !(h > 0.0) {
             return None;
         }
-        // As if it did not stretch; then by Newton's method.
+        // The first length neglects stretch; Newton's method corrects it.
         let mut length =
             if far > 0.0 { h / b * ((v / h).asinh() + far * b / (h * law.thermal)).sinh() - v / b } else { 0.0 };
         for _ in 0..ROUNDS {

@@ -1,4 +1,5 @@
-//! Upper surfaces are the parts of boundaries that face the load: what comes down lies on them.
+//! Upper surfaces are the parts of boundaries that face the load: cable that comes down lies on
+//! them.
 //!
 //! All coordinates are in the frame of the load: u across it, v against it.
 
@@ -6,11 +7,11 @@ use crate::math::{Vec2, cross, larger, perp, smaller};
 use crate::model::spans::boundary::{Curve, PieceShape};
 use crate::model::spans::section::SolveContext;
 
-/// A boundary that faces the load with less than this part of itself is a wall: the cable hangs
-/// beside it.
+/// Cosine between a boundary's normal and the load below which the boundary is a wall, beside which
+/// the cable hangs.
 const FACES: f64 = 1e-9;
 
-/// Lengths that are none, m: rounding of kilometres.
+/// Lengths that count as zero, m: the round-off of kilometres.
 pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
 
 /// The directions across the load and against it, unit vectors.
@@ -20,14 +21,14 @@ pub(in crate::model::spans) struct Frame {
     pub up: Vec2,
 }
 
-/// A piece of boundary that holds what falls on it.
+/// A piece of boundary that holds cable that falls on it.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct UpperSurface {
     pub body: usize,
     pub friction: f64,
-    /// Piece of the boundary of the body with the solid right of travel, and how far along it the
-    /// surface begins.
+    /// Piece of the body's boundary, with the solid right of travel.
     piece: i64,
+    /// Distance along the piece at which the surface begins.
     start: f64,
     /// Its first and last coordinate u, across the direction in which cable falls, m.
     pub range: [f64; 2],
@@ -41,23 +42,22 @@ pub(in crate::model::spans) enum SurfaceShape {
     Round { center: Vec2, radius: f64 },
 }
 
-/// A part of a boundary with the direction of travel: (index of the curve, piece, p from where to
-/// where).
+/// A directed part of a boundary: index of the curve, piece, and p at both ends.
 pub(in crate::model::spans) type BoundaryInterval = (usize, i64, [f64; 2]);
 
 impl Frame {
-    /// That of a load; None where there is none.
+    /// The frame of a load; None if the load is zero.
     pub fn of(load: Vec2) -> Option<Self> {
         let up = -load.try_normalize(0.0)?;
         Some(Self { across: -perp(up), up })
     }
 
-    /// A vector in it.
+    /// The components of a vector in this frame.
     pub fn split(self, at: Vec2) -> Vec2 {
         Vec2::new(at.dot(&self.across), at.dot(&self.up))
     }
 
-    /// The point at a place across the load and a height.
+    /// The point with these coordinates.
     pub fn point(self, u: f64, v: f64) -> Vec2 {
         self.across * u + self.up * v
     }
@@ -71,7 +71,7 @@ impl SurfaceShape {
         }
     }
 
-    /// Places at which two of them have one height, at most two.
+    /// Coordinates at which two surfaces have the same height, at most two.
     pub fn crossings(&self, other: &Self) -> [f64; 2] {
         match (*self, *other) {
             (Self::Line { from, slope }, Self::Line { from: g, slope: n }) => {
@@ -117,12 +117,12 @@ impl UpperSurface {
             + match self.top {
                 SurfaceShape::Line { slope, .. } => (u - self.range[0]) * 1.0f64.hypot(slope),
                 SurfaceShape::Round { center, radius } => {
-                    // The angle from where it rises plumb.
+                    // The angle is measured from the place where the surface rises plumb.
                     let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
                     let angle = |u: f64| {
                         let c = (center.x - u) / radius;
-                        // Where it is plumb the angle would be off by the root of what rounding
-                        // leaves.
+                        // Near that place the error of the angle would be the root of the
+                        // round-off.
                         let c = if 1.0 - c.abs() <= rounding { c.signum() } else { c };
                         larger(1.0 - c * c, 0.0).sqrt().atan2(c)
                     };
@@ -131,8 +131,8 @@ impl UpperSurface {
             }
     }
 
-    /// The stretch of the boundary of its body from one place to another, in the sense in which
-    /// that goes on.
+    /// The interval of its body's boundary from one coordinate to another, in the direction of the
+    /// second.
     pub fn stretch(&self, curves: &[Curve], u: [f64; 2]) -> BoundaryInterval {
         let forward = &curves[2 * self.body];
         let [a, b] = u.map(|u| self.along(u));
@@ -148,7 +148,7 @@ impl UpperSurface {
     }
 }
 
-/// Every boundary that faces the load, in order of where it begins across it.
+/// All boundaries that face the load, in order of their first coordinate.
 #[derive(Debug)]
 pub(in crate::model::spans) struct UpperSurfaces {
     pub all: Vec<UpperSurface>,
@@ -157,7 +157,7 @@ pub(in crate::model::spans) struct UpperSurfaces {
 }
 
 impl UpperSurfaces {
-    /// Those of the bodies of a context.
+    /// The upper surfaces of the bodies of a context.
     pub fn new(context: &SolveContext, bodies: usize, frame: Frame) -> Self {
         let mut all = Vec::new();
         for body in 0..bodies {
@@ -171,7 +171,7 @@ impl UpperSurfaces {
         Self { all, reach }
     }
 
-    /// Those over an interval across the load.
+    /// The indices of surfaces in an interval of u.
     pub fn over(&self, low: f64, high: f64) -> impl Iterator<Item = usize> {
         let first = self.reach.partition_point(|far| *far <= low);
         let last = self.all.partition_point(|r| r.range[0] < high);
@@ -198,7 +198,7 @@ fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: 
         }
         PieceShape::Arc { center, radius, from } => {
             let center = frame.split(center + curve.shift);
-            // Distance along it at which the cable would rise plumb.
+            // The distance along it at which the cable would rise plumb.
             let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
             let turn = std::f64::consts::TAU;
             let turns: &[f64] = if given.extent.is_finite() { &[-1.0, 0.0, 1.0] } else { &[0.0] };

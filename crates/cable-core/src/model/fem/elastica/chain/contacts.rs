@@ -1,4 +1,4 @@
-//! The contacts of a chain are the places of its nodes and bars that are near an obstacle.
+//! The contacts of a chain are the places on its nodes and bars that are near an obstacle.
 
 use crate::contact::Gap;
 use crate::contact::obstacle_pairs::Pair;
@@ -6,10 +6,12 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::Chain;
 use crate::model::fem::elastica::reference_curve::mobilised_friction;
 
-/// Part of the cable's radius by which it may be in an obstacle on its way.
+/// Depth to which a chain may lie in an obstacle during relaxation, as a fraction of the cable's
+/// radius.
 const OVERLAP_LIMIT: f64 = 0.5;
 
-/// Distance, in bars, up to which a contact with the same surface is the one of the step before.
+/// Distance, in bars, within which a contact with the same surface is identified with one of the
+/// step before.
 const SAME_CONTACT_BARS: f64 = 0.5;
 
 /// Least force of a contact that counts at rest, in parts of the forces of the scene.
@@ -32,12 +34,12 @@ pub(in crate::model::fem::elastica) struct ChainContact {
 }
 
 impl ChainContact {
-    /// Its nodes, with their shares in its place.
+    /// Its nodes, with their weights in its position.
     pub(super) fn shares(&self) -> [(usize, f64); 2] {
         [(self.node, 1.0 - self.gap.fraction), (self.node + 1, self.gap.fraction)]
     }
 
-    /// True if it acts with friction.
+    /// True if it transmits friction.
     pub(super) fn rubs(&self) -> bool {
         self.active && self.mobilised != 0.0
     }
@@ -73,20 +75,20 @@ impl Chain<'_> {
         };
         x.iter().zip(&self.held).filter(|(_, held)| !**held).for_each(|(p, _)| measure(*p));
         for (a, b) in x.iter().zip(x.iter().skip(1)) {
-            // A bar may cut off the corner that it is nearest to.
+            // A bar may cut off the corner nearest to it.
             world.geometry().segment_pairs(*a, *b, self.bar, &mut |p| measure(a + (b - a) * p.gap.fraction));
         }
         deepest
     }
 
-    /// True if nodes at positions `x` (m) are in no obstacle, or so little that Newton's method
+    /// True if nodes at positions `x` (m) are in no obstacle, or so shallow that Newton's method
     /// brings them out.
     pub(super) fn is_clear_enough(&self, x: &[Vec2]) -> bool {
         self.greatest_depth(x) < OVERLAP_LIMIT * self.chain_input.problem.radius
     }
 
-    /// Finds the contacts of the present positions. One that was known keeps its force, friction
-    /// and place in the active set.
+    /// Finds the contacts at the present positions. A contact that was known keeps its force, its
+    /// friction and its state in the active set.
     pub(super) fn find_contacts(&mut self) {
         let mut found: Vec<ChainContact> = Vec::with_capacity(self.contacts.len());
         let known = std::mem::take(&mut self.contacts);

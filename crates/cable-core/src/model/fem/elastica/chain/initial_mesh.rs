@@ -1,4 +1,4 @@
-//! A chain is laid along a curve, with a node at each support and load.
+//! This module lays a chain along a curve, with a node at each support and load.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
@@ -7,24 +7,25 @@ use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
 use crate::scene::SupportKind;
 
-/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's
-/// length, whichever asks for more up to the most.
+/// Number of bars in the bend beside a contact, whose length is √(EI/T) with T a third of the
+/// weight. The whole cable gets at least `LEAST_BARS` and at most `MOST_BARS`.
 const BARS_IN_BEND: f64 = 3.0;
 /// See `BARS_IN_BEND`.
 const LEAST_BARS: f64 = 150.0;
 /// See `BARS_IN_BEND`.
 const MOST_BARS: f64 = 500.0;
 
-/// Part by which a bar's rest length grows in a step until it has all of its material.
+/// Relative growth of a bar's rest length in a step, until it reaches its unstretched length.
 pub(super) const PAY_OUT_RATE: f64 = 0.03;
 
-/// Shortest rest length that a bar begins with, in parts of its material.
+/// Shortest rest length with which a bar begins, as a fraction of its unstretched length.
 const FIRST_LENGTH_FRACTION: f64 = 0.05;
 
-/// Part of the cable's radius by which the first shape is pushed out of obstacles.
+/// Clearance to which the first shape is pushed out of obstacles, as a fraction of the cable's
+/// radius.
 const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
 
-/// Part of the cable's length below which two places of it are one: rounding.
+/// Distance below which two places of the cable are one (round-off), as a fraction of its length.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
 /// A point of the cable where a support or a load acts.
@@ -73,9 +74,9 @@ fn stations(chain_input: ChainInput<'_>) -> Option<Vec<Station>> {
 }
 
 impl<'a> Chain<'a> {
-    /// The chain along a curve, pushed out of obstacles. None where the scene has things that a
-    /// chain does not model (pulleys, a robot, a rough floor, self-contact), or where the curve
-    /// runs through an obstacle.
+    /// The chain along a curve, pushed out of obstacles. None if the scene has things that a chain
+    /// does not model (pulleys, a robot, a rough floor, self-contact), or if the curve runs through
+    /// an obstacle.
     pub(super) fn along_curve(
         chain_input: ChainInput<'a>,
         curve: &ReferenceCurve<'_>,
@@ -156,8 +157,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Adds the bars with their tension and weight. A bar for whose material the curve has no room
-    /// begins as short as the curve.
+    /// Adds the bars with their tension and weight. Where the curve is shorter than the material of
+    /// a bar, the bar begins as short as the curve.
     fn add_bars(&mut self, curve: &ReferenceCurve<'_>) {
         let problem = self.chain_input.problem;
         for e in 0..self.arc.len() - 1 {

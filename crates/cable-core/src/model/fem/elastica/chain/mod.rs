@@ -1,5 +1,5 @@
-//! A chain of bars is let go and comes to rest: it finds the equilibrium of a stiff cable whose
-//! contacts are not those of a flexible one, and tells whether an equilibrium is stable.
+//! A chain of bars is released and relaxes to rest. It finds the equilibrium of a stiff cable whose
+//! contacts differ from those of a flexible one, and tests whether an equilibrium is stable.
 //!
 //! | room | content |
 //! |---|---|
@@ -35,29 +35,32 @@ use crate::solution::{CableSolution, Node};
 pub(super) use contacts::ChainContact;
 pub(super) use relaxation::{CLAMPED_EULER, LYING_EULER, RestState};
 
-/// Length of a bar in parts of its material below which an answer is folded there. Smaller: slack
-/// that a flexible cable lays down without a force crushes a stiff one; larger: chains are laid
-/// anew from shapes that would do.
+/// Ratio of a bar's length to its unstretched length below which an answer is folded there.
+/// Smaller: folds of a slack flexible cable crush a stiff one; larger: chains start from the route
+/// although the shape of the answer would do.
 const FOLDED_BAR_FRACTION: f64 = 0.97;
 
-/// Shortest bar of an answer that is asked whether it is folded, in parts of the cable's length.
+/// Shortest bar of an answer that is tested for folds, as a fraction of the cable's length.
 const FOLDED_BAR_LENGTH_FRACTION: f64 = 1e-3;
 
-/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: the error
-/// of a coarse chain counts as motion; more: answers that give way a little are taken for stable.
+/// Distance, in bars, by which a relaxed chain may differ from the answer that it started from.
+/// Smaller: the error of a coarse chain counts as motion; larger: answers that give way a little
+/// pass for stable.
 const STABILITY_DISTANCE_BARS: f64 = 2.0;
 
-/// A chain that is nearly at rest begins with this part of the first resistance.
+/// Resistance with which a chain that is nearly at rest begins, as a fraction of the first
+/// resistance.
 const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 
-/// The scene at one instant, as every chain of a search is laid in it.
+/// The scene at one instant, which all chains of a search share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChainInput<'a> {
     pub(super) problem: &'a Problem,
     pub(super) time_s: f64,
     /// The places to which supports are dragged, m.
     pub(super) dragged: &'a [Option<Vec2>],
-    /// The answer that says how much of its friction each contact mobilises; None: none rubs.
+    /// The answer from which the mobilised friction of each contact is read; None: contacts are
+    /// frictionless.
     pub(super) friction_source: Option<&'a CableSolution>,
 }
 
@@ -112,21 +115,22 @@ pub(super) struct Chain<'a> {
     scale: f64,
     /// Length of a bar, m.
     pub(super) bar: f64,
-    /// Newton steps so far.
+    /// Number of Newton steps so far.
     pub(super) steps: usize,
     /// Number of its bars over that of the coarsest chain.
     refinement: f64,
 }
 
-/// The outcome of letting a chain go from an answer.
+/// The outcome of releasing a chain from an answer.
 pub(super) enum StabilityOutcome<'a> {
     /// The chain stays: the answer is stable.
     Stays,
     /// The chain runs away and rests elsewhere.
     Leaves(Box<Chain<'a>>),
-    /// The chain stays where it is, and would leave if anything moved it.
+    /// The chain stays where it is, but its second derivative is not positive definite: any
+    /// disturbance would move it.
     Unstable,
-    /// The scene has things that a chain does not model, or the chain finds no rest.
+    /// The scene has things that a chain does not model, or the chain does not come to rest.
     Unknown,
 }
 
@@ -145,8 +149,8 @@ pub(super) fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
     })
 }
 
-/// A chain at stable rest, let go from the answer for a flexible cable, or from its route where
-/// that is no shape of a stiff one; None where it finds none.
+/// A chain at stable rest, released from the answer for a flexible cable, or from the route if that
+/// answer has folds. None if the chain does not come to rest.
 pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>> {
     let problem = chain_input.problem;
     let usable = |l: &&CableSolution| l.nodes.len() > 1 && l.breaks.is_empty() && !is_folded(problem, l);
@@ -167,7 +171,7 @@ pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>>
     Some(if rests { bowed } else { chain })
 }
 
-/// Lets a chain go from an answer for the stiff cable, whose friction it keeps.
+/// Releases a chain from an answer for the stiff cable, with the friction of that answer.
 pub(super) fn test_stability<'a>(chain_input: ChainInput<'a>, answer: &'a CableSolution) -> StabilityOutcome<'a> {
     let chain_input = ChainInput { friction_source: Some(answer), ..chain_input };
     let Some(mut chain) = Chain::along(chain_input, &answer.nodes, 1.0) else { return StabilityOutcome::Unknown };
@@ -184,14 +188,15 @@ pub(super) fn test_stability<'a>(chain_input: ChainInput<'a>, answer: &'a CableS
 }
 
 impl<'a> Chain<'a> {
-    /// The same cable with bars of half the length, let go from this shape, and how it rests.
+    /// The same cable with bars of half the length, released from this shape, and the state in
+    /// which it ends.
     pub(super) fn halved(&self) -> Option<(Self, RestState)> {
         let mut fine = Self::along(self.chain_input, &self.nodes(), 2.0 * self.refinement)?;
         let state = fine.relax(REDUCED_RESISTANCE_FACTOR);
         Some((fine, state))
     }
 
-    /// A chain at stable rest, let go from a shape; None where it finds none.
+    /// A chain at stable rest, released from a shape; None if it does not come to rest.
     pub(super) fn rest_near(chain_input: ChainInput<'a>, shape: &[Node]) -> Option<Self> {
         let mut chain = Self::along(ChainInput { friction_source: None, ..chain_input }, shape, 1.0)?;
         (chain.relax(REDUCED_RESISTANCE_FACTOR) == RestState::Stable).then_some(chain)

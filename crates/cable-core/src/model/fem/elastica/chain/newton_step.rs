@@ -1,9 +1,10 @@
-//! One Newton step of a chain solves its linearised equations with the contacts that the step
-//! itself closes, an active set of a quadratic programme.
+//! One Newton step of a chain solves its linearised equations, with the contacts that the step
+//! itself closes: the active set of a quadratic programme.
 //!
-//! Tensions are unknowns of their own: a step turns bars by the tension of the last one, not by
-//! what turning has just stretched them, so that EA limits no step. A contact is a stiff spring
-//! that acts where its gap would close; each mobilises the friction that it is given.
+//! Tensions are unknowns of their own. The geometric stiffness of a bar uses the tension of the
+//! last solution, not the strain that its rotation has just added, so a large EA does not shorten
+//! steps. A contact is a stiff spring that acts where its gap would close, and mobilises a
+//! prescribed friction.
 
 use crate::contact::Gap;
 use crate::energy::bending::{BendingEnergy, ClampBend};
@@ -13,28 +14,30 @@ use crate::math::{Mat2, Vec2, perp};
 use crate::model::fem::elastica::chain::Chain;
 use crate::model::fem::elastica::chain::contacts::ChainContact;
 
-/// Changes of the active set in a step. More: the first steps pay for exactness they do not need.
+/// Maximum number of changes of the active set in a step. Larger: the first steps pay for accuracy
+/// they do not need.
 const MAX_SETS: usize = 8;
 
-/// Changes of the active set in a step in which contacts may open.
+/// Number of changes of the active set in a step in which contacts may open as well as close.
 const RELEASE_ROUNDS: usize = 4;
 
-/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose
-/// digits; larger: contacts are found late.
+/// Penetration under a force of the whole weight, as a fraction of the cable's radius. Smaller: the
+/// matrix loses digits; larger: contacts are found late.
 const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
 
 /// Half-bandwidth: a node sees two neighbours on each side.
 const HALF_BAND: usize = 5;
 
-/// The matrix with friction, which is not symmetric.
+/// The matrix with friction is not symmetric.
 type FrictionMatrix = PivotingBand<HALF_BAND, { 3 * HALF_BAND + 1 }>;
 
 /// The second derivative with which a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hessian {
-    /// All of it. Where it is not positive definite the chain is at no stable rest.
+    /// The exact one. Where it is not positive definite, the chain is at no stable rest.
     Exact,
-    /// Without the terms that can be negative: compression, curvature of bends and of rounds.
+    /// The second derivative without the terms that can be negative: compression, curvature of
+    /// bends and of rounds.
     Convex,
 }
 
@@ -45,7 +48,7 @@ pub(super) struct LinearSystem {
 }
 
 impl LinearSystem {
-    /// Memory for a chain of so many nodes; None where there is none.
+    /// Allocates the matrix for a chain of so many nodes; None if there is not enough memory.
     pub(super) fn new(nodes: usize) -> Option<Self> {
         Some(Self {
             matrix: BandMatrix::new(2 * nodes, HALF_BAND),
@@ -103,9 +106,9 @@ impl Chain<'_> {
         Some(step)
     }
 
-    /// Closes the contacts whose gaps a step would close, and opens the others where they
-    /// `may_open`: two that open and close by turns would go on for ever. Returns whether any gap
-    /// contradicts the set the step was solved with.
+    /// Closes the contacts whose gaps a step would close, and opens the others if they `may_open`:
+    /// without that limit, two contacts could open and close by turns for ever. Returns whether any
+    /// gap contradicts the set with which the step was solved.
     fn update_active_set(&mut self, moves: &[Vec2], may_open: bool) -> bool {
         let stiff = self.contact_stiffness();
         let mut changed = false;
@@ -114,7 +117,7 @@ impl Chain<'_> {
             let gap = t.gap.gap_m + moved;
             changed |= t.active != (gap < 0.0);
             t.active = gap < 0.0 || (t.active && !may_open);
-            // A new contact pushes from the next solution on.
+            // A new contact exerts its force from the next solution on.
             t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
         }
         changed
@@ -223,9 +226,8 @@ impl Chain<'_> {
         }
     }
 
-    /// Adds −p ∂²g of a contact with a round that pushes with p: of a node −p/D, of a bar that
-    /// turns by φ about a point at distance D and slides along itself by m,
-    /// −p g = p (Dφ²/2 + φm).
+    /// Adds −p ∂²g of a contact of force p with a round: for a node −p/D, and for a bar that turns
+    /// by φ about a point at distance D and slides along itself by m, −p g = p (Dφ²/2 + φm).
     fn add_round_curvature(&self, matrix: &mut BandMatrix, t: &ChainContact, at_node: &mut Mat2) {
         let is_round = !t.gap.feature.is_multiple_of(2);
         if !is_round {
@@ -254,9 +256,9 @@ impl Chain<'_> {
         problem.world.geometry().body_of(gap.feature).map_or(problem.radius, |b| b.offset)
     }
 
-    /// The matrix with friction that follows its normal force within the step. With the normal
-    /// force of the step before, each change of one force changes the other by more where an end is
-    /// pressed against a corner, and the iteration diverges.
+    /// The matrix with friction that follows the normal force within the step. With the normal
+    /// force of the step before, the iteration diverges where an end is pressed against a corner:
+    /// each change of one force changes the other by more.
     fn matrix_with_friction(&self, matrix: &BandMatrix) -> FrictionMatrix {
         let size = matrix.rows();
         let mut band = FrictionMatrix::new(size);

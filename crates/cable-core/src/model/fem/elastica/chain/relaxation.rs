@@ -1,73 +1,76 @@
-//! A chain comes to rest by Newton's method with a resistance to motion that fades
+//! A chain relaxes to rest by Newton's method with a viscous resistance that fades
 //! (pseudo-transient continuation: C. Kelley, D. Keyes, *SIAM Journal on Numerical Analysis* 35(2),
 //! 1998).
 //!
-//! Far from rest the steps use the convex part of the second derivative, near it all of it. Where
-//! that is not positive definite the convex part serves as long as it leads to rest, and more
-//! resistance where it does not. Material that the first shape has no room for is paid out on the
-//! way. A chain that rests where it could give way is moved sideways and goes on.
+//! Far from rest the steps use the convex part of the second derivative, near rest the exact one.
+//! If the exact one is not positive definite, the convex part is used as long as it leads to rest,
+//! and more resistance if it does not. Material that the first shape has no room for is paid out
+//! gradually. A chain that rests in an unstable equilibrium is moved sideways and relaxed again.
 
 use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::elastica::chain::initial_mesh::PAY_OUT_RATE;
 use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
 use crate::model::fem::elastica::chain::{Chain, REDUCED_RESISTANCE_FACTOR};
 
-/// Newton steps. 10 to 20 from a flexible cable, 200 to 600 from its route.
+/// Maximum number of Newton steps. Usual are 10 to 20 from a flexible cable, and 200 to 600 from
+/// its route.
 const MAX_STEPS: usize = 1200;
 
-/// Steps before a second derivative that is not positive definite is met with resistance.
+/// Number of steps from which a second derivative that is not positive definite is answered with
+/// more resistance.
 const STEPS_BEFORE_RESISTANCE: usize = 700;
 
-/// Times that resistance is raised in a step.
+/// Maximum number of times that the resistance is raised in a step.
 const MAX_RESISTANCE_RISES: usize = 8;
 
-/// Factor of the resistance after a step that could not be taken, and its least value then, in
-/// parts of the first one.
+/// Factor of the resistance after a step that could not be taken, and the least resistance after
+/// that, as a fraction of the first one.
 const RESISTANCE_RISE: f64 = 8.0;
 /// See `RESISTANCE_RISE`.
 const LEAST_RAISED_RESISTANCE: f64 = 1e-6;
 
-/// Factor of the resistance after a whole short step, and after one that was cut to less than
-/// `LEAST_FREE_PART`; in between it stays.
+/// Factor of the resistance after a full short step, and after one that was cut to less than
+/// `LEAST_FREE_PART`. In between the resistance stays.
 const RESISTANCE_FALL: f64 = 0.4;
 /// See `RESISTANCE_FALL`.
 const CUT_STEP_RISE: f64 = 3.0;
 /// See `RESISTANCE_FALL`.
 const LEAST_FREE_PART: f64 = 0.3;
 
-/// Least resistance, and the most of it at rest, in parts of the first one.
+/// Least resistance, and the greatest one at which a chain counts as at rest, as fractions of the
+/// first one.
 const LEAST_RESISTANCE: f64 = 1e-9;
 /// See `LEAST_RESISTANCE`.
 const REST_RESISTANCE: f64 = 1e-3;
 
-/// Longest turn of a bar in a step, rad.
+/// Greatest turn of a bar in a step, rad.
 const LONGEST_TURN: f64 = 0.4;
 
-/// Greatest motion, in bars, of a step after which resistance falls, and of one after which all of
-/// the second derivative is used.
+/// Greatest motion, in bars, of a step after which the resistance falls, and of one after which the
+/// exact second derivative is used.
 const SHORT_STEP_BARS: f64 = 0.5;
 /// See `SHORT_STEP_BARS`.
 const NEAR_REST_BARS: f64 = 0.2;
 
-/// Halvings of a step that leads into an obstacle.
+/// Maximum number of halvings of a step that leads into an obstacle.
 const MAX_HALVINGS: usize = 12;
 
-/// Part of the cable's radius below which a motion is none.
+/// Motion below which a chain is at rest, as a fraction of the cable's radius.
 const MOVE_TOLERANCE: f64 = 1e-5;
 
-/// Times that a chain is moved which has come to rest where it could give way.
+/// Number of times that a chain in an unstable equilibrium is moved sideways.
 const MAX_PERTURBATIONS: usize = 2;
 
-/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put
-/// into obstacles.
+/// Size of that motion as a fraction of the cable's radius. Smaller: round-off moves it as far;
+/// larger: it is moved into obstacles.
 const PERTURBATION_FRACTION: f64 = 1e-2;
 
-/// Euler's force of a strut that is clamped at both ends, in EI/l².
+/// Euler's buckling load of a strut that is clamped at both ends, in EI/l².
 pub(in crate::model::fem::elastica) const CLAMPED_EULER: f64 = 4.0 * std::f64::consts::PI * std::f64::consts::PI;
 
-/// Push of a strut that lies on a surface, in EI/l², from which it bows away from it: Euler's force
-/// of one that is clamped at its middle too. Smaller: heavy struts that lie well are lifted, and
-/// come to one of several bows; larger: cables with slack are crushed along the ground.
+/// Compression, in EI/l², from which a strut that lies on a surface is bowed away from it: Euler's
+/// load of a strut that is also clamped at its middle. Smaller: heavy struts that lie safely are
+/// lifted into one of several bows; larger: cables with slack stay compressed along the ground.
 pub(in crate::model::fem::elastica) const LYING_EULER: f64 = 4.0 * CLAMPED_EULER;
 
 /// Cosine of the angle between two bars up to which a stretch is straight: half a radian.
@@ -76,32 +79,32 @@ const STRAIGHT_COSINE: f64 = 0.88;
 /// The state in which a relaxation ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem::elastica) enum RestState {
-    /// At rest, where the second derivative of the energy is positive definite.
+    /// At rest, with a positive definite second derivative of the energy.
     Stable,
-    /// At rest, where it is not.
+    /// At rest, with one that is not.
     Unstable,
     /// Not at rest.
     NotFound,
 }
 
-/// The resistance of a relaxation, N/m², and what the last steps tell about it.
+/// The resistance of a relaxation, N/m², and the state of its control.
 struct Resistance {
     now: f64,
     /// The value that the weight of the chain suggests.
     first: f64,
     /// True if the last step was short enough for the exact second derivative.
     near_rest: bool,
-    /// Times that the chain has been moved sideways.
+    /// Number of times that the chain has been moved sideways.
     perturbations: usize,
 }
 
 impl Resistance {
-    /// Raises it after a step that could not be taken.
+    /// Raises the resistance after a step that could not be taken.
     fn raise(&mut self) {
         self.now = larger(self.now * RESISTANCE_RISE, LEAST_RAISED_RESISTANCE * self.first);
     }
 
-    /// Adapts it to a step of which a part was taken.
+    /// Adapts the resistance after a step of which the fraction `part` was taken.
     fn adapt(&mut self, part: f64, is_short: bool) {
         self.now *= if part == 1.0 && is_short {
             RESISTANCE_FALL
@@ -117,8 +120,8 @@ impl Resistance {
 }
 
 impl Chain<'_> {
-    /// Lets the chain go until it rests. `resistance` is the part of the first resistance that it
-    /// begins with.
+    /// Relaxes the chain until it rests. `resistance` is the fraction of the first resistance that
+    /// it begins with.
     pub(super) fn relax(&mut self, resistance: f64) -> RestState {
         let Some(mut system) = LinearSystem::new(self.positions.len()) else { return RestState::NotFound };
         let problem = self.chain_input.problem;
@@ -161,8 +164,8 @@ impl Chain<'_> {
         RestState::NotFound
     }
 
-    /// A step whose matrix is positive definite, with the second derivative it was found with; None
-    /// where none is found. Near rest that is all of it, where it can be.
+    /// A step whose matrix is positive definite, and the kind of second derivative it used; None if
+    /// none is found. Near rest the exact one is tried first.
     fn solvable_step(
         &mut self,
         system: &mut LinearSystem,
@@ -196,8 +199,8 @@ impl Chain<'_> {
         (moved, turned)
     }
 
-    /// The part of a step, `longest` or a fraction of that, which leads into no obstacle, and the
-    /// positions there.
+    /// The fraction of a step, at most `longest`, that leads into no obstacle, and the positions
+    /// there.
     fn clear_part(&self, moves: &[Vec2], longest: f64) -> Option<(f64, Vec<Vec2>)> {
         let mut part = longest;
         for _ in 0..=MAX_HALVINGS {
@@ -235,10 +238,10 @@ impl Chain<'_> {
         }
     }
 
-    /// Bows each straight stretch that is pressed with more than [`LYING_EULER`] away from what it
-    /// lies on, as far as its material wants; returns whether there was any that could be. What
-    /// lies on a surface is held by it and stays straight however much it is pressed, unless
-    /// something lifts it: no cable is laid as straight as that.
+    /// Bows each straight stretch that is compressed by more than [`LYING_EULER`] away from the
+    /// surface it lies on, as far as its material allows; returns whether any could be bowed. A
+    /// perfectly straight strut on a surface stays straight under any compression until something
+    /// lifts it, but no real cable lies that straight.
     pub(super) fn bow_crushed(&mut self) -> bool {
         let ei = self.chain_input.problem.bending_stiffness;
         let mut bowed = false;
@@ -261,8 +264,9 @@ impl Chain<'_> {
         bowed
     }
 
-    /// Moves the nodes between two into half a wave that is longer than their chord by what the
-    /// push (N) has pressed out of their material; returns whether there is room for it.
+    /// Moves the nodes between `from` and `to` into a half wave that is longer than their chord by
+    /// the length that the compression `push` (N) has taken from their material; returns whether
+    /// there is room for it.
     fn bow(&mut self, [from, to]: [usize; 2], length: f64, push: f64) -> bool {
         let chord = self.positions[to] - self.positions[from];
         let normals = self.contacts.iter().filter(|t| (from..=to).contains(&t.node)).map(|t| t.gap.normal);
@@ -282,7 +286,8 @@ impl Chain<'_> {
         true
     }
 
-    /// Lets the bars grow to their material; returns whether all have it.
+    /// Lets the rest lengths of the bars grow to their unstretched lengths; returns whether all
+    /// have reached them.
     fn pay_out(&mut self) -> bool {
         let mut paid_out = true;
         for (rest, unstretched) in self.rest.iter_mut().zip(&self.unstretched) {
@@ -326,7 +331,7 @@ mod tests {
         Ok((p, CableSolution { nodes: vec![node(0.0), node(l)].into(), ..CableSolution::default() }))
     }
 
-    /// Euler's strut: straight it stays below its critical force, and leaves above.
+    /// Euler's strut stays straight below its critical force, and buckles above it.
     #[test]
     fn a_strut_buckles_at_its_critical_force() -> Result<(), Box<dyn std::error::Error>> {
         for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {

@@ -1,15 +1,15 @@
-//! A chain at rest is written as an answer.
+//! This module writes a chain at rest as an answer.
 //!
-//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it
-//! is: a bar that lies on a corner is cut there, its force before and after differ by what the
-//! corner does, and its moment balances as before.
+//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts at its own
+//! place: a bar that lies on a corner is divided there, its forces before and after differ by the
+//! contact force, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::chain::{Chain, ChainContact};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
-/// Gap between two contacts with one obstacle, in bars, up to which they are one.
+/// Distance between two contacts with one obstacle, in bars, up to which they are merged.
 const CONTACT_MERGE_BARS: f64 = 2.5;
 
 impl Chain<'_> {
@@ -26,7 +26,8 @@ impl Chain<'_> {
             .collect()
     }
 
-    /// Forces of what comes after on what comes before, in the middle of each bar, N.
+    /// Force in the middle of each bar, N: the part of the chain after it acts with it on the part
+    /// before it.
     fn forces(&self, moments: &[f64]) -> Vec<Vec2> {
         (0..self.tension.len())
             .map(|e| {
@@ -79,7 +80,7 @@ impl Chain<'_> {
             let mut inside: Vec<&ChainContact> =
                 pushes.iter().filter(|t| t.node == k && t.gap.fraction > 0.0 && t.gap.fraction < 1.0).collect();
             inside.sort_by(|a, b| a.gap.fraction.total_cmp(&b.gap.fraction));
-            // Before the first of the contacts on this bar.
+            // This is the force before the first contact on this bar.
             let mut force = inside.iter().fold(forces[k], |f, t| f + self.force_of(t) * (1.0 - t.gap.fraction));
             let before = if k > 0 { self.tension[k - 1] } else { force.dot(&t) };
             out.push(node(self.arc[k], a, larger(before, force.dot(&t)), moments[k], force + half));
@@ -116,7 +117,7 @@ impl Chain<'_> {
             let before = if i > 0 { forces[i - 1] } else { Vec2::zeros() };
             let after = if i < last { forces[i] } else { Vec2::zeros() };
             let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free);
-            // Forces that bars on corners pass on to it are not its own.
+            // Forces that bars on corners pass on to this node are not its own contact forces.
             let near = self.contacts.iter().filter(|t| t.active);
             let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
             let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);

@@ -1,5 +1,5 @@
-//! The pieces of a first guess are bent: by the layers at their ends where it comes from a flexible
-//! cable, else as the nodes of its answer are.
+//! This module bends the pieces of a first guess: with boundary layers at their ends if the guess
+//! comes from a flexible cable, else like the nodes of its answer.
 
 use crate::math::{cross, perp};
 use crate::model::fem::elastica::boundary_value::{ANGLE, ARC, End, Joint, MOMENT, Piece, STATES, force, tangent};
@@ -22,7 +22,7 @@ fn state_at(piece: &Piece, end: PieceEnd) -> Option<[f64; STATES]> {
 }
 
 impl ElasticaGuess<'_> {
-    /// Gives all nodes the bends of the answer, and the shear that follows from them.
+    /// Gives all nodes the curvature of the answer, and the shear that follows from it.
     pub(super) fn bend_as_nodes(&mut self) -> Option<()> {
         self.count_on_angles()?;
         let (elastica, curve) = (&mut self.elastica, &self.curve);
@@ -43,8 +43,7 @@ impl ElasticaGuess<'_> {
         Some(())
     }
 
-    /// Counts the angles of clamps on from those of the curve, which may have turned round more
-    /// than once.
+    /// Adds to the angles of clamps the whole turns by which the curve may have wound before them.
     fn count_on_angles(&mut self) -> Option<()> {
         let elastica = &mut self.elastica;
         let at_ends = [elastica.pieces.first()?.nodes.first()?[ANGLE], elastica.pieces.last()?.nodes.last()?[ANGLE]];
@@ -62,8 +61,8 @@ impl ElasticaGuess<'_> {
         Some(())
     }
 
-    /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}. Δ is what the flexible cable
-    /// turns by there: to the direction of a clamp, or to the middle of a kink.
+    /// Adds the boundary layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}. Δ is the turn of the
+    /// flexible cable there: to the direction of a clamp, or to the bisector of an angle.
     pub(super) fn add_end_layers(&mut self) -> Option<()> {
         self.count_on_angles()?;
         let elastica = &mut self.elastica;
@@ -90,7 +89,7 @@ impl ElasticaGuess<'_> {
                 }
                 Joint::Held { angle: Some(angle), .. } => angle,
                 Joint::PointContact(c) if elastica.contacts[c].is_point() => {
-                    // A point is passed on the side to which the cable turns.
+                    // The cable passes a point on the side to which it turns.
                     let turn = cross(tangent(&a), tangent(&b));
                     elastica.contacts[c].sense = if turn < 0.0 { -1.0 } else { 1.0 };
                     0.5 * (a[ANGLE] + b[ANGLE])

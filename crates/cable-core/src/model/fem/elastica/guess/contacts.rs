@@ -1,5 +1,5 @@
-//! The contacts of a first guess are read off an answer: off its nodes, its reports, or the
-//! contacts of a chain.
+//! This module reads the contacts of a first guess from an answer: from its nodes, its contact
+//! reports, or the contacts of a chain.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, perp};
@@ -12,11 +12,12 @@ use crate::model::fem::mesh::round_of;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// Part of the cable's radius that a node of the flexible answer may be off what it lies on.
+/// Distance of a node of the flexible answer from a surface within which it touches it, as a
+/// fraction of the cable's radius.
 const CONTACT_DISTANCE_FRACTION: f64 = 1e-3;
 
-/// Distance, in bars, up to which contacts of a chain with one surface are one, and beyond which
-/// they are a stretch.
+/// Distance, in bars, up to which neighbouring contacts of a chain with one surface are merged, and
+/// length beyond which the merged contact is a stretch.
 const CHAIN_CONTACT_BARS: f64 = 2.5;
 
 /// Length, in bars, from which a reported contact is a stretch.
@@ -26,11 +27,11 @@ const REPORTED_STRETCH_BARS: f64 = 3.0;
 /// reaches that end.
 const END_BARS: f64 = 2.0;
 
-/// Part of a wheel's friction from which it counts as slipping: the rest is rounding.
+/// Fraction of a wheel's friction from which it counts as slipping: the rest is round-off.
 const SLIPPING_FRACTION: f64 = 0.999;
 
-/// The contact with the surface of a gap at `x`, where the cable has the direction `t`; None where
-/// no cable can lie.
+/// The contact with the surface of a gap at `x`, where the cable has the direction `t`; None if no
+/// cable can lie on that surface.
 pub(in crate::model::fem::elastica) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Option<Contact> {
     let line = Contact {
         owner: Owner::Obstacle(gap.obstacle),
@@ -54,8 +55,8 @@ fn sense_of(normal: Vec2, t: Vec2) -> f64 {
 }
 
 impl ElasticaGuess<'_> {
-    /// Attaches a contact, in one point where `from` and `to` (m) are one. `middle` is where its
-    /// friction is read.
+    /// Attaches a contact between two arc lengths (m), which is a point contact if they are equal.
+    /// Its friction is read at `middle` (m).
     fn attach_contact(&mut self, mut contact: Contact, [from, to]: [f64; 2], middle: f64) {
         self.mobilise(&mut contact, middle);
         let k = self.elastica.contacts.len();
@@ -64,13 +65,13 @@ impl ElasticaGuess<'_> {
         self.attachments.push(Attachment { from, to, joint });
     }
 
-    /// Direction of the cable at `s` as seen over a bar to either side.
+    /// Mean direction of the cable within a bar to either side of `s`.
     fn direction_at(&self, s: f64, bar: f64) -> Vec2 {
         let angle = self.curve.angle_at(s, [s - bar, s + bar]);
         Vec2::new(angle.cos(), angle.sin())
     }
 
-    /// Attaches the contacts of a chain. Those that follow each other on one surface are one.
+    /// Attaches the contacts of a chain. Those that follow each other on one surface are merged.
     pub(super) fn attach_chain_contacts(&mut self, bar: f64, contacts: &[ChainContact]) {
         let mut done = vec![false; contacts.len()];
         for i in 0..contacts.len() {
@@ -100,8 +101,8 @@ impl ElasticaGuess<'_> {
         }
     }
 
-    /// A stretch of contact, from the cable's end on or up to it where it comes within two bars of
-    /// an end that stands on a surface: a chain has no contact where it is held.
+    /// The stretch of contact `from` … `to` (m), prolonged to an end of the cable that stands on a
+    /// surface if it comes within two bars of that end: a chain has no contact where it is held.
     fn to_lying_ends(&self, [from, to]: [f64; 2], bar: f64) -> [f64; 2] {
         let within = CONTACT_DISTANCE_FRACTION * self.problem.radius;
         let lies = |s: f64| {
@@ -114,20 +115,20 @@ impl ElasticaGuess<'_> {
         [if begins { 0.0 } else { from }, if ends { length } else { to }]
     }
 
-    /// Attaches the contacts that the answer of a mesh reports.
+    /// Attaches the contacts that an answer of the contact mesh reports.
     pub(super) fn attach_reported_contacts(&mut self, bar: f64) {
         let (problem, length) = (self.problem, self.elastica.length);
         for report in &self.answer.contacts {
             let [from, to] = report.extent_m();
             let middle = report.arc_length_m;
             let x = Vec2::new(report.x_m, report.y_m);
-            // The middle of a wrap lies off its round.
+            // The middle node of a wrap lies off its round.
             let gap =
                 problem.world.signed_gap(x, bar).filter(|g| problem.world.obstacle_name(g.obstacle) == report.obstacle);
             let direction = self.direction_at(middle, bar);
             let Some(contact) = gap.and_then(|g| contact_at(problem, &g, x, direction)) else { continue };
             let extent = if to - from > REPORTED_STRETCH_BARS * bar {
-                // All of a stretch that ends within a bar of the cable's end lies there.
+                // A stretch that ends within a bar of the cable's end is prolonged to it.
                 [if from < bar { 0.0 } else { from }, if length - to < bar { length } else { to }]
             } else {
                 [middle, middle]
@@ -170,7 +171,7 @@ impl ElasticaGuess<'_> {
         chord(i) + if i > 0 { chord(i - 1) } else { Vec2::zeros() }
     }
 
-    /// The contact with the pulley that a place is at, if it is at one.
+    /// The contact with the pulley at the place `x`, if there is one.
     fn pulley_at(&self, x: Vec2, t: Vec2, within: f64) -> Option<Contact> {
         let pulleys = self.problem.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Pulley);
         for (k, s) in pulleys {
@@ -194,7 +195,7 @@ impl ElasticaGuess<'_> {
         None
     }
 
-    /// Gives a contact the friction that it mobilises at `s` (m) in the answer.
+    /// Gives a contact the friction mobilised at `s` (m) in the answer.
     fn mobilise(&self, contact: &mut Contact, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {

@@ -1,5 +1,5 @@
-//! The first guess of an elastica is read off an answer: that of a flexible cable, of a mesh, or of
-//! a chain of bars.
+//! These modules make the first guess of an elastica from an answer: that of a flexible cable, of
+//! the contact mesh, or of a chain of bars.
 //!
 //! | room | content |
 //! |---|---|
@@ -7,8 +7,9 @@
 //! | `pieces.rs` | the cable divided into pieces at contacts, holds and loads; reduced EI |
 //! | `bends.rs` | angles and moments of the pieces: boundary layers e^{−s/λ} or those of the nodes |
 //!
-//! The contacts of that answer (`contacts`), holds and loads divide the cable into pieces
-//! (`pieces`), whose nodes lie along its curve and are bent as a stiff cable is (`bends`).
+//! The contacts of that answer (`contacts`), the supports and the loads divide the cable into
+//! pieces (`pieces`). Their nodes lie along the curve of the answer, and are bent like those of a
+//! stiff cable (`bends`).
 
 pub(super) mod contacts;
 
@@ -24,10 +25,10 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::CableSolution;
 
-/// Part of the cable's length below which two places of it are one: rounding.
+/// Distance below which two places of the cable are one (round-off), as a fraction of its length.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
-/// A contact, hold or load between two arc lengths (m).
+/// A contact, support or load between two arc lengths (m).
 #[derive(Clone, Copy, Debug)]
 struct Attachment {
     from: f64,
@@ -45,7 +46,7 @@ enum ContactSource<'a> {
     Chain { bar: f64, contacts: &'a [ChainContact] },
 }
 
-/// An elastica in the making.
+/// The first guess of an elastica under construction.
 struct ElasticaGuess<'a> {
     problem: &'a Problem,
     time_s: f64,
@@ -58,7 +59,7 @@ struct ElasticaGuess<'a> {
 }
 
 impl Elastica {
-    /// A first guess from the answer for a flexible cable, at rest at a time (s); None where the
+    /// Makes a first guess from the answer for a flexible cable, at rest at a time (s); None if the
     /// scene or the answer has things that an elastica does not model.
     pub fn from_flexible(
         problem: &Problem,
@@ -69,8 +70,8 @@ impl Elastica {
         ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Nodes)
     }
 
-    /// The same from the answer of a mesh for the cable as stiff as it is. `bar` is the length of
-    /// its bars (m), to which it knows where contacts are.
+    /// Makes a first guess from an answer of the contact mesh for the stiff cable itself. `bar` is
+    /// the length of its bars (m), and so the accuracy of its contact places.
     pub fn from_mesh(
         problem: &Problem,
         time_s: f64,
@@ -81,7 +82,7 @@ impl Elastica {
         ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Reports { bar })
     }
 
-    /// The same from a chain of bars at rest.
+    /// Makes a first guess from a chain of bars at rest.
     pub(super) fn from_chain(chain: &Chain<'_>) -> Option<Self> {
         let chain_input = chain.chain_input;
         let contacts = chain_input.friction_source.map_or_else(Vec::new, |answer| answer.contacts.clone());
@@ -92,7 +93,7 @@ impl Elastica {
 }
 
 impl<'a> ElasticaGuess<'a> {
-    /// The cable with its holds and loads; None where the scene or the answer has things that an
+    /// The cable with its supports and loads; None if the scene or the answer has things that an
     /// elastica does not model.
     fn new(problem: &'a Problem, time_s: f64, dragged: &'a [Option<Vec2>], answer: &'a CableSolution) -> Option<Self> {
         let alone = problem.outline.is_none() && problem.floor_friction.is_none() && !problem.cable.self_contact;
@@ -169,8 +170,9 @@ impl<'a> ElasticaGuess<'a> {
         }
     }
 
-    /// The elastica with the contacts of a source. That of a flexible cable begins nearly flexible,
-    /// with the bends at the ends of its free pieces; the others are bent as their nodes are.
+    /// The elastica with the contacts of a source. With those of a flexible cable it begins nearly
+    /// flexible, with boundary layers at the ends of its free pieces; otherwise it is bent like the
+    /// nodes of the answer.
     fn elastica_of(mut self, source: &ContactSource<'_>) -> Option<Elastica> {
         match *source {
             ContactSource::Nodes => self.attach_touching_nodes(),

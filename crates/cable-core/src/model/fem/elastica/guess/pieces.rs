@@ -6,26 +6,27 @@ use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_F
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::places;
 
-/// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts
-/// outside of where it converges; more: costs.
+/// First number of elements of a free piece, and of one that lies on a contact. Smaller: Newton's
+/// method starts outside its region of convergence; larger: more time.
 const FREE_ELEMENTS: usize = 32;
 /// See `FREE_ELEMENTS`.
 const LYING_ELEMENTS: usize = 8;
 
-/// Layer λ with which the continuation in EI begins, in parts of the shortest free piece. Larger:
-/// its first guess, a flexible cable with layers, is too rough; smaller: more steps.
+/// Boundary layer λ with which the continuation in EI begins, as a fraction of the shortest free
+/// piece. Larger: its first guess, a flexible cable with layers, is too rough; smaller: more steps.
 const FIRST_LAYER: f64 = 0.05;
 
-/// Shortest free piece that counts for that, in parts of the cable's length.
+/// Shortest free piece that counts for `FIRST_LAYER`, as a fraction of the cable's length.
 const LEAST_FREE_PIECE_FRACTION: f64 = 1e-6;
 
-/// Length of a contact with a line, in layers, below which it is a point.
+/// Length of a contact with a line, in layers λ, below which it is a point.
 const POINT_LAYERS: f64 = 4.0;
 
-/// Sine of the angle between a clamp and a surface below which they have one direction: rounding.
+/// Sine of the angle between a clamp and a surface below which their directions are equal
+/// (round-off).
 const SAME_DIRECTION: f64 = 1e-9;
 
-/// Part of an arc that is given up where two contacts leave no cable between them.
+/// Fraction of an arc that is given up where two contacts leave no cable between them.
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
 
 /// Turn of the curve (rad) from just before an attachment to just after it.
@@ -34,7 +35,7 @@ fn turn_over(curve: &ReferenceCurve<'_>, a: &Attachment, length: f64) -> f64 {
 }
 
 impl ElasticaGuess<'_> {
-    /// Reduces the bending stiffness to the one with which the continuation begins.
+    /// Reduces the bending stiffness to the value with which the continuation begins.
     pub(super) fn reduce_stiffness(&mut self) {
         let elastica = &mut self.elastica;
         let (mut last, mut shortest) = (0.0, elastica.length);
@@ -65,8 +66,8 @@ impl ElasticaGuess<'_> {
         self.make_pieces()
     }
 
-    /// Makes points of the contacts that are too short for the stiffness: a stretch on a round
-    /// begins where σM/EI reaches 1/ρ.
+    /// Turns contacts that are too short for the stiffness into points: a stretch on a round begins
+    /// where σM/EI reaches 1/ρ.
     fn make_short_contacts_points(&mut self) {
         let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
         for a in &mut self.attachments {
@@ -88,9 +89,9 @@ impl ElasticaGuess<'_> {
         }
     }
 
-    /// Leaves some free cable at an end that cannot lie from its support on: where a clamp has
-    /// another direction than the surface, or a hinge stands on a round, which would bend the cable
-    /// there.
+    /// Leaves some free cable at an end that cannot touch the surface right at its support: where a
+    /// clamp and the surface have different directions, or where a hinge stands on a round, which
+    /// would need a moment there.
     fn leave_ends_to_their_holds(&mut self) {
         let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
         // `out`: +1 where the cable leaves the end, −1 where it comes to it.
@@ -120,8 +121,8 @@ impl ElasticaGuess<'_> {
         }
     }
 
-    /// Drops contacts with lines between two rounds off which the layers beside these lift the
-    /// cable: by λ/2 times their turn, where its weight sags by wl²/8T.
+    /// Drops contacts with lines between two rounds if the boundary layers beside these lift the
+    /// cable off: they lift it by λ/2 times their turn, and its weight makes it sag by wl²/8T.
     fn drop_lifted_lines(&mut self) {
         let (elastica, curve, attachments) = (&self.elastica, &self.curve, &self.attachments);
         let turn_over_round = |j: Option<usize>| {
@@ -145,7 +146,7 @@ impl ElasticaGuess<'_> {
         self.attachments.retain(|_| keep.next().copied().unwrap_or(true));
     }
 
-    /// Leaves some cable between any two attachments; None where there is none.
+    /// Leaves some cable between any two attachments; None if there is none.
     fn part_neighbours(&mut self) -> Option<()> {
         let attachments = &mut self.attachments;
         for i in 1..attachments.len() {

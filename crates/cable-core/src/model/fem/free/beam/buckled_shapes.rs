@@ -1,5 +1,4 @@
-//! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either
-//! side.
+//! This module finds the other equilibria of a compressed stiff cable: it may bow to either side.
 //!
 //! A cable beyond its first buckling load rests on either side of the straight line (L. Euler, *De
 //! curvis elasticis*, 1744; S. Timoshenko and J. Gere, *Theory of Elastic Stability*, McGraw-Hill
@@ -14,17 +13,19 @@ use crate::model::fem::free::stations::Station;
 /// Least buckling load of a straight cable in parts of EI/L²: held at one end, free at the other,
 /// π²/4.
 pub(in crate::model::fem) const LEAST_BUCKLING_LOAD: f64 = 2.467_401_100_272_34;
-/// Steps in which the mirrored weight is turned back. Fewer: Newton fails on the way; more: time.
+/// Number of steps in which the mirrored weight is turned back. Smaller: Newton's method fails on
+/// the way; larger: more time.
 const TURNS_OF_WEIGHT: u32 = 8;
-/// Shapes that are nowhere further apart than this part of the length are one. Smaller: the error
-/// of the mesh is another equilibrium; larger: slightly bowed ones are lost.
+/// Greatest distance of two shapes that count as one, as a fraction of the length. Smaller: the
+/// error of the mesh appears as another equilibrium; larger: slightly bowed ones are lost.
 pub(in crate::model::fem) const SAME_SHAPE_FRACTION: f64 = 1e-3;
-/// Spans that are mirrored one at a time. More: time; fewer: a bow in a later span is not told.
+/// Maximum number of spans that are mirrored one at a time. Larger: more time; smaller: a bow in a
+/// later span is not found.
 const MAX_SPANS: usize = 8;
 
 impl Beam {
-    /// The other stable equilibria of this one, each span bowed to its other side alone, and all of
-    /// them at once; none where nothing is compressed enough to buckle.
+    /// The other stable equilibria, with each span alone bowed to its other side, and with all of
+    /// them at once. Empty if nothing is compressed enough to buckle.
     #[must_use]
     pub fn other_buckled_shapes(&self) -> Vec<Self> {
         if !(self.compression() > LEAST_BUCKLING_LOAD * self.bending_force()) {
@@ -44,7 +45,7 @@ impl Beam {
         found
     }
 
-    /// Greatest compression, N; less than zero where all of it is in tension.
+    /// Greatest compression, N; negative if all of the cable is in tension.
     fn compression(&self) -> f64 {
         let starts = self.stretch_starts();
         let samples = (0..self.bars.len()).flat_map(|e| self.samples(e, &starts));
@@ -68,7 +69,7 @@ impl Beam {
         std::iter::once(weight).chain(between).chain([weight]).collect()
     }
 
-    /// The stable equilibrium to which the mirror image of one part, or of all of them, leads.
+    /// The stable equilibrium to which the mirror image of the part `only`, or of all parts, leads.
     fn bowed(&self, only: Option<usize>) -> Option<Self> {
         let axes = self.axes();
         let mirrors = |part: usize| only.is_none_or(|only| only == part);
@@ -96,7 +97,7 @@ impl Beam {
                 *force = mirrored(*force, u);
             }
         }
-        // One weight for all: that of the first part that is mirrored.
+        // All parts have one weight: it is mirrored as for the first part.
         let weight = self.material.body;
         let image = axes.iter().enumerate().find_map(|(part, _)| axis(part)).map_or(weight, |u| mirrored(weight, u));
         let start = (other.angles.clone(), other.forces.clone());

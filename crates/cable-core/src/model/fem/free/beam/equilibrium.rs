@@ -1,10 +1,10 @@
-//! This module finds the equilibrium of a cable with bending stiffness in the angles of its
-//! tangent.
+//! This module finds the equilibrium of a cable with bending stiffness, with the angles of its
+//! tangent as unknowns.
 //!
-//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the
-//! middle of each bar (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force
-//! F₀ at the start of its span as in a flexible cable. Stretch is eliminated (τ = F·t/EA, dx = (1 +
-//! τ)t ds), so neither a stiff nor an inextensible cable is hard, and a clamp is an angle
+//! The tangent t(θ) is interpolated by quadratic finite elements: an angle at each node and one at
+//! the middle of each bar (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the
+//! force F₀ at the start of its span as in a flexible cable. Stretch is eliminated (τ = F·t/EA,
+//! dx = (1 + τ)t ds), so neither a stiff nor an inextensible cable is hard, and a clamp is an angle
 //! prescribed exactly:
 //! ```text
 //! L(θ, F₀) = ∫ EI θ'²/2 − (F·t + (F·t)²/2EA) ds + Σ F₀·d        stationary: equilibrium and closed spans
@@ -30,16 +30,17 @@ use crate::model::fem::free::stations::{SpanEnds, Station, StationLayout};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
-/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost
+/// Greatest turn of a node in one step, rad. Larger: steps jump to other windings; smaller: more
 /// steps.
 const LONGEST_TURN: f64 = 0.5;
-/// Angles and forces are found when a step changes them by less than this.
+/// Newton's method has converged when a step changes angles (rad) and relative forces by less than
+/// this.
 pub(in crate::model::fem) const STEP_TOLERANCE: f64 = 1e-11;
-/// Tries with other bending stiffnesses on the way to the real one.
+/// Maximum number of solves with lower bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
-/// Part of the bending stiffness from which it is raised where Newton fails from the flexible
-/// cable. Smaller: more solves on the way; larger: the first one fails as well. A choice, tuned on
-/// no campaign, as are the four below.
+/// First bending stiffness, as a fraction of the real one, if Newton's method fails from the
+/// flexible cable. Smaller: more solves on the way; larger: the first one fails as well. A choice,
+/// tuned on no campaign, as are the four below.
 const FIRST_STIFFNESS_FRACTION: f64 = 1e-8;
 /// First factor by which it is raised. Smaller: more solves; larger: more of them fail.
 const FIRST_RISE: f64 = 10.0;
@@ -47,14 +48,14 @@ const FIRST_RISE: f64 = 10.0;
 /// fail.
 const RISE_GROWTH: f64 = 2.0;
 /// Least rise after solves that failed. Smaller: the tries run out before the whole stiffness is
-/// met; larger: a sharp change of shape is not followed.
+/// reached; larger: a sharp change of shape is not followed.
 const MIN_RISE: f64 = 1.01;
-/// Steps of this many tolerances are taken for rounding where they no longer shrink. Smaller:
-/// cables of kilometres fail for their rounding; larger: an iteration that stalls passes for
-/// converged.
+/// Step, in tolerances, up to which an iteration whose steps no longer shrink counts as converged
+/// to round-off. Smaller: cables of kilometres fail by their round-off; larger: an iteration that
+/// stalls passes for converged.
 const STALLED_TOLERANCES: f64 = 1e3;
-/// Part of the step before above which a step no longer shrinks. Smaller: slow convergence passes
-/// for rounding; larger: rounding is iterated on to the last step.
+/// Ratio of successive steps above which they no longer shrink. Smaller: slow convergence passes
+/// for round-off; larger: iterations go on in round-off up to the last step.
 const STALLED_STEP_FRACTION: f64 = 0.5;
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
 pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
@@ -66,7 +67,7 @@ pub(in crate::model::fem) struct Bar {
     /// Arc length of its first node and its own, m.
     pub(in crate::model::fem) start: f64,
     pub(in crate::model::fem) ds: f64,
-    /// The stretch between stations it lies in.
+    /// The stretch between stations in which it lies.
     pub(in crate::model::fem) stretch: usize,
 }
 
@@ -94,9 +95,9 @@ pub struct Beam {
 pub enum Outcome {
     /// A stable equilibrium.
     Stable,
-    /// An equilibrium it runs away from.
+    /// An unstable equilibrium.
     Unstable,
-    /// None.
+    /// No equilibrium was found.
     Failed,
 }
 
@@ -112,7 +113,7 @@ pub(in crate::model::fem) struct Sample {
     pub(in crate::model::fem) length: f64,
     /// The tangent.
     pub(in crate::model::fem) tangent: Vec2,
-    /// Force along and across it, N.
+    /// Force along the tangent and across it, N.
     pub(in crate::model::fem) along: f64,
     pub(in crate::model::fem) across: f64,
     /// Stretch τ.
@@ -120,8 +121,8 @@ pub(in crate::model::fem) struct Sample {
 }
 
 impl Beam {
-    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each
-    /// stretch has. `body` is its weight and wind, N/m.
+    /// Makes the bars and angles from a solved flexible cable, with as many bars in each stretch as
+    /// `network.layout` has. `body` is its weight and wind, N/m.
     #[must_use]
     pub fn new(network: &PulleyNetwork, bending: f64, body: Vec2) -> Self {
         let layout = network.layout.clone();
@@ -141,8 +142,8 @@ impl Beam {
         for k in 0..beam.layout.stations.len().saturating_sub(1) {
             let (station, next) = (&beam.layout.stations[k], &beam.layout.stations[k + 1]);
             let (start, length) = (station.arc_length, next.arc_length - station.arc_length);
-            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer
-            // than the stretch.
+            // λ = √(EI/T), limited by its own weight where T goes to zero (λ³ = EI/w), and by the
+            // stretch.
             let least = (bending / (length * length)).max((bending * weight * weight).cbrt());
             let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
             let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
@@ -154,7 +155,7 @@ impl Beam {
         beam
     }
 
-    /// The angles of the flexible cable, and those of the clamps.
+    /// Sets the angles of the flexible cable, and those of the clamps.
     fn lie_as_flexible(&mut self) {
         let starts = self.stretch_starts();
         let n = self.bars.len();
@@ -172,7 +173,7 @@ impl Beam {
         self.turn_to_clamps();
     }
 
-    /// Prescribes each clamp's angle, counted so that the bar beside it turns least.
+    /// Prescribes each clamp's angle, with the whole turns for which the bar beside it turns least.
     pub(super) fn turn_to_clamps(&mut self) {
         let n = self.bars.len();
         self.clamps.clear();
@@ -192,7 +193,7 @@ impl Beam {
         self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
     }
 
-    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the
+    /// Lays the cable along a route (points, m) if that winds otherwise between the clamps than the
     /// flexible cable does: a stiff cable keeps its loops.
     #[must_use]
     pub fn wound_as(mut self, route: &[Vec2]) -> Self {
@@ -218,7 +219,7 @@ impl Beam {
         self
     }
 
-    /// The same cable with every bar halved, from the present answer.
+    /// Returns the same cable with every bar halved, at the present shape.
     #[must_use]
     pub fn halved(&self) -> Self {
         let mut fine = self.clone();
@@ -240,7 +241,7 @@ impl Beam {
         fine
     }
 
-    /// EI/L²: the size of the forces that bending alone makes, N.
+    /// EI/L²: the scale of the forces of bending alone, N.
     #[must_use]
     pub fn bending_force(&self) -> f64 {
         self.bending / (self.layout.length * self.layout.length)
@@ -270,7 +271,7 @@ impl Beam {
         out
     }
 
-    /// Tension force just after each station, N: known in hanging ends, from F₀ in spans.
+    /// Tension force just after each station, N: in hanging ends from the loads, in spans from F₀.
     pub(in crate::model::fem) fn stretch_starts(&self) -> Vec<Vec2> {
         let stations = &self.layout.stations;
         let body = self.material.body;
@@ -322,15 +323,15 @@ impl Beam {
         })
     }
 
-    /// Solves it.
+    /// Finds the equilibrium at the whole bending stiffness.
     pub fn solve(&mut self) -> Outcome {
         let start = (self.angles.clone(), self.forces.clone());
         let mut outcome = self.newton(self.bending);
         if outcome == Outcome::Stable {
             return outcome;
         }
-        // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the
-        // next rise.
+        // Continue from a softer cable: `part` of the bending stiffness was reached last, `factor`
+        // is the next rise.
         (self.angles, self.forces) = start;
         let (mut part, mut factor): (f64, f64) = (FIRST_STIFFNESS_FRACTION, FIRST_RISE);
         let mut saved = (self.angles.clone(), self.forces.clone());
@@ -351,7 +352,7 @@ impl Beam {
         outcome
     }
 
-    /// Newton at a bending stiffness.
+    /// Solves by Newton's method at one bending stiffness.
     pub(super) fn newton(&mut self, bending: f64) -> Outcome {
         let n = self.angles.len();
         let Ok(mut factor) = BandFactor::new(n, 2) else { return Outcome::Failed };
@@ -389,7 +390,7 @@ impl Beam {
             for (a, s) in self.angles.iter_mut().zip(&step) {
                 *a += scale * s;
             }
-            // A cable that is only bent pulls nowhere: then EI/L² says how large a force is.
+            // A cable that is only bent has no tension: then EI/L² is the scale of its forces.
             let least = self.material.smoothing + self.bending_force();
             let mut change = 0.0;
             for (i, f) in self.forces.iter_mut().enumerate() {
@@ -411,7 +412,8 @@ impl Beam {
         Outcome::Failed
     }
 
-    /// Gradient, force columns, C and gaps at the present angles and forces; H into `h`.
+    /// Assembles the gradient, the force columns, C and the closure gaps at the present angles and
+    /// forces, and H into `h`.
     fn assemble(&self, bending: f64, h: &mut BandMatrix) -> (Vec<f64>, Vec<Vec<f64>>, DMatrix<f64>, Vec<f64>) {
         let (n, m) = (self.angles.len(), 2 * self.ends.len());
         let (mut g, mut b, mut c) = (vec![0.0; n], vec![vec![0.0; n]; m], DMatrix::zeros(m, m));

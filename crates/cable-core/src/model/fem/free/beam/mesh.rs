@@ -1,4 +1,4 @@
-//! The nodes of a stiff cable lie close together in the boundary layers at its stations.
+//! This module grades the nodes of a stiff cable into the boundary layers at its stations.
 //!
 //! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ =
 //! √(EI/T). The bars follow a density that gives a third of them to each end of a stretch,
@@ -9,15 +9,15 @@
 
 use crate::numerics::bisect;
 
-/// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too
-/// few lie in it. Tuned on clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their
+/// Reach c of the density in layers λ₀. Smaller: the bars grow faster than the layer fades; larger:
+/// too few lie in it. Tuned on clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their
 /// length.
 const DENSITY_REACH_LAYERS: f64 = 4.0;
 
-/// Part of the bars that each end of a stretch gets for its layer.
+/// Fraction of the bars that each end of a stretch gets for its layer.
 const END_LAYER_BAR_FRACTION: f64 = 1.0 / 3.0;
 
-/// Bisections of a node's place; 60 are the digits of an f64.
+/// Bisections of a node's place; 60 exhaust the digits of an f64.
 const BISECTIONS: usize = 60;
 
 /// ∫₀ˢ of the layer's part of the density, over a stretch of `length`: 0 … 1.
@@ -25,8 +25,8 @@ fn layer_part(s: f64, reach: f64, length: f64) -> f64 {
     (-s / reach).exp_m1() / (-length / reach).exp_m1()
 }
 
-/// The places (m, from 0 to `length`) of `count` bars between two ends with layers of the given
-/// thickness, m.
+/// The places (m, from 0 to `length`) of the nodes of `count` bars between two ends with layers of
+/// the given thickness, m.
 #[must_use]
 pub fn places(layers: [f64; 2], length: f64, count: usize) -> Vec<f64> {
     let reach = layers.map(|l| DENSITY_REACH_LAYERS * l);

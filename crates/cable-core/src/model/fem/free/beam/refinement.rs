@@ -1,25 +1,25 @@
-//! The mesh of a stiff cable is refined until its error estimate suffices.
+//! This module refines the mesh of a stiff cable until its error estimate suffices.
 
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
 
-/// A stiff cable on the mesh that suffices.
+/// A solved stiff cable on its last mesh.
 pub(in crate::model::fem) struct RefinedBeam {
     /// The cable.
     pub(in crate::model::fem) beam: Beam,
-    /// Whether it rests.
+    /// The outcome of its solve.
     pub(in crate::model::fem) outcome: Outcome,
     /// Newton steps on all meshes.
     pub(in crate::model::fem) steps: usize,
-    /// Estimated error of its tension, in parts of the greatest.
+    /// Estimated error of its tensions, relative to the greatest.
     pub(in crate::model::fem) estimate: Option<f64>,
     /// Estimated error of its shape, m.
     pub(in crate::model::fem) shape_error: Option<f64>,
 }
 
-/// Solves a cable on a mesh and on that of half the bars, whose difference tells the error (fourth
-/// order: a fifteenth of it is left), until that is `wanted` or there are `most_bars`; None: on the
-/// mesh that is given.
+/// Solves a cable on a mesh and on one with bars half as long, whose difference gives the error (of
+/// fourth order: a fifteenth of it is left), and refines until that is `wanted` or there are
+/// `most_bars`. If `wanted` is None, the given mesh is kept.
 pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_bars: usize) -> RefinedBeam {
     let mut outcome = coarse.solve();
     let mut steps = coarse.steps;
@@ -40,7 +40,7 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
         }
     }
     if wanted.is_none() && outcome == Outcome::Stable {
-        // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the
+        // The given mesh is kept; the finer one only gives its error, sixteen fifteenths of the
         // change.
         let mut fine = coarse.halved();
         if fine.solve() == Outcome::Stable {

@@ -1,4 +1,4 @@
-//! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
+//! This module reads the nodes of a solved stiff cable: places, tensions, moments and curvatures.
 
 use crate::math::{GAUSS_3, Vec2, larger, perp};
 use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, dot};
@@ -6,22 +6,22 @@ use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Station;
 use crate::numerics::bisect;
 
-/// Between two points the cable leaves a straight line by no more than this part of its length.
-/// More: places read between points are off by as much, with the nodes alone by 1e-3 of a span;
-/// less: thousands of points.
+/// Greatest distance of the cable from the straight line between two points, as a fraction of its
+/// length. Larger: places read between points are off by as much (with the nodes alone by 1e-3 of a
+/// span); smaller: thousands of points.
 const FLATNESS: f64 = 1e-5;
-/// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that
-/// nobody can tell apart.
+/// Maximum number of parts of a bar. Smaller: a bar of a coarse given mesh shows corners; larger:
+/// more points than can be seen.
 const MOST_PARTS: f64 = 32.0;
-/// Points in a bar are at least this part of it apart. Smaller: lines of no length; larger: the
-/// greatest tension is read beside its place.
+/// Least distance of two points in a bar, as a fraction of it. Smaller: lines of no length; larger:
+/// the greatest tension is read beside its place.
 const PLACE_SPACING: f64 = 1e-6;
-/// Halvings by which the place of the greatest tension is found: its tension is off by the square
-/// of what is left.
+/// Number of halvings that locate the greatest tension: its error is the square of the interval
+/// that is left.
 const PEAK_HALVINGS: usize = 30;
 
 impl Beam {
-    /// Moments at both nodes of bar `e`, N·m: those that balance it.
+    /// Moments that balance bar `e` at both nodes, N·m.
     fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
         let stiff = self.bending / (3.0 * self.rest(e));
         let mut pull = [0, 2].map(|r| stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]));
@@ -33,9 +33,9 @@ impl Beam {
         [-pull[0], pull[1]]
     }
 
-    /// Curvature at node `v`, 1/m: at a station from the moment that balances the bar beside it
-    /// (the greater at a clamp between two), else the slope of the curve of fourth degree through
-    /// the angles of both bars.
+    /// Curvature at node `v`, 1/m. At a station it follows from the moment that balances the bar
+    /// beside it (the greater one at a clamp between two bars), elsewhere from the slope of the
+    /// quartic through the angles of both bars.
     fn curvature(&self, v: usize, starts: &[Vec2]) -> f64 {
         let (before, after) = (v.checked_sub(1).and_then(|e| self.bars.get(e)), self.bars.get(v));
         if let (Some(a), Some(b)) = (before, after)
@@ -56,8 +56,8 @@ impl Beam {
         self.points(true).iter().map(|p| p.tension).reduce(larger).unwrap_or(0.0)
     }
 
-    /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight
-    /// lines.
+    /// All nodes; if `smooth`, with as many points between them as straight lines need to draw the
+    /// cable.
     #[must_use]
     pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
@@ -79,7 +79,7 @@ impl Beam {
             if at_stop && let Some(p) = self.layout.stations[stretch].point(0) {
                 at = p;
             }
-            // Nothing pulls beyond an end.
+            // There is no cable beyond an end.
             let tension = if v == 0 {
                 after.dot(&t)
             } else if v == n {
@@ -99,8 +99,8 @@ impl Beam {
         out
     }
 
-    /// The points inside bar `e`, which begins at `at`: between two the cable leaves a straight
-    /// line by `FLATNESS` at most.
+    /// Appends the points inside bar `e`, which begins at `at`, so that the cable leaves the
+    /// straight line between two of them by `FLATNESS` at most.
     fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<Point>) {
         let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
         let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
@@ -128,7 +128,8 @@ impl Beam {
             out.push(Point { arc_length: bar.start + x * bar.ds, at, force, tension, curvature: bent });
             from = x;
         }
-        // The shear says how the curvature changes along the bar, its nodes from what to what.
+        // The shear gives the change of curvature along the bar, and its nodes give the values at
+        // both ends.
         out.pop();
         let left = curvatures[1] - curvatures[0] - bent;
         for point in &mut out[first..] {

@@ -1,13 +1,13 @@
 //! The stiffness of the barrier follows the greatest tension of the cable from step to step: a
-//! stiffer cable is pressed harder against an obstacle, and the gap must not drown in rounding.
+//! tighter cable is pressed harder against an obstacle, and the gap must not be lost in round-off.
 
 use crate::contact::barrier::Barrier;
 use crate::math::bounded;
 use crate::model::fem::settings::ContactTuning;
 
-/// Lets the barrier's stiffness follow the greatest tension (N) beside the normal force of an even
-/// bar on flat ground, `bar_weight` (N). `up` and `down` bound the factor by which it changes; what
-/// follows is multiplied by `ahead`.
+/// Adapts the barrier's stiffness to the greatest tension (N) and the normal force of an even bar
+/// on flat ground, `bar_weight` (N), with the tension multiplied by `ahead`. `up` and `down` bound
+/// the factor of the change.
 pub(super) fn follow_tension(
     barrier: &mut Barrier,
     tuning: &ContactTuning,

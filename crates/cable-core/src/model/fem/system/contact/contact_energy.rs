@@ -1,4 +1,4 @@
-//! Contacts with obstacles add their energies to the equations of a step.
+//! This module adds the energies of contacts with obstacles to the equations of a step.
 
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
@@ -9,7 +9,7 @@ use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
-/// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
+/// Adds a force gradient and a block, shared by the nodes of a contact; sliding nodes get neither.
 #[inline]
 pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2, block: &Mat2) {
     let (node, [a, b]) = (touch.node, touch.shares());
@@ -27,9 +27,9 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
     }
 }
 
-/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m).
-/// Its distance d from the corner has curvature (θ the turn of the segment, u its direction, c the
-/// touching point, all linear in the nodes):
+/// Adds the barrier of one contact; returns its energy (J) and its stiffness for a weight of one
+/// (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its direction,
+/// c the touching point, all linear in the nodes):
 /// ```text
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
 /// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
@@ -55,7 +55,7 @@ pub fn add_barrier(
     }
     if !touch.on_segment {
         let distance = (x[touch.node] - gap.point).norm();
-        // Edges have even feature numbers: their distance is linear.
+        // Edges have even feature indices: their distance is linear.
         if gap.feature % 2 == 1 && distance > 0.0 {
             s.add_block(touch.node, touch.node, &((Mat2::identity() - n * n.transpose()) * (slope / distance)));
         }
@@ -82,8 +82,8 @@ pub fn add_barrier(
     (b.value * weight, b.curvature)
 }
 
-/// Friction of the contacts with obstacles, on these branches or, where there are none, where it
-/// is; returns its energy, J.
+/// Adds the friction of the contacts with obstacles, on the given branches or, without any, on
+/// those of the present unknowns; returns its energy, J.
 pub fn add_friction(
     s: &mut System,
     mesh: &Mesh,
@@ -107,7 +107,7 @@ pub fn add_friction(
     value
 }
 
-/// Plan view: friction of every node on the floor; returns its energy, J.
+/// Plan view: adds the friction of every node on the floor; returns its energy, J.
 pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, unknowns: &Unknowns) -> f64 {
     let mut value = 0.0;
     for (i, &limit) in input.loads.floor_limit.iter().enumerate() {

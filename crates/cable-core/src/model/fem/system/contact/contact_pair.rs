@@ -9,9 +9,9 @@ use crate::math::Vec2;
 pub struct ContactPair {
     /// Node, or first node of the segment.
     pub node: usize,
-    /// True if the segment's inside touches (a corner or a circle).
+    /// True if the segment touches (a corner or a circle) between its nodes.
     pub on_segment: bool,
-    /// Pair as found.
+    /// The pair that the search found.
     pub pair: Pair,
 }
 
@@ -23,7 +23,7 @@ impl ContactPair {
         if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
     }
 
-    /// The part of its force that acts on nodes that move with their material, as `moves` tells.
+    /// The fraction of its force that acts on material nodes, for which `moves` is true.
     #[must_use]
     pub fn material_share(&self, moves: impl Fn(usize) -> bool) -> f64 {
         let [a, b] = self.shares();

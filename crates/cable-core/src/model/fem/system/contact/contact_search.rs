@@ -1,5 +1,5 @@
-//! The contact search finds the pairs of bars and obstacles that are near each other, among the
-//! neighbours that were listed for a step.
+//! The contact search finds the pairs of bars and obstacles that are near each other, from the
+//! neighbour lists of a step.
 
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::obstacle_pairs::Pair;
@@ -16,8 +16,8 @@ pub struct ContactSearch {
 }
 
 impl ContactSearch {
-    /// Finds the contacts of the mesh at `x` (m), in order of arc length, of each bar and of the
-    /// node at its start those nearer than its own `reach` (m). Held nodes push on nothing.
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Each bar, and the node at
+    /// its start, has its own `reach` (m). Held nodes have no contacts.
     pub fn find(
         &self,
         problem: &Problem,
@@ -68,8 +68,8 @@ impl ContactSearch {
         }
     }
 
-    /// True if all bars stay further than `reach` (m) from everything on the way between places of
-    /// the nodes (m).
+    /// True if all bars stay farther than `reach` (m) from every obstacle on the way between two
+    /// sets of node positions (m).
     pub fn is_out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2], reach: f64) -> bool {
         (0..mesh.rest_length.len()).all(|e| {
             let ways = [mesh.straight(e, from), mesh.straight(e, to)];

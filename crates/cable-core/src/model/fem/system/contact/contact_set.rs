@@ -1,5 +1,5 @@
-//! The contact set has everything that a mesh touches in a step: the barrier, the search, and the
-//! friction with its normal forces, which are frozen during a solve.
+//! The contact set holds the contacts of a mesh in a step: the barrier, the search, and friction,
+//! whose normal forces are frozen during a solve.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -22,18 +22,18 @@ pub struct ContactSet {
     pub tuning: ContactTuning,
     /// The barrier.
     pub barrier: Barrier,
-    /// Sliding at which friction is fully mobilised (ε), m.
+    /// Slide ε at which friction is fully mobilised, m.
     pub slip: f64,
     /// Friction of the present step.
     pub friction_contacts: Vec<FrictionContact>,
-    /// The friction before its normal forces were taken anew.
+    /// The friction contacts before their normal forces were renewed.
     before: Vec<FrictionContact>,
-    /// The sliding that is remembered.
+    /// The memory of slides from anchors.
     memory: FrictionMemory,
     scratch: Vec<ContactPair>,
     /// The search for contacts.
     pub search: ContactSearch,
-    /// Plan view: sliding of each node remembered, m.
+    /// Plan view: slide of each node from its anchor, m.
     pub floor_slip: Vec<Vec2>,
     /// Contacts of the cable with itself.
     pub self_contacts: SelfContacts,
@@ -60,12 +60,12 @@ impl ContactSet {
         }
     }
 
-    /// Copies another set; asks for no memory where there is room.
+    /// Copies another set, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { barrier, slip, friction_contacts, memory, floor_slip, self_contacts, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
-        // With room for as many, so that a front of contact that runs on asks for none; and no
-        // more, or each copy would double it.
+        // Memory is reserved for as many contacts, so that a travelling contact front needs no
+        // allocation; and for no more, or each copy would double it.
         self.friction_contacts.clear();
         self.friction_contacts.reserve_exact(friction_contacts.capacity());
         self.friction_contacts.extend_from_slice(friction_contacts);
@@ -75,7 +75,7 @@ impl ContactSet {
         self.outline_motion = *outline_motion;
     }
 
-    /// Sets the sliding at which friction is fully mobilised (m); every contact keeps its force.
+    /// Sets the slide at which friction is fully mobilised (m); every contact keeps its force.
     pub fn set_slip(&mut self, slip: f64) {
         let part = slip / self.slip;
         if part == 1.0 {
@@ -95,23 +95,24 @@ impl ContactSet {
         self.self_contacts.forget();
     }
 
-    /// Remembers that a contact has slid by so much, m.
+    /// Stores the slide of a contact from its anchor, m.
     pub fn remember(&mut self, touch: &ContactPair, slid: f64) {
         self.memory.remember(touch, slid);
     }
 
-    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on
-    /// nothing.
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes have no
+    /// contacts.
     pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<ContactPair>) {
         self.find_within(problem, mesh, x, self.barrier.reach, out);
     }
 
-    /// The same for contacts nearer than `reach` (m).
+    /// Finds the contacts nearer than `reach` (m).
     pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<ContactPair>) {
         self.search.find(problem, mesh, x, |_| reach, out);
     }
 
-    /// True if all bars stay out of reach of everything on the way between places of the nodes (m).
+    /// True if all bars stay out of the barrier's reach on the way between two sets of node
+    /// positions (m).
     pub fn out_of_reach(&self, mesh: &Mesh, ways: [&[Vec2]; 2]) -> bool {
         self.search.is_out_of_reach(mesh, ways, self.barrier.reach)
     }
@@ -136,14 +137,14 @@ impl ContactSet {
         self.find_friction_contacts(problem, mesh, now, start);
     }
 
-    /// The same for contacts with obstacles alone.
+    /// Sets up friction of contacts with obstacles only.
     fn find_friction_contacts(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
         self.friction_contacts.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
-            // A contact that counts twice has pairs of both signs, and so has its friction.
+            // A contact that is counted twice has pairs of both signs, and so has its friction.
             let same = self
                 .friction_contacts
                 .iter_mut()
@@ -194,7 +195,7 @@ impl ContactSet {
         if renewed {
             self.self_contacts.prepare(&self.barrier, mesh, now, start);
         } else {
-            // The step is in balance with the limits before.
+            // The step is balanced with the earlier limits.
             std::mem::swap(&mut self.friction_contacts, &mut self.before);
         }
         renewed
@@ -206,7 +207,7 @@ impl ContactSet {
             (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
         };
         self.scratch.iter().enumerate().filter_map(move |(k, touch)| {
-            // Parts of the same contact are taken together, with the first of them.
+            // Parts of the same contact are summed with the first of them.
             let of_node = |t: &&ContactPair| t.node == touch.node;
             let first = !self.scratch[..k].iter().rev().take_while(of_node).any(|t| same(t, touch));
             let all = self.scratch[k..].iter().take_while(of_node).filter(|t| same(t, touch));
@@ -221,8 +222,8 @@ impl ContactSet {
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
-    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of
-    /// sliding nodes (m).
+    /// Accepts the step from `start` to `end` (m): anchors follow sliding contacts; `slide` is the
+    /// slide of sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
         self.self_contacts.commit(end, self.tuning.slip_m);
@@ -240,7 +241,7 @@ impl ContactSet {
         problem.world.is_empty() && !self.self_contacts.shape.is_on()
     }
 
-    /// Lets the barrier's stiffness follow the greatest tension (N): see
+    /// Adapts the barrier's stiffness to the greatest tension (N): see
     /// [`barrier_stiffness::follow_tension`].
     pub(in crate::model::fem) fn adapt_stiffness(&mut self, forces: [f64; 2], bounds: [f64; 2], ahead: f64) {
         barrier_stiffness::follow_tension(&mut self.barrier, &self.tuning, forces, bounds, ahead);
@@ -267,8 +268,8 @@ impl ContactSet {
         sum
     }
 
-    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
-    /// gone.
+    /// Renumbers the friction memory: `change` gives the new number of a node, None if it was
+    /// removed.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
         self.friction_contacts.clear();
         self.memory.renumber(change);

@@ -1,26 +1,25 @@
-//! In plan view the floor has friction with cable that slides over a round.
+//! In plan view the floor has friction with the cable that slides round a corner or post.
 //!
-//! A node that moves with its material takes the floor's friction of the straight halves of the
-//! bars beside it as a force on itself. What a sliding node answers for lies before its round, on
-//! it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A
-//! and B the tensions where the cable comes on to the round and leaves it, positive friction that
-//! of a cable that runs towards its start, and the floor's friction on the round spread evenly over
-//! its turn φ,
+//! A material node gets the floor's friction on the straight halves of the bars beside it as a
+//! force. The material of a sliding node lies before its round, on it and after it, and the floor's
+//! friction f₀, f, f₂ on each part is not friction of the round. Let A and B be the tensions where
+//! the cable meets and leaves the round, friction positive for a cable that runs towards its start,
+//! and the floor's friction on the round spread evenly over its turn φ. Then
 //! ```text
 //! T₁ = A + f₀,   T₂ = B − f₂,   −dT/dφ = mT + f/φ,   A = B e^{mφ} + f (e^{mφ} − 1)/mφ,   |m| ≤ μ
 //! ```
-//! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
+//! A slipping cable has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, mean_factor};
 use crate::problem::Problem;
 
-/// Iterations for the rate at which tension grows over a round: Newton's method on a function that
-/// is convex and near to an exponential.
+/// Iterations for the rate at which tension grows over a round: Newton's method on a convex
+/// function that is close to an exponential.
 const RATE_ITERATIONS: usize = 30;
 
-/// Material of a bar (m) that its ends answer for: on the round at its start, half of the straight
-/// part, on the round at its end.
+/// Material of a bar (m): on the round at its start, in half of the straight part, and on the round
+/// at its end.
 fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let path = mesh.path(e, x);
     let rest = slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
@@ -38,34 +37,34 @@ fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] 
     [rest * laps[0] / whole, 0.5 * rest * path.straight / whole, rest * laps[1] / whole]
 }
 
-/// Material before, on and after the round of a node for which the floor takes its friction there,
-/// m: half of the straight part of each bar beside it, and all that lies on its round.
+/// Material before, on and after the round of a node whose floor friction acts at the node, m: half
+/// of the straight part of each bar beside it, and all material on its round.
 pub(in crate::model::fem) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
     let [leaving, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
     [before, on + leaving, after]
 }
 
-/// Floor friction as the slope of the scaled energy by the slide sees it, in parts of its own size.
+/// Factor of the floor's friction in the derivative of the scaled energy by the slide.
 pub(in crate::model::fem) fn factor([before, on, after]: [f64; 3], ratio: f64) -> f64 {
     let whole = before + on + after;
     if whole > 0.0 { (before + on * mean_factor(ratio) + after * ratio) / whole } else { 1.0 }
 }
 
-/// Tension over a round of a cable that rubs on it and on the floor.
+/// Tension over a round of a cable with friction on it and on the floor.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct RoundFloorFriction {
     /// Tension where it leaves the round, N.
     leaves: f64,
     /// The floor's friction on the round, N.
     floor: f64,
-    /// mφ.
+    /// The exponent mφ.
     exponent: f64,
 }
 
 impl RoundFloorFriction {
-    /// Between two tensions, N; None where friction cannot make one of the other: the cable is
-    /// slack.
+    /// The tension between two given ones, N; None if friction cannot connect them because the
+    /// cable is slack.
     pub fn between([comes, leaves]: [f64; 2], floor: f64) -> Option<Self> {
         if !(comes > 0.0 && leaves > 0.0 && comes - floor > 0.0) {
             return None;
@@ -85,7 +84,7 @@ impl RoundFloorFriction {
         z.is_finite().then_some(Self { leaves, floor, exponent: z })
     }
 
-    /// Tension with this part of the turn behind it, N.
+    /// Tension with the fraction `part` of the turn behind it, N.
     pub fn at(&self, part: f64) -> f64 {
         let left = 1.0 - part;
         let ratio = (self.exponent * left).exp();
@@ -95,31 +94,33 @@ impl RoundFloorFriction {
     /// ∫T dφ over its turn (rad), N.
     pub fn normal(&self, turn: f64) -> f64 {
         let z = self.exponent;
-        // ∫ B e^{zu} + f (e^{zu} − 1)/z du from 0 to 1; ∫ of the second is f (k(z) − 1)/z.
+        // The integral is ∫ B e^{zu} + f (e^{zu} − 1)/z du from 0 to 1; that of the second term is
+        // f (k(z) − 1)/z.
         let k = mean_factor(z.exp());
         let rest = if z.abs() < 1e-4 { 0.5 + z / 6.0 } else { (k - 1.0) / z };
         turn * (self.leaves * k + self.floor * rest)
     }
 }
 
-/// Slide (m) of a sliding node for which the floor does what it does to a node that was moved by
-/// `slid` (m) on a way in direction `along`.
+/// Slide (m) of a sliding node with the same floor friction as a material node that was moved by
+/// `slid` (m), on a path in direction `along`.
 pub(in crate::model::fem) fn as_slide(slid: Vec2, along: Vec2) -> Vec2 {
     Vec2::new(-slid.dot(&along), 0.0)
 }
 
-/// The reverse.
+/// Displacement (m) of a material node with the same floor friction as a sliding node with this
+/// slide: the reverse of [`as_slide`].
 pub(in crate::model::fem) fn as_move(slide: Vec2, along: Vec2) -> Vec2 {
     along * -slide.x
 }
 
-/// Friction of the floor for a node counts as found when it changes by less than this part. More:
-/// the cones of a report are not those that were solved for (the checker asks for 1e-3); less:
-/// rounds of what moves by rounding.
+/// Relative change of the floor's friction limit of a node below which it has converged. Larger:
+/// the friction cones of a report differ from those of the solve (the verification allows 1e-3);
+/// smaller: rounds for changes by round-off.
 const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
-/// Plan view: the friction that the floor has for each node where the cable lies now; returns
-/// whether any of it changed.
+/// Plan view: renews the floor's friction limit of each node for the present shape; returns whether
+/// any of them changed.
 pub(in crate::model::fem) fn renew_limits(
     limits: &mut Vec<f64>,
     problem: &Problem,

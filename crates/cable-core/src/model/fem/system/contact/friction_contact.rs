@@ -1,4 +1,4 @@
-//! A friction contact has a frozen normal force during a step; its sliding is measured from an
+//! A friction contact has a frozen normal force during a step; its slide is measured from an
 //! anchor.
 
 use crate::math::{Vec2, bounded};
@@ -10,28 +10,28 @@ use crate::problem::Problem;
 #[must_use]
 pub fn slip_at_rest(tuning: &ContactTuning, problem: &Problem, force: f64) -> f64 {
     let stretch = force * problem.length / problem.axial_stiffness;
-    // A force that is no number is none of a state to be kept.
+    // A force that is NaN belongs to no state that is kept.
     bounded(tuning.slip_stretch_fraction * stretch, tuning.min_slip_m, tuning.slip_m)
 }
 
-/// Friction of one contact during a step: the normal force and direction are frozen, the sliding is
+/// Friction of one contact during a step: the normal force and direction are frozen, the slide is
 /// not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionContact {
     /// The contact.
     pub touch: ContactPair,
-    /// Unit vector of positive sliding.
+    /// Unit vector of positive slide.
     pub tangent: Vec2,
     /// Largest friction force μN, N.
     pub limit: f64,
-    /// Sliding remembered at the start of the step, m.
+    /// Slide from the anchor at the start of the step, m.
     pub slid: f64,
     /// Position of the touching material at the start of the step, m.
     pub origin: Vec2,
 }
 
 impl FrictionContact {
-    /// True if it is the friction of a touch, wherever that is now.
+    /// True if it is the friction of a contact, wherever that is now.
     #[inline]
     #[must_use]
     pub fn is_of(&self, touch: &ContactPair) -> bool {
@@ -39,7 +39,7 @@ impl FrictionContact {
         key(&self.touch) == key(touch)
     }
 
-    /// Sliding since the anchor, m.
+    /// Slide from the anchor, m.
     #[inline]
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {

@@ -1,5 +1,5 @@
-//! The friction memory keeps how far each contact has slid from its anchor, from one accepted step
-//! to the next.
+//! The friction memory stores the slide of each contact from its anchor, from one accepted step to
+//! the next.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -14,12 +14,12 @@ struct RememberedContact {
     feature: usize,
     obstacle: usize,
     slid: f64,
-    /// Steps since it carried load.
+    /// Number of steps since it carried load.
     age: usize,
 }
 
 impl RememberedContact {
-    /// A contact that has slid by so much (m), and carries load.
+    /// A loaded contact with this slide (m).
     fn new(touch: &ContactPair, slid: f64) -> Self {
         let gap = &touch.pair.gap;
         let (node, on_segment) = (touch.node, touch.on_segment);
@@ -27,12 +27,12 @@ impl RememberedContact {
     }
 }
 
-/// The sliding of all friction contacts of a mesh.
+/// The slides of all friction contacts of a mesh.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrictionMemory {
-    /// By node; of one node the newest first.
+    /// In order of nodes; the contacts of one node with the newest first.
     contacts: Vec<RememberedContact>,
-    /// Room for the next memory.
+    /// Spare memory for the next list.
     spare: Vec<RememberedContact>,
 }
 
@@ -42,14 +42,14 @@ impl FrictionMemory {
         Self { contacts: Vec::with_capacity(2 * nodes), spare: Vec::with_capacity(2 * nodes) }
     }
 
-    /// Copies another memory, with as much room as that has.
+    /// Copies another memory, with its capacity.
     pub fn copy_from(&mut self, other: &Self) {
         self.contacts.clear();
         self.contacts.reserve_exact(other.contacts.capacity());
         self.contacts.extend_from_slice(&other.contacts);
     }
 
-    /// Multiplies every sliding by a factor.
+    /// Multiplies every slide by a factor.
     pub fn scale(&mut self, factor: f64) {
         self.contacts.iter_mut().for_each(|m| m.slid *= factor);
     }
@@ -59,15 +59,15 @@ impl FrictionMemory {
         self.contacts.clear();
     }
 
-    /// Remembers that a contact has slid by so much, m.
+    /// Stores the slide of a contact, m.
     pub fn remember(&mut self, touch: &ContactPair, slid: f64) {
         self.contacts.push(RememberedContact::new(touch, slid));
         self.contacts.sort_by_key(|m| m.node);
     }
 
-    /// The sliding a contact starts with: its own, else that of the same material on the same
+    /// The slide with which a contact starts: its own, else that of the same material on the same
     /// obstacle (it crossed a corner), else that of a neighbour at the same feature (the material
-    /// moved past it), else none.
+    /// moved past it), else 0.
     pub fn slid(&self, touch: &ContactPair) -> f64 {
         let low = self.contacts.partition_point(|m| m.node + 2 < touch.node);
         let near = self.contacts[low..].iter().take_while(|m| m.node <= touch.node + 2);
@@ -88,11 +88,11 @@ impl FrictionMemory {
         best.1
     }
 
-    /// Takes over what the friction contacts of a step have slid by at its end (m), where `slip`
-    /// (m) mobilises them fully; the others are remembered for so many steps more. The contacts of
-    /// the step go on from there.
+    /// Stores the slides of the friction contacts of a step at its end (m), where `slip` (m)
+    /// mobilises them fully; other contacts are kept for so many steps. The contacts of the step
+    /// continue from there.
     pub fn commit(&mut self, contacts: &mut [FrictionContact], end: &[Vec2], slip: f64, remembered_steps: usize) {
-        // A contact that trembles loses its load now and then: forgetting it each time would let it
+        // A trembling contact loses its load now and then. If it were forgotten each time, it would
         // creep by ε a step.
         let mut old = std::mem::take(&mut self.contacts);
         let mut all = std::mem::take(&mut self.spare);
@@ -112,22 +112,22 @@ impl FrictionMemory {
         let (known, lost) = all.split_at(now);
         merge(known, lost, &mut old);
         (self.contacts, self.spare) = (old, all);
-        // The friction that is left in them is of the state reached: nothing slides further from
-        // here.
+        // The friction in them is that of the accepted state, without a further slide.
         for (rub, memory) in contacts.iter_mut().zip(&self.spare) {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);
         }
     }
 
-    /// Renumbers the nodes: `change` gives the new number of a node, None if it is gone.
+    /// Renumbers the nodes: `change` gives the new number of a node, None if it was removed.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
         let old = std::mem::take(&mut self.contacts);
         self.contacts.extend(old.into_iter().filter_map(|m| Some(RememberedContact { node: change(m.node)?, ..m })));
     }
 }
 
-/// Merges two lists, each by node, into one: of one node those of the first list come first.
+/// Merges two lists in order of nodes into one; for the same node, entries of the first list come
+/// first.
 fn merge(first: &[RememberedContact], second: &[RememberedContact], out: &mut Vec<RememberedContact>) {
     let mut rest = second.iter().peekable();
     for m in first {

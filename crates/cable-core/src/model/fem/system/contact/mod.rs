@@ -1,5 +1,6 @@
 //! These modules hold the contacts of a mesh in a step: their search, the barrier and its
-//! stiffness, and friction with its memory, also on a floor and of the cable with itself.
+//! stiffness, and friction with its memory, with obstacles, with a floor and of the cable with
+//! itself.
 //!
 //! | room | content |
 //! |---|---|
@@ -9,8 +10,8 @@
 //! | `contact_energy.rs` | barrier and friction added to energy, gradient and Hessian |
 //! | `barrier_stiffness.rs` | barrier stiffness that follows the greatest tension between steps |
 //! | `friction_contact.rs` | friction of one contact in a step: frozen normal force, sliding from an anchor |
-//! | `friction_limits.rs` | the limits with which a lagged step finds the normal forces that made them |
-//! | `friction_memory.rs` | how far each contact has slid from its anchor, kept between steps |
+//! | `friction_limits.rs` | search for friction limits that agree with the normal forces of a lagged step |
+//! | `friction_memory.rs` | slide of each contact from its anchor, kept between steps |
 //! | `floor_friction.rs` | plan view: floor friction of cable that slides round a corner or post |
 //! | `self_contact.rs` | contact of the cable with itself: barrier, friction and its memory |
 //! | `outline_motion.rs` | rigid motion of the robot's outline in a step; points carried with it |

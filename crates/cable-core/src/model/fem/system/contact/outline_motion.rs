@@ -1,21 +1,21 @@
-//! The outline of the robot moves in a step from one rigid pose to another; what touches it is
-//! carried with it.
+//! In a step the outline of the robot moves from one rigid pose to another; this module gives the
+//! displacements of points that move with it.
 
 use crate::math::{RigidPose, Vec2};
 
 /// The motion of the outline in the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutlineMotion {
-    /// Its number among the obstacles.
+    /// Its index among the obstacles.
     pub obstacle: usize,
-    /// From where.
+    /// Pose at the start.
     pub from: RigidPose,
-    /// To where.
+    /// Pose at the end.
     pub to: RigidPose,
 }
 
 impl OutlineMotion {
-    /// Position now of a point at `p` (m) if it had gone with the outline.
+    /// Position at the end of a point at `p` (m) that moves with the outline.
     #[must_use]
     pub fn carried(&self, p: Vec2) -> Vec2 {
         self.from.carried(&self.to, p)

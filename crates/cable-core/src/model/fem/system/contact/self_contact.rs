@@ -1,6 +1,7 @@
-//! The cable touches itself in a step: this module has the friction, its memory, and landing.
+//! This module holds the contacts of a cable with itself in a step: barrier, friction and its
+//! memory.
 //!
-//! As with obstacles the normal force of friction is that of the step before, and sliding is
+//! As with obstacles, the normal force of friction is that of the step before, and the slide is
 //! measured from an anchor.
 
 use crate::contact::barrier::Barrier;
@@ -18,14 +19,14 @@ pub struct SelfFriction {
     pub pair: SelfPair,
     /// Largest friction force μN, N.
     pub limit: f64,
-    /// Sliding remembered at the start of the step, m.
+    /// Slide from the anchor at the start of the step, m.
     slid: f64,
-    /// Position of the node from the segment at the start of the step, m.
+    /// Position of the node relative to the segment at the start of the step, m.
     origin: Vec2,
 }
 
 impl SelfFriction {
-    /// Sliding of the node along the segment since the anchor, m.
+    /// Slide of the node along the segment from the anchor, m.
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {
         self.slid + self.pair.tangent().dot(&(self.pair.difference(x) - self.origin))
@@ -37,7 +38,7 @@ impl SelfFriction {
 pub struct SelfContacts {
     /// The cable as an obstacle.
     pub shape: SelfContact,
-    /// Coulomb friction of the cable on itself.
+    /// Coulomb friction coefficient of the cable on itself.
     pub friction: f64,
     /// Friction of the present step.
     pub friction_contacts: Vec<SelfFriction>,
@@ -47,7 +48,7 @@ pub struct SelfContacts {
 }
 
 impl SelfContacts {
-    /// Becomes a copy, in the memory it has.
+    /// Becomes a copy of `other`, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
         (self.shape, self.friction) = (other.shape, other.friction);
         self.friction_contacts.clone_from(&other.friction_contacts);
@@ -79,7 +80,8 @@ impl SelfContacts {
         }
     }
 
-    /// Accepts a step that ended at `end` (m): anchors follow what slid by more than `slip` (m).
+    /// Accepts a step that ended at `end` (m): anchors follow contacts that slid by more than
+    /// `slip` (m).
     pub fn commit(&mut self, end: &[Vec2], slip: f64) {
         self.memory.clear();
         for rub in &mut self.friction_contacts {
@@ -106,15 +108,15 @@ pub struct SelfContactLaws<'a> {
     pub self_contacts: &'a SelfContacts,
     /// The barrier.
     pub barrier: &'a Barrier,
-    /// Sliding at which friction acts whole, m.
+    /// Slide at which friction is fully mobilised, m.
     pub slip: f64,
 }
 
-/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of
-/// what was summed, J.
+/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the sum of
+/// the magnitudes of its terms, J.
 ///
 /// A pair's distance d = m·(p − c) has, with u along the segment of length l, the curvature (as in
-/// `contact_step`)
+/// `contact_energy.rs`)
 /// ```text
 /// inside:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   θ = m·(δb − δa)/l,   q = u·(δp − δc)
 /// joint:   ∇²d = (I − m mᵀ)/d on δp − δc

@@ -1,10 +1,10 @@
 //! This module integrates the tension of a cable that slides along a boundary, and the material
 //! that lies there.
 //!
-//! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =
-//! τ(1 + T/EA) the stretch, τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of
-//! cable that is pressed by N n and rubbed by −mN t (both per unstretched metre; m = +μ where it
-//! slides on along t, −μ where it slides back, 0 where it is smooth) gives
+//! Let b be the load per unstretched metre, t the direction of travel, n the outward normal, λ =
+//! τ(1 + T/EA) the stretch, τ = 1 + αΔT, and c the radius (∞ on an edge). A piece of cable with the
+//! normal force N n and the friction −mN t (both per unstretched metre; m = +μ if it slides along
+//! t, −μ if it slides back, 0 without friction) is in equilibrium if
 //!
 //! ```text
 //! N = Tλ/c − b·n,      dT/ds = −b·t + mN,      ds/dp = (dℓ/dp)/λ
@@ -12,7 +12,7 @@
 //!
 //! Edge (ℓ = p): with Θ = T + T²/2EA, λ dT = τ dΘ, so τ dΘ/dp = −b·t − m b·n: Θ is exactly linear.
 //! The material is ΔT/(τ dΘ/dp), which is Δp/(τ(1 + T̄/EA)) with T̄ the mean of the two end
-//! tensions: nothing cancels on a level edge.
+//! tensions: no digits cancel on a level edge.
 //!
 //! Arc (ℓ = cψ, p = ψ): dT/dψ = mT − (c/λ)(b·t + m b·n), and dt/dψ = −n, dn/dψ = t. With λ = λ₀
 //! frozen it is solved by
@@ -21,9 +21,9 @@
 //! T⁰ = α b·t + β b·n + C e^{mψ},   α = 2gm/(1+m²),   β = g(m²−1)/(1+m²),   g = c/λ₀
 //! ```
 //!
-//! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of
-//! order cb·ΔT/EA) of a small part; what this leaves out is of the order of its square over T.
-//! Material is c ∫ dψ/λ. Both in `arc`.
+//! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, which is small (of
+//! order cb·ΔT/EA); the remaining error is of the order of its square over T. The material is c ∫
+//! dψ/λ. Both are in `arc`.
 
 use crate::math::{Vec2, bounded, exp, perp};
 use crate::model::spans::boundary::arc::{ArcPath, MOST_TURN};
@@ -43,7 +43,7 @@ pub(in crate::model::spans) struct CableLaw {
     pub compliance: f64,
 }
 
-/// A point of the boundary as the law sees it.
+/// The values of a boundary point that the law needs.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct LocalLoad {
     /// d(length)/dp, m.
@@ -59,7 +59,7 @@ pub(in crate::model::spans) struct LocalLoad {
 pub(in crate::model::spans) struct SlideResult {
     /// Tension at its end, N.
     pub tension: f64,
-    /// Unstretched material on it, m (negative for a way back).
+    /// Unstretched material on it, m (negative for a backward path).
     pub material: f64,
     /// ∂tension/∂(tension at its start).
     pub by_tension: f64,
@@ -68,12 +68,12 @@ pub(in crate::model::spans) struct SlideResult {
 }
 
 impl CableLaw {
-    /// With a load per metre (N/m), τ and EA (N).
+    /// The law with a load per metre (N/m), τ and EA (N).
     pub fn new(load: Vec2, thermal: f64, stiffness: f64) -> Self {
         Self { load, thermal, stiffness, compliance: 1.0 / stiffness }
     }
 
-    /// λ of a tension.
+    /// The stretch λ of a tension.
     pub fn stretch(&self, t: f64) -> f64 {
         self.thermal * (1.0 + t * self.compliance)
     }
@@ -83,19 +83,19 @@ impl CableLaw {
         t + 0.5 * t * t * self.compliance
     }
 
-    /// The tension of Θ; −EA (crushed to nothing) where there is none.
+    /// The tension for Θ; −EA (a length of zero) if there is none.
     pub fn tension(&self, theta: f64) -> f64 {
         let square = 1.0 + 2.0 * theta * self.compliance;
         2.0 * theta / (1.0 + if square > 0.0 { square.sqrt() } else { 0.0 })
     }
 
-    /// A place as the law sees it.
+    /// The values of a place that the law needs.
     pub fn local_load(&self, place: &BoundaryPoint) -> LocalLoad {
         let load = [self.load.dot(&place.tangent), self.load.dot(&place.normal)];
         LocalLoad { stretch: place.stretch, turns: place.turn != 0.0, load }
     }
 
-    /// dT/dp at a place where it slides with m.
+    /// dT/dp at a place where the cable slides with m.
     pub fn slope(&self, place: &BoundaryPoint, t: f64, m: f64) -> f64 {
         self.slope_at(&self.local_load(place), t, m)
     }
@@ -118,7 +118,7 @@ impl CableLaw {
         turned - self.load.dot(&place.normal) * place.stretch / self.stretch(t)
     }
 
-    /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
+    /// The result of sliding by a distance `way` along the piece of a place, from the tension `t`.
     pub fn along(&self, from: &LocalLoad, way: f64, t: f64, m: f64) -> SlideResult {
         if !from.turns {
             return self.on_edge(self.edge_rate(from, m), way, t);
@@ -142,7 +142,7 @@ impl CableLaw {
 }
 
 impl SlideResult {
-    /// This way and then another that started from where it ended.
+    /// This result followed by another that starts at its end.
     pub fn then(self, next: Self) -> Self {
         Self {
             tension: next.tension,
@@ -152,14 +152,14 @@ impl SlideResult {
         }
     }
 
-    /// No way at all, with tension `t`.
+    /// The result of a path of length zero with tension `t`.
     pub fn none(t: f64) -> Self {
         Self { tension: t, material: 0.0, by_tension: 1.0, material_by_tension: 0.0 }
     }
 }
 
-/// The border between cable that is drawn and cable that lies loose: its place, the material (m) to
-/// it from the end that is drawn, and the tension there (N).
+/// The border between cable in tension and loose cable: its place, the material (m) to it from the
+/// drawn end, and the tension there (N).
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct SlackEnd {
     pub coordinate: f64,
@@ -167,7 +167,7 @@ pub(in crate::model::spans) struct SlackEnd {
     pub tension: f64,
 }
 
-/// A chain of a boundary and what the cable on it obeys.
+/// A chain of a boundary and the laws of the cable on it.
 #[derive(Clone, Copy)]
 pub(in crate::model::spans) struct ContactPath<'a> {
     pub curve: &'a Curve,
@@ -177,17 +177,17 @@ pub(in crate::model::spans) struct ContactPath<'a> {
     pub friction: f64,
     /// See [`SolveContext`](crate::model::spans::section::SolveContext).
     pub drag: f64,
-    /// True if all of it slides away from the end that is drawn, as far as there is tension, and
-    /// lies loose beyond that.
+    /// True if all of it slides away from the drawn end, as far as there is tension, and lies loose
+    /// beyond that.
     pub floored: bool,
-    /// The μ that holds what lies loose.
+    /// The friction coefficient μ of loose cable.
     pub friction_of_loose: f64,
-    /// A point of it from which what lies on the same piece is seen.
+    /// A cached piece, from whose point other places on the same piece are computed.
     pub cached_piece: Option<CachedPiece>,
 }
 
 impl ContactPath<'_> {
-    /// The same, seen from p.
+    /// This path with the piece at p cached.
     pub fn with_cached_piece(self, p: f64) -> Self {
         Self { cached_piece: Some(CachedPiece::new(self.curve, self.chain_range, &self.law, p)), ..self }
     }
@@ -208,7 +208,7 @@ impl ContactPath<'_> {
         }
     }
 
-    /// The piece between p₀ and p₁, which lie on one.
+    /// The piece that contains both p₀ and p₁.
     pub fn on(&self, p0: f64, p1: f64) -> SegmentCursor<'_> {
         let from = match &self.cached_piece {
             Some(cached_piece) if cached_piece.reaches(p0) && cached_piece.reaches(p1) => cached_piece.local_load(p0),
@@ -220,7 +220,7 @@ impl ContactPath<'_> {
         SegmentCursor { law: &self.law, from, p0 }
     }
 
-    /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
+    /// Slides with m from p₀, where the tension is `t`, to p₁ (in either direction).
     pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> SlideResult {
         if p0 == p1 {
             return SlideResult::none(t);
@@ -250,9 +250,9 @@ impl ContactPath<'_> {
         }
     }
 
-    /// Slides with m from p₀, the end that is drawn, to p₁; from where on an edge the tension is no
-    /// more than that of cable that lies there loose, the cable lies so to p₁. Returns where that
-    /// begins, too.
+    /// Slides with m from p₀, the drawn end, to p₁. Where the tension on an edge falls to that of
+    /// loose cable, the cable lies loose from there to p₁. Also returns the place where that
+    /// begins.
     pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (SlideResult, Option<SlackEnd>) {
         let bed = Self { friction: self.friction_of_loose, ..*self };
         let lying = bed.lying(p1, p0);
@@ -263,7 +263,7 @@ impl ContactPath<'_> {
             let way = self.slide(at, next, sum.tension, m);
             if !(edge && way.tension < under) {
                 sum = sum.then(way);
-                // Drawn down a slope it has tension again.
+                // Cable drawn down a slope has tension again.
                 loose = loose.filter(|_| !(sum.tension > under));
             } else {
                 // Along an edge Θ is linear.
@@ -281,16 +281,16 @@ impl ContactPath<'_> {
         (sum, loose)
     }
 
-    /// Returns the borders between stretches of one law, with the tensions there of cable that lies
-    /// loose from p₁, where it has none, to p₀: they stay as they are where friction holds it, and
-    /// grow by what is missing of friction on slopes beyond its cone.
+    /// Returns the borders between stretches of one law, with the tensions there, of loose cable
+    /// from p₁, where the tension is zero, to p₀. The tension is constant where friction holds the
+    /// cable, and grows on slopes beyond the friction cone.
     fn lying(&self, p1: f64, p0: f64) -> Vec<(f64, f64)> {
         let mut out = vec![(p1, 0.0)];
         let (mut at, mut tension) = (p1, 0.0);
         while at != p0 {
             let next = self.next_border(at, p0);
             let m = self.even(0.5 * (at + next));
-            // Within its cone it keeps what tension it has.
+            // Within the friction cone the tension is constant.
             if !(m.abs() < self.friction) {
                 tension = self.slide(at, next, tension, m).tension;
             }
@@ -300,8 +300,8 @@ impl ContactPath<'_> {
         out
     }
 
-    /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an
-    /// edge; 0 on an arc.
+    /// The m with which the tension is constant at p, as far as friction allows: −b·t − m b·n = 0
+    /// on an edge; 0 on an arc.
     pub fn even(&self, p: f64) -> f64 {
         if self.turns(p) {
             return 0.0;
@@ -314,8 +314,8 @@ impl ContactPath<'_> {
         bounded(-self.law.load.dot(&place.tangent) / out_of, -self.friction, self.friction)
     }
 
-    /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is
-    /// laid down.
+    /// From p₀ to p₁ (in either direction) with the tension as constant as friction allows, as for
+    /// cable that is laid down.
     pub fn lay(&self, p0: f64, p1: f64, t: f64) -> SlideResult {
         let (mut at, mut sum) = (p0, SlideResult::none(t));
         while at != p1 {
@@ -326,13 +326,13 @@ impl ContactPath<'_> {
         sum
     }
 
-    /// Calls back with the places inside an arc from p to q at which tension or pressure may be
-    /// least while it slides with m.
+    /// Calls back with the places inside an arc from p to q at which tension or pressure may have a
+    /// minimum while the cable slides with m.
     ///
     /// With P the [`CableLaw::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m
-    /// b·n), both but for the change of λ: P e^{−mψ} is least where b·t = 0 with the load out of
-    /// the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at
-    /// the ends, it is nowhere.
+    /// b·n), both apart from the change of λ: P e^{−mψ} is least where b·t = 0 with the load out of
+    /// the arc, below it, and T e^{−mψ} where b·t + m b·n = 0. If neither is negative there and at
+    /// the ends, it is nowhere negative.
     pub fn minimum_candidates(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
         let middle = self.curve.locate(0.5 * (p + q), self.chain_range);
         if !self.curve.is_arc(middle) {
@@ -352,7 +352,7 @@ impl ContactPath<'_> {
 
     /// The places between p and q, on arc i, whose outward normal is along `out`.
     fn facing(&self, i: i64, out: Vec2, p: f64, q: f64, each: impl FnMut(f64)) {
-        // No cable is wound further.
+        // No cable is wound farther.
         if out.norm() > 0.0 && q - p <= MOST_TURN {
             // n = σ perp t.
             self.curve.running(i, perp(out) * -self.curve.sense, p, q, each);
@@ -363,7 +363,8 @@ impl ContactPath<'_> {
     pub fn middle(&self, [first, last]: [f64; 2]) -> f64 {
         let long = |a: f64, b: f64| self.curve.length(a, b, self.chain_range);
         let (mut low, mut high) = (first, last);
-        // Down to rounding; a point, which has no length, is halved by its turn.
+        // The bisection goes down to round-off; a point, which has no length, is halved by its
+        // turn.
         for _ in 0..64 {
             let p = 0.5 * (low + high);
             let [before, after] = [long(first, p), long(p, last)];
@@ -376,14 +377,14 @@ impl ContactPath<'_> {
     }
 
     /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to`
-    /// if none lies between.
+    /// if there is none between.
     pub fn next_border(&self, p: f64, to: f64) -> f64 {
         if self.cached_piece.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
             return to;
         }
         let mut i = self.curve.locate(p, self.chain_range);
         if to > p {
-            // A border reached by rounding lies behind.
+            // A border that was reached up to round-off counts as passed.
             while i < self.chain_range.last {
                 let border = self.curve.origin(i + 1);
                 if border >= to {

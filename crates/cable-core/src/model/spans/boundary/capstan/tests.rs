@@ -43,8 +43,8 @@ fn stepped(contact_path: &ContactPath<'_>, from: f64, to: f64, t: f64, m: f64) -
     (t, s)
 }
 
-/// Terms that the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the
-/// tension is corrected by it, the material is not: ε² T and c ψ ε T/EA.
+/// Terms that the closed form neglects, N and m. With δT of the order of ε = cb/EA times T, the
+/// tension is corrected for it, the material is not: ε² T and c ψ ε T/EA.
 fn left_out(contact_path: &ContactPath<'_>, radius: f64, turn: f64, t: f64) -> [f64; 2] {
     let stiffness = contact_path.law.stiffness;
     let part = 9.0 * radius / stiffness;
@@ -85,7 +85,7 @@ fn on_a_slope_theta_is_linear() {
 }
 
 proptest! {
-    /// The heavy capstan beside its differential equation, either way round.
+    /// Compares the heavy capstan with its differential equation, in both directions.
     #[test]
     fn a_heavy_capstan_follows_its_equation(
         radius in 0.01f64..2.0, m in -0.8f64..0.8, from in -3.0f64..3.0, turn in -5.0f64..5.0,
@@ -102,7 +102,8 @@ proptest! {
         prop_assert!((way.material - stepped_s).abs() <= 1e-9 * (1.0 + radius * turn.abs()) + left[1], "{} {stepped_s}", way.material);
     }
 
-    /// ∂T and ∂s by the tension at the start, and that two ways are one.
+    /// Compares ∂T and ∂s by the tension at the start with differences, and one path with two
+    /// successive parts of it.
     #[test]
     fn a_way_has_its_derivatives_and_may_be_taken_in_parts(
         radius in 0.0f64..1.0, m in -0.8f64..0.8, turn in 0.1f64..4.0, part in 0.1f64..0.9, log_ea in 4.0f64..8.0,

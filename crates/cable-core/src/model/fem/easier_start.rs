@@ -1,5 +1,6 @@
-//! The search for an equilibrium in contact starts from one that is found more easily: that of
-//! `spans`, of the cable without obstacles, of a coarser mesh, of a cable that stretches more.
+//! This module starts the search for an equilibrium in contact from one that is easier to find:
+//! that of `spans`, of the cable without obstacles, of a coarser mesh, or of a cable that stretches
+//! more.
 
 use std::sync::Arc;
 
@@ -14,20 +15,20 @@ use crate::solution::Warning;
 
 /// The outcome of starting from the solution of `spans`.
 pub(super) enum SpansStart {
-    /// The mesh rests in it, too; with the warnings about it.
+    /// The mesh is in equilibrium there, too; with the warnings about it.
     Accepted(Vec<Warning>),
-    /// The mesh does not rest in it and relaxes from its own first shape.
+    /// The mesh is not in equilibrium there and relaxes from its own first shape.
     Rejected,
-    /// `spans` has no solution, or was not asked.
+    /// `spans` has no solution, or was not used.
     Unknown,
-    /// The cable slides from its route: the error that says why.
+    /// The cable slides from its route; with the error that gives the reason.
     Slides(SolveError),
 }
 
 impl FemModel {
-    /// Starts from the equilibrium of `spans` with the least sliding, if it has one: a cable that
-    /// relaxes by itself comes to lie in folds, which friction then holds. Returns the outcome, and
-    /// the solution of `spans` where it is one of this cable.
+    /// Starts from the equilibrium of `spans` with the least slide, if it has one: a cable that
+    /// relaxes by itself forms folds, which friction then holds. Returns the outcome, and the
+    /// solution of `spans` if it belongs to this cable.
     pub(super) fn start_from_spans(&mut self) -> (SpansStart, Option<InitialEquilibrium>) {
         let first = match initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose) {
             Ok(Some(first)) => first,
@@ -54,13 +55,12 @@ impl FemModel {
         (outcome, is_flexible.then_some(first))
     }
 
-    /// Starts from the equilibrium of a cable whose equilibrium is found more easily: on a coarser
-    /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
-    /// relaxation as there are bars; and of less axial stiffness (continuation), as the search
-    /// among bars that hardly stretch is ill-conditioned, and where they rest is hardly another
-    /// place. That one may begin at one that is easier still. Of cables of less than `eased_loads`
-    /// axial stiffness, in whole loads, the search is not made easier so. All of them share the
-    /// `work`.
+    /// Starts from the equilibrium of an easier cable: on a coarser mesh (nested iteration),
+    /// because slack travels along the bars in waves and relaxation takes as many steps as there
+    /// are bars; and with less axial stiffness (continuation), because the search with nearly
+    /// inextensible bars is ill-conditioned although the equilibrium hardly differs. That search
+    /// may itself start from an easier one. Cables with an axial stiffness below `eased_loads`, in
+    /// whole loads, are not eased like this. All searches share the `work`.
     pub(super) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
@@ -100,8 +100,7 @@ impl FemModel {
         }
     }
 
-    /// Starts where the cable would rest among no obstacles, and then where one rests that is
-    /// solved more easily.
+    /// Starts from the equilibrium without obstacles, and then from that of an easier cable.
     pub(super) fn start_from_own_statics(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         if self.statics.settle(&self.dragged).is_ok() {
             self.stepper.start_from_shape(&self.statics.state(), &self.dragged);

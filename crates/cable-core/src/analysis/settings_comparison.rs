@@ -1,8 +1,8 @@
-//! Other settings answer a scene once more: other models, on coarser and finer meshes, each
-//! compared with the answer that was given.
+//! This analysis answers a scene with other models and meshes, and compares each answer with the
+//! given one.
 //!
-//! It shows what the next cheaper choice would have cost in error. This module has no clock: who
-//! asks takes the time of each call of [`answer_with`].
+//! It shows the error of the next cheaper choice. This module has no clock: the caller measures the
+//! time of each call of [`answer_with`].
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, Solution};
 
-/// Elements that a cable is divided into by models that have any.
+/// Numbers of elements of a cable, for models with a mesh.
 pub const COMPARED_ELEMENTS: [usize; 5] = [25, 50, 100, 200, 400];
 
 /// A model and its mesh.
@@ -21,12 +21,12 @@ pub const COMPARED_ELEMENTS: [usize; 5] = [25, 50, 100, 200, 400];
 pub struct Setting {
     /// The model.
     pub model: Model,
-    /// Elements of each cable; None of a model without.
+    /// Number of elements of each cable; None for a model without a mesh.
     pub elements: Option<usize>,
 }
 
 impl Setting {
-    /// All that are compared: every model, those with a mesh on five of them.
+    /// All settings that are compared: every model, those with a mesh on five meshes.
     pub fn all() -> impl Iterator<Item = Self> {
         Model::SOLVERS.into_iter().flat_map(|model| {
             let has_mesh = model.capabilities().mesh;
@@ -36,27 +36,27 @@ impl Setting {
     }
 }
 
-/// The answer of a setting beside the one that was given.
+/// The answer of a setting, compared with the given one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
     /// Greatest tension of all cables, N.
     pub greatest_tension_n: f64,
-    /// Greatest difference of a support's force and of a greatest tension, in parts of the greatest
+    /// Greatest difference of a support's force and of a greatest tension, relative to the greatest
     /// tension of that cable in the given answer.
     pub force_difference: f64,
-    /// Greatest distance of a point of a cable from where the given answer has it, m.
+    /// Greatest distance of a point of a cable from its position in the given answer, m.
     pub shape_difference_m: f64,
     /// Relative error of the greatest tension that the setting states; None where it states none.
     pub stated_error: Option<f64>,
 }
 
-/// The scene at rest with a setting, beside an answer of the same scene.
+/// Answers the scene at rest with a setting, and compares it with a given answer.
 ///
 /// # Errors
 /// The reason why the setting has no answer.
 pub fn answer_with(setting: Setting, scene: &Scene, given: &Solution, settings: Settings) -> Result<Compared, Error> {
     let settings = Settings { segments: setting.elements, histories: false, ..settings };
-    // A number of elements that the scene gives would stand for every setting.
+    // A number of elements in the scene would override that of the setting.
     let mut scene = scene.clone();
     scene.cables.iter_mut().for_each(|cable| cable.segments = None);
     let mut simulation = Simulation::with_settings(scene, setting.model, settings)?;

@@ -1,50 +1,51 @@
-//! The mass matrix of straight bars is of fourth order in the frequencies of free motion.
+//! This module makes the mass matrix of straight bars, which is of fourth order in the frequencies
+//! of free motion.
 //!
-//! A chain with the mass in its nodes has an action that differs from that of the cable in the
-//! order h². Put the true motion x(s, t) into both: the trapezoidal sums of motion and weight are
-//! off by h²/12 of what their slopes change along each bar, and the bar is shorter than its
-//! curve, |Δx|/h = |x'| + h² t·x‴/24. With the equation of motion F' = ρ (ẍ − g) and parts in s and
-//! t all that is left, whatever the tension and the law of the bar, is
+//! The action of a chain with its mass in the nodes differs from that of the cable in the order h².
+//! Insert the true motion x(s, t) into both: the trapezoidal sums of kinetic energy and weight are
+//! off by h²/12 times the change of their slopes along each bar, and the bar is shorter than its
+//! curve, |Δx|/h = |x'| + h² t·x‴/24. With the equation of motion F' = ρ (ẍ − g) and integration by
+//! parts in s and t the difference, for any tension and material law, becomes
 //! ```text
 //! h²/24 { ∫ ρ |ẋ'|² ds + [ρ (ẋ·ẋ' + g·x')] }
 //! ```
-//! with the bracket over each stretch of even bars: what hangs or is held at its ends may turn the
-//! cable there. The action is stationary at the motion, so that what is taken from it here is taken
-//! from frequencies and support forces:
+//! with the bracket taken over each stretch of even bars, because the cable may have an angle at
+//! its ends. The action is stationary at the motion, so correcting the action to this order
+//! corrects frequencies and support forces as well:
 //! - the integral by the mean of the lumped and the consistent mass of every bar (a string's [1 10
 //!   1]/12: G. L. Goudreau, R. L. Taylor, "Evaluation of numerical integration methods in
 //!   elastodynamics", Computer Methods in Applied Mechanics and Engineering 2, 1973);
 //! - the bracket by end weights, half of J. Gregory's for the trapezoidal rule: it is ½ d/ds of
-//!   ρ|ẋ|² + 2 ρ g·x, so that it takes mass as it takes weight. Gravity stays an acceleration, and
-//!   the whole mass stays what it is.
+//!   ρ|ẋ|² + 2 ρ g·x, so mass and weight are corrected alike. Gravity remains an acceleration, and
+//!   the total mass is unchanged.
 //!
-//! End weights pull at the last two bars with p₁ hρẍ and p₂ hρẍ, p₁ = (3 + 2α)/48, p₂ = (1 +
-//! 2α)/48. These give way by that times h/T and take ½ h³ (p₁² + p₂²) |ρẍ|²/T into the action, with
-//! ρẍ = T x″ at an end that is pulled ½ h³ (p₁² + p₂²) ρ ẍ·x″. The weights with α and a part −α/12
-//! more of the last bar's coupling are −α/24 h³ ρ ẍ·x″ beyond those of α = 0, and take it out again
-//! where −α = 12 (p₁² + p₂²), which is 8 α² + 208 α + 10 = 0.
+//! End weights load the last two bars with p₁ hρẍ and p₂ hρẍ, p₁ = (3 + 2α)/48, p₂ = (1 + 2α)/48.
+//! These bars yield by that force times h/T and add ½ h³ (p₁² + p₂²) |ρẍ|²/T to the action, which
+//! with ρẍ = T x″ at the end is ½ h³ (p₁² + p₂²) ρ ẍ·x″. The weights with α, and −α/12 more of the
+//! last bar's coupling, add −α/24 h³ ρ ẍ·x″ to those of α = 0. Both cancel if −α = 12 (p₁² + p₂²),
+//! that is 8 α² + 208 α + 10 = 0.
 //!
-//! All of it is positive definite, as rows keep more on the diagonal than beside it, and as narrow
-//! as the stiffness.
+//! The matrix is diagonally dominant, so it is positive definite, and its band is as narrow as that
+//! of the stiffness.
 
 /// α, −13 + √167.75.
 const END: f64 = -0.048_166_153_011_381_5;
 
-/// Part of a bar's mass that couples its nodes: 0 is lumped, 1/6 consistent.
+/// Fraction of a bar's mass that couples its nodes: 0 is lumped, 1/6 consistent.
 const MEAN: f64 = 1.0 / 12.0;
 
-/// Difference of the mass of a mesh from that lumped at its nodes; empty: none.
+/// Difference of the mass matrix of a mesh from the lumped one; empty if there is none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Mass of a node beyond half of the bars beside it, m of arc length.
+    /// Mass of a node beyond half of the bars beside it, as an arc length, m.
     pub more: Vec<f64>,
-    /// Length (m) whose mass m couples the nodes of each bar: it moves with −½ m |v₁ − v₂|² beside
-    /// the masses of the nodes.
+    /// Arc length (m) whose mass m couples the nodes of each bar: it adds −½ m |v₁ − v₂|² to the
+    /// kinetic energy of the nodes.
     pub coupling: Vec<f64>,
 }
 
 impl Spread {
-    /// Of stretches of `(bars, length of each)`, one after the other.
+    /// The difference for successive stretches of `(number of bars, length of each)`.
     #[must_use]
     pub fn of(stretches: &[(usize, f64)]) -> Self {
         let bars = stretches.iter().map(|s| s.0).sum::<usize>();
@@ -52,7 +53,7 @@ impl Spread {
         for &(count, bar) in stretches {
             let first = this.coupling.len();
             this.coupling.resize(first + count, MEAN * bar);
-            // A bar alone says nothing of how slopes change along it.
+            // A single bar does not show how slopes change along it.
             if count > 1 {
                 let last = first + count;
                 this.end([first, first + 1, first + 2], first, bar);
@@ -62,7 +63,7 @@ impl Spread {
         this
     }
 
-    /// The end of a stretch, its nodes from there on, and its last bar.
+    /// Adds the terms of an end of a stretch: its nodes from there on, and its last bar.
     fn end(&mut self, nodes: [usize; 3], last: usize, bar: f64) {
         let weights = [-(3.0 + 2.0 * END), 4.0 + 4.0 * END, -(1.0 + 2.0 * END)];
         for (node, weight) in nodes.into_iter().zip(weights) {
@@ -71,19 +72,19 @@ impl Spread {
         self.coupling[last] = MEAN * (1.0 - END) * bar;
     }
 
-    /// True if it does not differ.
+    /// True if the mass is lumped.
     #[must_use]
     pub fn is_lumped(&self) -> bool {
         self.coupling.is_empty()
     }
 
-    /// Lumped, as for a mesh whose nodes come and go.
+    /// Makes the mass lumped, as for a mesh whose nodes come and go.
     pub fn clear(&mut self) {
         self.more.clear();
         self.coupling.clear();
     }
 
-    /// Becomes a copy without new memory where there is room.
+    /// Becomes a copy of `other`, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
         self.more.clone_from(&other.more);
         self.coupling.clone_from(&other.coupling);
@@ -95,7 +96,7 @@ mod tests {
     use super::*;
     use nalgebra::{Cholesky, DMatrix, DVector};
 
-    /// Rows of the mass of stretches, per density: diagonal, and beside it.
+    /// Rows of the mass matrix of stretches, per density: diagonal and off-diagonal.
     fn rows(stretches: &[(usize, f64)]) -> (Vec<f64>, Vec<f64>) {
         let spread = Spread::of(stretches);
         let mut diagonal = spread.more.clone();
@@ -177,8 +178,8 @@ mod tests {
         squares.iter().map(|w| w.sqrt()).collect()
     }
 
-    /// Each of the `modes` (number and frequency) of a cable of length 1: the order from each mesh
-    /// to the next.
+    /// Checks the order of convergence, from each mesh to the next, of the `modes` (number and
+    /// frequency) of a cable of length 1.
     fn orders(name: &str, modes: &[(usize, f64)], bars: [usize; 4], found: impl Fn(usize) -> Vec<f64>) {
         let found = bars.map(found);
         for &(mode, exact) in modes {
@@ -198,7 +199,7 @@ mod tests {
         vec![(n, 1.0 / n as f64)]
     }
 
-    /// Two stretches, the bars of the second half as long again.
+    /// Two stretches; the bars of the second are half as long again as those of the first.
     fn uneven(n: usize) -> Vec<(usize, f64)> {
         let bar = 0.8 / n as f64;
         vec![(n / 2, bar), (n / 2, 1.5 * bar)]
@@ -219,7 +220,7 @@ mod tests {
         });
         orders("bar with a free end", &quarter, [10, 20, 40, 80], |n| frequencies(&even(n), Held::First, pulled));
         orders("hanging chain", &chain[..2], [10, 20, 40, 80], |n| frequencies(&even(n), Held::First, weight_below));
-        // Of 10 bars it has three to a half wave.
+        // With 10 bars there are three to a half wave.
         orders("hanging chain", &chain[2..], [20, 40, 80, 160], |n| frequencies(&even(n), Held::First, weight_below));
         orders("chain of two stretches", &chain[..2], [10, 20, 40, 80], |n| {
             frequencies(&uneven(n), Held::First, weight_below)
@@ -229,7 +230,7 @@ mod tests {
         });
     }
 
-    /// Why it is not the mean of lumped and consistent mass alone.
+    /// This is why the mean of lumped and consistent mass alone does not suffice.
     #[test]
     fn a_chain_of_50_bars_has_its_third_mode() {
         let off = frequencies(&even(50), Held::First, weight_below)[2] / (0.5 * ZEROS[2]) - 1.0;

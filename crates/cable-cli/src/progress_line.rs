@@ -1,20 +1,20 @@
-//! While an answer takes long, a line on the terminal says so.
+//! A line on the terminal tells that an answer takes long.
 
 use std::io::IsTerminal;
 use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
-/// Says on a terminal, every few seconds, that there is no answer yet.
+/// Prints on a terminal, every few seconds, that there is no answer yet.
 pub struct WaitingNotice {
-    /// Dropped at the end, which ends the thread that listens.
+    /// The sender is dropped at the end, which ends the thread that prints.
     _end: Option<Sender<()>>,
 }
 
 impl WaitingNotice {
-    /// Between two lines: shorter bothers, longer leaves a user alone.
+    /// Time between two lines. A shorter time disturbs, a longer one leaves a user without news.
     const NOTICE_INTERVAL: Duration = Duration::from_secs(3);
 
-    /// Begins to wait, until this is dropped.
+    /// Begins to print lines, until the value is dropped.
     pub fn begin() -> Self {
         if !std::io::stderr().is_terminal() {
             return Self { _end: None };

@@ -1,21 +1,23 @@
-//! A weightless cable has no shape of its own where it is slack: a hint of weight gives it that of
-//! a very light one.
+//! A slack weightless cable has no definite shape: an auxiliary weight gives it that of a very
+//! light cable.
 
 use crate::math::Vec2;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::stations::StationLayout;
 use crate::problem::Problem;
 
-/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that
-/// rounding hides.
+/// Auxiliary weight of a weightless cable without loads, as a fraction of EA: far below the strain
+/// of round-off.
 const UNLOADED_AUXILIARY_WEIGHT: f64 = 1e-18;
-/// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
-/// of its own, this gives it that of a very light one. Far below any tension asked for.
+/// Auxiliary weight of a weightless cable, as a fraction of its loads: far below any tension of
+/// interest.
 const AUXILIARY_WEIGHT: f64 = 1e-12;
-/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension
-/// falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
+/// Smoothing tension as a fraction of the load, see [`Material::smoothing`]. It has an effect only
+/// where the tension falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, because the force
+/// had too few digits.
 const SMOOTHING: f64 = 1e-7;
-/// Values that the elements share, and true if a weightless cable was given a hint of weight.
+/// The values that the elements share, and true if a weightless cable was given an auxiliary
+/// weight.
 pub(super) fn material_at(problem: &Problem, time: f64, layout: &StationLayout) -> (Material, bool) {
     let mut body = problem.body_force(time);
     let loads: f64 = layout.stations.iter().map(|s| s.load.norm()).sum();

@@ -1,9 +1,9 @@
-//! The report turns a solution into nodes, close enough for straight lines between them, and
+//! This module turns a solution into nodes, close enough for straight lines between them, and
 //! support reactions.
 
 use super::equilibrium::{Equilibrium, required_friction};
 use super::layout::AnchorLayout;
-use super::slide::SlidingProblem;
+use super::sliding_problem::SlidingProblem;
 use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
@@ -13,8 +13,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
 
-/// Between two nodes the cable leaves a straight line by no more than this part of its length.
-/// Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
+/// Greatest distance of the cable from the straight line between two nodes, as a fraction of its
+/// length. Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
 /// thousands of nodes.
 const FLATNESS: f64 = 1e-5;
 /// Between two nodes tension leaves a straight line by no more than this part of itself.
@@ -22,9 +22,9 @@ const TENSION_FLATNESS: f64 = 5e-5;
 /// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a
 /// point).
 const TENSION_FLOOR: f64 = 0.02;
-/// Tensions either side of a point that differ by no more than this part are one: ten times the
-/// balance accepted at a pulley. Smaller: two nodes where the balance was found badly. Larger: a
-/// light load on a taut cable shows no jump.
+/// Relative difference of the tensions on both sides of a point up to which they are equal: ten
+/// times the balance accepted at a pulley. Smaller: two nodes after an inaccurate balance. Larger:
+/// a light load on a taut cable shows no jump.
 const TENSION_JUMP_TOLERANCE: f64 = 1e-8;
 /// Nodes a catenary has at least: 2 to this power + 1.
 const LEAST_DEPTH: u32 = 2;
@@ -63,7 +63,8 @@ impl<'a> Nodes<'a> {
     pub fn push(&mut self, p: Point) {
         let tension = p.force.norm();
         let strain = tension / self.problem.axial_stiffness;
-        // Where a span meets a wheel each has its own rounding of the same point.
+        // At the point where a span meets a wheel, both have rounded the same arc length
+        // differently.
         let before = self.out.last().map_or(p.arc_length, |n| n.arc_length_m);
         let node = Node {
             arc_length_m: if p.arc_length < before { before } else { p.arc_length },
@@ -193,7 +194,7 @@ fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[
         .map(|(k, s)| {
             let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
             let Some(i) = slide.layout.anchors.iter().position(|a| a.support == k) else {
-                // A dead load or nothing: the cable pulls back with what pulls it.
+                // A dead load or a free end: the reaction is minus the load.
                 let arc_length = s.arc_length.unwrap_or(0.0);
                 let at = at_node(arc_length);
                 let load = if matches!(s.kind, SupportKind::Load | SupportKind::Free) {

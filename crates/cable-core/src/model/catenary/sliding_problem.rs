@@ -1,4 +1,4 @@
-//! The material slides between catenaries that are joined by the material point σ at each pulley.
+//! This module solves the catenaries between pulleys for given material points σ at the pulleys.
 //!
 //! With the σ given every stretch is one convex problem (see [`Chain`]), so σ are the only
 //! unknowns. The energy of the whole has the gradient (ψ = T + T²/2EA, a after the pulley, b
@@ -9,10 +9,10 @@
 //! ```
 //!
 //! and each end force changes with σ through the chain's compliance K, λ = (1 + αΔT)(1 + T/EA):
-//! dF_a = K⁻¹(λ_a t_a dσ_a − λ_b t_b dσ_b) − b dσ_a, dF_b the same with − b dσ_b. Smooth pulleys
-//! are found by going down in E (a resting place, not merely a balance); pulleys that rub add
-//! ln(T_a/T_b) = m·turn, solved by Newton. Material passing through a fixed point in space: after
-//! S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
+//! dF_a = K⁻¹(λ_a t_a dσ_a − λ_b t_b dσ_b) − b dσ_a, dF_b the same with − b dσ_b. For frictionless
+//! pulleys E is minimised, so the equilibrium is stable; pulleys with friction add ln(T_a/T_b) =
+//! m·turn, solved by Newton's method. Material passes through points fixed in space, after S.
+//! Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
 use super::layout::{Anchor, AnchorLayout, angle_of};
@@ -38,8 +38,8 @@ pub(super) struct WheelArc {
     pub arrive: f64,
     /// Turn of the cable on it, rad, ≥ 0.
     pub turn: f64,
-    /// Angle of the cable at the point of the wheel where σ is read, rad: fixed to the wheel, so
-    /// that a touch point that wanders does not move material.
+    /// Angle (rad) of the cable at the mark, the point of the wheel where σ is counted: it is fixed
+    /// to the wheel, so a moving tangent point does not move material.
     pub mark: f64,
     /// Unstretched material on the arc, m.
     pub material: f64,
@@ -203,7 +203,7 @@ impl SlidingProblem<'_> {
         (side(k).map(|s| s.end), side(k + 1).map(|s| s.start))
     }
 
-    /// Returns how far the cable turns at a pulley, rad.
+    /// Returns the turn of the cable at a pulley, rad.
     pub fn turn(&self, k: usize, before: Vec2, after: Vec2) -> f64 {
         if self.layout.anchors[k].radius > 0.0 {
             self.arcs[k].turn
@@ -212,8 +212,8 @@ impl SlidingProblem<'_> {
         }
     }
 
-    /// ln of the tension after the pulley over what the wheel makes of the tension before it with
-    /// friction m, and its slopes by ln T_b and by ln T_a.
+    /// ln of the ratio of the tension after the pulley to the tension that the wheel gives from the
+    /// tension before it with friction m, and its derivatives by ln T_b and by ln T_a.
     pub fn excess(&self, k: usize, before: Vec2, after: Vec2, m: f64) -> (f64, f64) {
         let a = &self.layout.anchors[k];
         let (tb, ta) = (before.norm(), after.norm());
@@ -255,8 +255,8 @@ impl SlidingProblem<'_> {
         Some((r, [-db(b.d_end[0]), da(a.d_start[0]) - db(b.d_end[1]), da(a.d_start[1])]))
     }
 
-    /// Turns each wheel's arc to the cable's directions: the new arcs, the largest angle still off,
-    /// rad, and a wheel the cable would leave.
+    /// Turns each wheel's arc to the cable's directions; returns the new arcs, the largest
+    /// remaining angle error (rad), and a wheel that the cable would leave.
     pub fn turned(&self, s: &SpanSolutions, m: impl Fn(usize) -> f64) -> (Vec<WheelArc>, f64, Option<usize>) {
         let (mut worst, mut lifted) = (0.0f64, None);
         let least = self.layout.settings.least_touch_gain;

@@ -1,4 +1,4 @@
-//! A cable can be solved from its other end.
+//! This module reverses a cable, so that it can be solved from its other end.
 //!
 //! With friction several equilibria are possible, and the one that is found must not depend on the
 //! end from which a scene counts its cable. The cable is therefore solved and followed from its
@@ -11,13 +11,13 @@ use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SharedNodes, SupportReaction};
 
-/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is
-/// another one in a scene that is moved or mirrored, says from where it is counted. Larger: a cable
-/// whose ends differ by so little is counted from either.
+/// Difference of heights below which they are equal, as a fraction of the cable. Smaller:
+/// round-off, which differs in a moved or mirrored scene, decides from which end it is counted.
+/// Larger: a cable whose ends differ by so little is counted from either.
 const HEIGHT_TOLERANCE: f64 = 1e-9;
 
-/// True if the rest of a cable is searched from its end, because that is the upper one; of two that
-/// are level the one beside which the cable is led higher.
+/// True if a cable is solved from its end because that is the upper one; of two level ends the one
+/// beside which the route is higher.
 pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let places: Vec<Vec2> = if p.route.len() > 1 {
         p.route.clone()
@@ -49,7 +49,7 @@ pub(in crate::model::spans) fn problem(p: &Problem) -> Problem {
     out
 }
 
-/// Friction against a cable drawn the other way.
+/// The friction of a cable drawn in the opposite direction.
 pub(in crate::model::spans) fn mobilised(m: FrictionMobilised) -> FrictionMobilised {
     match m {
         FrictionMobilised::TowardsStart => FrictionMobilised::TowardsEnd,
@@ -60,20 +60,20 @@ pub(in crate::model::spans) fn mobilised(m: FrictionMobilised) -> FrictionMobili
 
 /// Arc lengths of a cable counted from the other end.
 pub(in crate::model::spans) struct Reversal<'a> {
-    /// The cable as the scene counts it.
+    /// The cable as it is counted in the scene.
     pub problem: &'a Problem,
 }
 
 impl Reversal<'_> {
-    /// An arc length counted from the other end, m: those of supports and loads come out as they
-    /// were given.
+    /// An arc length counted from the other end, m; those of supports and loads are exactly as
+    /// given.
     pub fn s(&self, s: f64) -> f64 {
         let p = self.problem;
         let marks = p.supports.iter().filter_map(|s| s.arc_length).chain(p.loads.iter().map(|l| l.arc_length));
         marks.into_iter().find(|mark| p.length - mark == s).unwrap_or(p.length - s)
     }
 
-    /// Nodes: what the cable beyond one does to it is now what the cable before does.
+    /// Reverses nodes: the force of the cable after a node becomes that of the cable before it.
     pub fn nodes(&self, nodes: &[Node]) -> SharedNodes {
         let turned = |n: &Node| Node {
             arc_length_m: self.s(n.arc_length_m),
@@ -84,7 +84,7 @@ impl Reversal<'_> {
         nodes.iter().rev().map(turned).collect()
     }
 
-    /// An answer.
+    /// Reverses a report.
     pub fn report(&self, report: &Report) -> Report {
         let support = |r: &SupportReaction| SupportReaction {
             arc_length_m: self.s(r.arc_length_m),
@@ -117,7 +117,7 @@ impl Reversal<'_> {
         }
     }
 
-    /// A failure.
+    /// Reverses a failure.
     pub fn failure(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Stalled { iterations, residual, s } => Failure::Stalled { iterations, residual, s: self.s(s) },

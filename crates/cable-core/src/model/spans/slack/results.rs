@@ -2,16 +2,16 @@
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, Point};
 use crate::model::spans::boundary::{Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
-/// Nodes of a plumb line and of a straight stretch.
+/// Number of nodes of a plumb leg and of a straight stretch.
 const NODES: usize = 8;
 
-/// Forces of one obstacle on what lies on it without a break.
+/// Forces of one obstacle on a continuous run of lying cable.
 #[derive(Default)]
 struct Run {
     /// Index of the boundary.
@@ -27,7 +27,7 @@ struct Run {
 }
 
 impl LooseSection {
-    /// Adds its nodes; what it lies on, by the index of the obstacle.
+    /// Adds its nodes and returns its contact reports, each with the index of the obstacle.
     pub fn report(
         &self,
         context: &SolveContext,
@@ -68,7 +68,7 @@ fn hang(context: &SolveContext, part: &SlackPart, [from, to]: [Vec2; 2], nodes: 
     let (law, whole) = (&context.law, part.arc_lengths[1] - part.arc_lengths[0]);
     let weight = law.load.norm();
     let along = (to - from).normalize();
-    // u counts from the foot up: h = λ (s + b s²/2EA).
+    // Material u is counted from the foot up: h = λ (s + b s²/2EA).
     let falls = part.tension[0] > 0.0;
     for k in 0..=NODES {
         let s = whole * k as f64 / NODES as f64;
@@ -92,7 +92,7 @@ impl SlackPart {
         }
     }
 
-    /// The force of what carries it, N.
+    /// The force of the obstacles that carry it, N.
     pub(super) fn held(&self, context: &SolveContext) -> Vec2 {
         match &self.form {
             SlackForm::Hangs(_) | SlackForm::Spans { .. } => Vec2::zeros(),
@@ -157,7 +157,7 @@ impl Run {
         };
         (self.ends[1], self.tension[1]) = (part.arc_lengths[1], part.tension[1]);
         self.turned += start.turn * (p1 - p0);
-        // With more material than its way it is in folds, evenly.
+        // If there is more material than length, it is folded evenly.
         let material = part.arc_lengths[1] - part.arc_lengths[0];
         let at = |k: usize| {
             let f = k as f64 / count as f64;

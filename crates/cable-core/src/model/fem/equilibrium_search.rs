@@ -1,13 +1,13 @@
-//! The search for an equilibrium: which solver is asked, from which start, and which check its
-//! answer has to pass.
+//! This module controls the search for an equilibrium: it chooses the solver and the start, and
+//! checks the answer.
 
 use crate::error::SolveError;
 use crate::model::StepReport;
 use crate::model::fem::contact_free::touches_nothing;
+use crate::model::fem::easier_start::SpansStart;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::mesh_error::Refinement;
 use crate::model::fem::system::WorkBudget;
-use crate::model::fem::warm_start::SpansStart;
 use crate::model::fem::{FemModel, Part};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
 use crate::solution::{Cost, Warning, WarningCause};
@@ -30,9 +30,9 @@ impl FemModel {
         found
     }
 
-    /// Finds the equilibrium of a cable that can touch nothing. The continuation of a stiff cable
-    /// up in EI ends where its shape snaps over, as clamps against which it sags turn it upwards: a
-    /// chain of bars that is let go follows it there, as it does in contact.
+    /// Finds the equilibrium of a cable that can touch nothing. The continuation in EI of a stiff
+    /// cable ends where its shape snaps over, as when clamps turn upwards a cable that sags against
+    /// them: a relaxed chain of bars follows the snap, as in contact.
     pub(super) fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
         self.make_present(Part::Statics)?;
         self.elastica_answer = None;
@@ -56,7 +56,8 @@ impl FemModel {
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
-            // Easier cables are to save work: together they may do as much as the search itself.
+            // Easier cables are meant to save work, so together they may do as much as the search
+            // itself.
             let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
             self.start_from_own_statics(self.tuning().start.eased_loads, &mut work);
         }
@@ -86,8 +87,8 @@ impl FemModel {
         Ok(report)
     }
 
-    /// Settles the mesh. If no other model `has_equilibrium` for the cable, what its nodes leave
-    /// unbalanced must not add up to a force that moves it.
+    /// Settles the mesh. If no other model `has_equilibrium` for the cable, the unbalanced forces
+    /// of its nodes must not add up to a force that moves it.
     pub(super) fn settle_mesh(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
         let report = self.stepper.settle(&self.dragged)?;
         match if has_equilibrium { None } else { slides_as_a_whole(&self.stepper.cable) } {
@@ -96,8 +97,8 @@ impl FemModel {
         }
     }
 
-    /// The rest of a cable that slides from its `first` place: it may rest elsewhere, if it came
-    /// down to there and does not slide on.
+    /// The equilibrium of a cable that slides from its `first` place: it may rest elsewhere, if it
+    /// came down to there and does not slide on.
     pub(super) fn rest_after_slide(
         &self,
         found: Result<StepReport, SolveError>,
@@ -114,8 +115,8 @@ impl FemModel {
         Ok(report)
     }
 
-    /// Estimates the errors of the mesh beside the solution of `spans` or another mesh, and refines
-    /// it where the scene leaves its number of bars open.
+    /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
+    /// refines it if the scene leaves its number of bars open.
     pub(super) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
@@ -123,7 +124,7 @@ impl FemModel {
         meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
     }
 
-    /// A warning of a mesh that is coarser than the tolerance asks for.
+    /// A warning of a mesh that is too coarse for the tolerance.
     pub(super) fn coarse_mesh_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.meshes.errors.relative(&self.stepper.solution())?, self.settings.tolerance);
         let cause = WarningCause::CoarseForces { elements: self.stepper.cable.meshing.even_bars };
