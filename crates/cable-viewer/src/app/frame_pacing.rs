@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Time from the end of one frame of a running simulation that is drawn without a GPU to the next,
 /// s: with the frame itself, 25 frames a second. Shorter: drawing takes more of a core than the
 /// simulation; longer: motion is seen to jerk.
-pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(38);
+pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 
 /// The time before which no frame is drawn for the sake of a step, shared with the solver thread.
 #[derive(Clone, Debug, Default)]
@@ -48,7 +48,7 @@ mod tests {
         pacing.every(SOFTWARE_FRAME_INTERVAL);
         pacing.drawn(now, true);
         let later = now + Duration::from_millis(13);
-        assert_eq!(solver.wait(later), Duration::from_millis(25));
+        assert_eq!(solver.wait(later), Duration::from_millis(27));
         assert_eq!(solver.wait(now + Duration::from_secs(1)), Duration::ZERO);
         pacing.drawn(later, false);
         assert_eq!(solver.wait(later), Duration::ZERO);

@@ -71,7 +71,7 @@ pub fn offer(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>)
         (None, Some(leader)) if lost(&leader) => leader.name,
         _ => return,
     };
-    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0 - hints_height(state));
+    let foot = egui::pos2(rect.center().x, rect.max.y - 46.0 - hints_height(state));
     let area = egui::Area::new(egui::Id::unique("out of view")).fixed_pos(foot).pivot(egui::Align2::CENTER_BOTTOM);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {

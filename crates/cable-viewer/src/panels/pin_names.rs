@@ -45,7 +45,9 @@ fn name(pin: &Reference, pins: &[Reference]) -> PinName {
     if pins.iter().any(|p| p.solution.model != pin.solution.model) {
         parts.push(format!("{} model", labels::model(pin.solution.model)));
     }
-    if pins.iter().any(|p| p.solution.time_s != pin.solution.time_s) {
+    // Of another input, the time says nothing more.
+    let mut alike = pins.iter().filter(|p| p.changes == pin.changes);
+    if alike.any(|p| p.solution.time_s != pin.solution.time_s) {
         parts.push(format!("at {:.2}\u{a0}s", pin.solution.time_s));
     }
     if let Some(folder) = &pin.folder {

@@ -92,8 +92,8 @@ fn s12_graphs_are_read_and_zoomed_by_keys() {
     assert!(state(&harness).live.recording.shown_s.is_some());
 }
 
-/// Issue 20: with Tab alone the focus went where it could not be seen: below the edge of a panel that
-/// scrolls, and on menus, headings and graphs nothing showed it.
+/// Issue 20: with Tab alone the focus went where it could not be seen: below the edge of a panel
+/// that scrolls, and on menus, headings and graphs nothing showed it.
 #[test]
 fn issue_020_tab_leads_to_every_control_and_the_focus_is_seen() {
     for size in [Vec2::new(1280.0, 800.0), Vec2::new(1024.0, 640.0)] {
