@@ -520,3 +520,30 @@ fn pipeline(
         cache: None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use egui::{Color32, pos2};
+
+    use super::*;
+
+    #[test]
+    fn upright_and_level_lines_of_whole_pixels_are_two_triangles_on_these_pixels() {
+        let line = |a, b, width| Shape::line_segment([a, b], Stroke::new(width, Color32::RED));
+        let drawn = |shape, scale| match with_lines_as_rectangles(shape, scale) {
+            Shape::Mesh(mesh) => Some((mesh.indices.len() / 3, mesh.calc_bounds())),
+            _ => None,
+        };
+        let rect = |x0, y0, x1, y1| Rect::from_min_max(pos2(x0, y0), pos2(x1, y1));
+        let level = line(pos2(2.0, 5.3), pos2(9.0, 5.3), 1.0);
+        assert_eq!(drawn(level.clone(), 1.0), Some((2, rect(2.0, 5.0, 9.0, 6.0))));
+        let upright = line(pos2(5.0, 9.0), pos2(5.0, 2.0), 2.0);
+        assert_eq!(drawn(upright, 1.0), Some((2, rect(4.0, 2.0, 6.0, 9.0))));
+        // A pixel and a half, and a slope, have borders that fade.
+        assert_eq!(drawn(level.clone(), 1.5), None);
+        assert_eq!(drawn(line(pos2(0.0, 0.0), pos2(9.0, 1.0), 1.0), 1.0), None);
+        assert!(
+            matches!(with_lines_as_rectangles(Shape::Vec(vec![level]), 1.0), Shape::Vec(v) if matches!(v[0], Shape::Mesh(_)))
+        );
+    }
+}
