@@ -200,6 +200,7 @@ fn riser([top, end, along]: [f64; 3], length: f64, friction: f64) -> Scene {
 
 /// Lets the end b of a cable go to the right without inertia, so far (m) at a mean speed (m/s), and
 /// shows each answer with how far it has come (m).
+#[allow(clippy::unwrap_used)] // a failing test is meant to panic
 fn draw(mut s: Scene, [far, speed]: [f64; 2], mut see: impl FnMut(f64, &cable_core::Solution)) {
     let to = &mut s.cables[0].supports[1];
     let at = to.at_m.unwrap();

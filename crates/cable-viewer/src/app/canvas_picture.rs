@@ -6,7 +6,7 @@ use std::path::Path;
 use cable_core::files;
 use egui::{CentralPanel, Frame, Label, Margin, Panel, RichText, Theme, Ui, UiBuilder};
 
-use crate::app::menu;
+use crate::app::headline;
 use crate::canvas;
 use crate::canvas::layers::{legend, safe_reach};
 use crate::io::picture_file;
@@ -107,7 +107,7 @@ fn summary(state: &AppState) -> Vec<String> {
         Freshness::Current => {}
     }
     let (model, time) = (labels::model(answer.model), format::duration(answer.time_s));
-    let verdict = answer.verification.as_ref().map_or_else(String::new, |v| format!(" · {}", menu::verdict(v)));
+    let verdict = answer.verification.as_ref().map_or_else(String::new, |v| format!(" · {}", headline::verdict(v)));
     let most = answer.max_tension();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let share = scene.cables.get(most.cable).map_or_else(String::new, |c| {

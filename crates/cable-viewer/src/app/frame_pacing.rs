@@ -4,9 +4,10 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two frames of a running simulation that is drawn without a GPU, s. Shorter: drawing
-/// takes more of a core than the simulation; longer: motion is seen to jerk.
-pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(33);
+/// Time from the end of one frame of a running simulation that is drawn without a GPU to the next,
+/// s: with the frame itself, 25 frames a second. Shorter: drawing takes more of a core than the
+/// simulation; longer: motion is seen to jerk.
+pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
 
 /// The time before which no frame is drawn for the sake of a step, shared with the solver thread.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +48,7 @@ mod tests {
         pacing.every(SOFTWARE_FRAME_INTERVAL);
         pacing.drawn(now, true);
         let later = now + Duration::from_millis(13);
-        assert_eq!(solver.wait(later), Duration::from_millis(20));
+        assert_eq!(solver.wait(later), Duration::from_millis(27));
         assert_eq!(solver.wait(now + Duration::from_secs(1)), Duration::ZERO);
         pacing.drawn(later, false);
         assert_eq!(solver.wait(later), Duration::ZERO);

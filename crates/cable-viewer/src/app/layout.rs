@@ -7,7 +7,7 @@ use crate::app::{first_steps, menu, tutorial_bar};
 use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
 use crate::state::{AppState, ToolSection};
-use crate::widgets::highlight;
+use crate::widgets::{focus, highlight};
 use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
@@ -196,9 +196,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         strip_above(ui, state, commands);
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
-    canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
+    canvas::follow::offer(ui, canvas.response.rect, state, commands);
     first_steps::ui(ui, canvas.response.rect, state, commands);
     highlight::frame(ui.ctx());
+    focus::frame(ui.ctx());
 }
 
 /// The meaning of the colours and the worst warning, in a strip above the canvas: on it they would
@@ -380,6 +381,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
             }
             highlight::register(&header, &format!("{title} section"));
         }
+        focus::scroll_to_focused(ui, ui.min_rect());
     });
 }
 

@@ -1,18 +1,13 @@
-//! The menu bar offers the commands, and the status line says how the solver is doing.
+//! The menu bar offers the commands; the headline stands in what it leaves of its row.
 
-use cable_core::answer_verifier::Verification;
 use cable_core::scene::catalog;
-use egui::{Align, Button, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
+use egui::{Button, KeyboardShortcut, MenuBar, Ui};
 
-use crate::app::keys;
+use crate::app::{headline, keys};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::panels::readouts::DIMMED;
 use crate::render::colour::{CableQuantity, ColourMap};
-use crate::render::theme;
 use crate::state::dialog::Dialog;
-use crate::state::{AppState, Freshness, WorkerStatus};
-use crate::units::format;
-use crate::units::sentence::sentence;
+use crate::state::{AppState, WorkerStatus};
 use crate::units::system::System;
 use crate::widgets::checkbox_and_radio::{checkbox, radio_value};
 use crate::widgets::highlight;
@@ -37,12 +32,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             dialogs(ui, commands);
         }
         ui.separator();
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            results(ui, state, commands);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(Label::new(RichText::new(title(state)).strong()).truncate());
-            });
-        });
+        headline::ui(ui, state, commands);
     });
 }
 
@@ -60,62 +50,10 @@ fn dialogs(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
-/// Draws the figures that an engineer looks at first, always in sight: the greatest tension, how
-/// much of the service tension that is, and whether the answer was checked. From right to left.
-fn results(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
-    let current = state.is_current();
-    if !current {
-        let said = match state.freshness() {
-            Freshness::Outdated => "not this scene",
-            _ => "solving…",
-        };
-        ui.colored_label(ui.visuals().warn_fg_color, said)
-            .on_hover_text("The figure beside is not of the scene as it is");
-    }
-    let most = answer.max_tension();
-    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    if let Some(verification) = answer.verification.as_ref().filter(|_| current) {
-        verdict_light(ui, verification);
-        ui.separator();
-    }
-    if let Some(cable) = scene.cables.get(most.cable).filter(|_| current) {
-        let share = most.tension_n / cable.service_tension_n;
-        let colour = if most.tension_n > cable.breaking_tension_n {
-            ui.visuals().error_fg_color
-        } else if share > 1.0 {
-            ui.visuals().warn_fg_color
-        } else {
-            ui.visuals().text_color()
-        };
-        let help = format!("Service tension {}", format::force(cable.service_tension_n));
-        ui.colored_label(colour, format!("{} of service", format::percent(share))).on_hover_text(help);
-    }
-    let text = RichText::new(format!("Max {}", format::force(most.tension_n))).size(14.0);
-    let text = if current { text.strong() } else { text.color(ui.visuals().text_color().gamma_multiply(DIMMED)) };
-    let figure = ui.add(Button::new(text).frame(false));
-    if figure.on_hover_text("Greatest tension of all cables; click to see where").clicked() {
-        let at = answer.cables.get(most.cable).and_then(|c| {
-            let k = c.nodes.partition_point(|n| n.arc_length_m < most.arc_length_m);
-            c.nodes.get(k).or(c.nodes.last())
-        });
-        commands.extend(at.map(|n| Command::View(ViewCommand::ZoomOn([n.x_m, n.y_m]))));
-    }
-}
-
 /// Asks what the user thinks.
 pub fn feedback() -> FileCommand {
     let (answers, path) = (crate::io::feedback::Answers::default(), "feedback.csv".to_owned());
     FileCommand::SetDialog(Some(Dialog::Feedback { answers, path }))
-}
-
-/// The scene's name, and whether it is saved.
-pub fn title(state: &AppState) -> String {
-    let name = if state.document.scene.name.is_empty() { "Untitled scene" } else { &state.document.scene.name };
-    let mark = if state.document.unsaved() { " (not saved)" } else { "" };
-    let file = state.document.path.as_deref().and_then(|p| p.file_name());
-    let file = file.map_or_else(String::new, |f| format!(" – {}", f.to_string_lossy()));
-    format!("{name}{mark}{file}")
 }
 
 fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
@@ -336,34 +274,4 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
             commands.push(Command::File(FileCommand::OpenCatalogue(id.to_owned())));
         }
     }
-}
-
-/// Returns the outcome of a verification in a word or two.
-pub fn verdict(verification: &Verification) -> &'static str {
-    match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => "verified",
-        (true, false) => "partly verified",
-        (false, _) => "VERIFICATION FAILED",
-    }
-}
-
-/// Diameter of the light that shows the verdict, points.
-const LIGHT_SIZE: f32 = 9.0;
-/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
-/// that gave it.
-fn verdict_light(ui: &mut Ui, verification: &Verification) {
-    let visuals = ui.visuals();
-    let text = verdict(verification);
-    let (lamp, colour) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (theme::palette(visuals).sound, visuals.text_color()),
-        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color()),
-        (false, _) => (visuals.error_fg_color, visuals.error_fg_color),
-    };
-    let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
-    let help = format!("{}. Checked: {}", sentence(verification), laws.join(", "));
-    // The font has no signs for this: the light is painted, and the words say the same without its
-    // colour.
-    let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
-    ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
-    ui.colored_label(colour, text).on_hover_text(help);
 }

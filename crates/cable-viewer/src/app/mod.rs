@@ -5,6 +5,7 @@
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `welcome_dialog`: the hints of the first minute, and what to begin with
 //! - `frame_pacing`: fewer frames where there is no GPU
+//! - `headline`: the scene's name and the figures that always stand at the top
 //! - `held_clicks`: clicks that come before the first frame, or are over within one
 //! - `analysis_tools`: what is asked beside the answer, as verbs
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
@@ -18,6 +19,7 @@ pub mod documentation_pictures;
 mod feedback_form;
 mod first_steps;
 mod frame_pacing;
+mod headline;
 mod held_clicks;
 mod keys;
 mod layout;
@@ -190,6 +192,7 @@ impl ViewerApp {
         for command in commands {
             command::apply(&mut self.state, command, &mut effects);
         }
+        command::scene::resume_after_drag(&mut self.state, &mut effects);
         self.perform_effects(ctx, effects);
     }
 
@@ -269,7 +272,7 @@ impl ViewerApp {
         if let Some(job) = &self.model_comparison_job {
             self.state.analysis.models = job.progress();
             if let model_comparison::Progress::Done(found) = self.state.analysis.models.clone() {
-                hold(&mut self.state.analysis.references, &found);
+                hold(&mut self.state.analysis, &found, &self.state.document.saved);
             }
             if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
                 self.model_comparison_job = None;
@@ -396,7 +399,7 @@ impl ViewerApp {
         {
             first_steps_file::remember(&mark);
         }
-        let title = format!("{} – Cable simulator", menu::title(&self.state));
+        let title = format!("{} – Cable simulator", headline::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
             self.title = title;

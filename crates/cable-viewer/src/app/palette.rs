@@ -9,6 +9,7 @@ use crate::app::palette_entries;
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
+use crate::panels::timeline::restart_button;
 use crate::plot::{along_cable, over_time};
 use crate::render::colour::{CableQuantity, ColourScale};
 use crate::state::dialog::Dialog;
@@ -103,7 +104,8 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
-        ("Undo restart", Command::Playback(PlaybackCommand::UndoRestart)),
+        (restart_button(state), Command::Playback(PlaybackCommand::UndoRestart)),
+        ("Follow the cable", Command::View(ViewCommand::Follow)),
         ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
         ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
         ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),

@@ -10,6 +10,7 @@ use crate::geometry::handles;
 use crate::geometry::supports::support_position;
 use crate::panels::analysis::tension_budget;
 use crate::panels::cable::property::PROPERTIES;
+use crate::panels::pin_names::pin_names;
 use crate::panels::readouts::{extremes, take_likely_bending};
 use crate::panels::scene::{map, robot as robot_form};
 use crate::panels::{robot, warnings};
@@ -148,10 +149,8 @@ fn analyses(state: &AppState) -> Vec<Entry> {
     all.extend(
         most.map(|marker| view("At the largest: break the tension down", ViewCommand::SetTensionMarker(Some(marker)))),
     );
-    let pins = state.analysis.references.iter().enumerate();
-    all.extend(
-        pins.map(|(k, pin)| view(format!("Unpin {}: {}", k + 1, pin.name), ViewCommand::RemoveReferences(Some(k)))),
-    );
+    let pins = pin_names(state).into_iter().enumerate();
+    all.extend(pins.map(|(k, name)| view(format!("Unpin {}", name.full), ViewCommand::RemoveReferences(Some(k)))));
     all
 }
 

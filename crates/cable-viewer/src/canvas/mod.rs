@@ -2,15 +2,16 @@
 //!
 //! - `layers`: what is drawn, a file a layer
 //! - `canvas_view`: from metres to the painter
+//! - `follow`: a view that goes with what leaves it
 //! - `pointer`: clicks, drags and the wheel as commands
 //! - `accessibility`: the same picture for screen readers
 
 mod accessibility;
 mod canvas_view;
+pub mod follow;
 pub mod layers;
 mod pointer;
 
-use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::canvas_view::{CanvasView, hints_height};
@@ -18,8 +19,8 @@ use crate::canvas::layers::{
     annotations, breaks, cable, compare_overlay, contact, forces, grid, no_answer, obstacles, robot, robot_path,
     safe_reach, supports, tension_marker,
 };
-use crate::command::{Command, PlaybackCommand, ViewCommand};
-use crate::geometry::{bounds, torn_cable};
+use crate::command::{Command, PlaybackCommand};
+use crate::geometry::bounds;
 use crate::render::theme;
 use crate::state::AppState;
 use crate::state::camera::BORDER;
@@ -41,16 +42,14 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
     let mut border = BORDER;
     border[3] += hints_height(state);
-    let torn = torn_cable::torn(state);
-    follow(state, rect, border, torn);
+    follow::ui(state, rect, border);
     if (state.view.camera.fit_wanted || (resized && !state.view.camera.follows)) && answered {
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
         // Where its cable lies is not known yet: it is fitted once more with it.
         state.view.camera.fit_wanted = !state.is_answered();
     }
-    let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
-    state.view.visible_m = [low, high];
+    state.view.visible_m = state.view.camera.visible_m(rect);
     pointer::read(ui, &response, state, commands);
     accessibility::ui(ui, rect, state);
     let mut view = CanvasView {
@@ -63,50 +62,6 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     };
     draw(&mut view, state);
     badge(ui, rect, state, commands);
-}
-
-/// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
-/// scene once the cable is whole again.
-fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::TornCable>) {
-    // An item that the pointer holds would move with the view.
-    if state.selection.grab.is_some() {
-        return;
-    }
-    let camera = &mut state.view.camera;
-    match torn {
-        Some(torn) if camera.follows || (camera.fitted_to.is_some() && !camera.fit_wanted && torn.falls) => {
-            camera.follows |= camera.keep_in_view(rect, torn.piece, border);
-        }
-        None if camera.follows => (camera.follows, camera.fit_wanted) = (false, true),
-        _ => {}
-    }
-}
-
-/// Returns whether a rectangle (m) is completely outside the canvas.
-fn is_out_of_view(state: &AppState, [low, high]: [Point; 2]) -> bool {
-    let [left, right] = state.view.visible_m;
-    (0..2).any(|k| high[k] < left[k] || low[k] > right[k])
-}
-
-/// A way to a torn cable that has left the picture, where the user moved the view: it is not moved
-/// unasked.
-pub fn offer_to_follow(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
-    if !torn_cable::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
-        return;
-    }
-    let foot = egui::pos2(rect.center().x, rect.max.y - 40.0 - hints_height(state));
-    let area = egui::Area::new(egui::Id::unique("out of view")).fixed_pos(foot).pivot(egui::Align2::CENTER_BOTTOM);
-    area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
-        egui::Frame::popup(ui.style()).show(ui, |ui| {
-            ui.horizontal(|ui| {
-                ui.label("The torn cable has left the picture");
-                let help = "The view goes with it until you move the view (F shows the whole scene, C the cable)";
-                if ui.button("Follow the cable").on_hover_text(help).clicked() {
-                    commands.push(Command::View(ViewCommand::Follow));
-                }
-            });
-        });
-    });
 }
 
 /// Time (s) after which a solve is said on the canvas, and after which it can be cancelled.

@@ -49,6 +49,7 @@ pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
 fn submit(state: &mut AppState, start: EditStart, effects: &mut Effects) {
     // An edit is of the present.
     state.live.show_time(None);
+    state.live.stopped_by_drag = None;
     let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);
     let edit = Edit { scene, model, settings, start };
     effects.request.merge(Request {

@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use cable_core::Scene;
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::record::{NodeChoice, RunRequest, RunStop};
 use cable_core::scene::catalog;
-use cable_core::{Model, Scene};
 
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::import;
@@ -22,7 +22,6 @@ use crate::state::dialog::{Dialog, Replacement};
 use crate::state::live::ReopenedRun;
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Document, Reference};
-use crate::units::labels;
 
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
@@ -309,14 +308,10 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     if let (Some(solution), true) =
         (opened.answers.into_iter().next_back(), state.analysis.references.len() < Reference::MAX_COUNT)
     {
-        let by = match solution.model {
-            Model::Auto => String::new(),
-            model => format!("{} model, ", labels::model(model)),
-        };
-        let name = format!("{}, {}, {by}{:.2}\u{a0}s", opened.scene.name, path.display(), solution.time_s);
         let wall_s = opened.wall_time_s.unwrap_or(f64::NAN);
-        let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
-        state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
+        let changes = state.analysis.changes_to(&opened.scene, &state.document.saved);
+        let (scene, solution, folder) = (Arc::new(opened.scene), Arc::new(solution), Some(path.to_owned()));
+        state.analysis.references.push(Reference { scene, changes, folder, solution, wall_s, run });
     }
 }
 

@@ -45,6 +45,9 @@ pub enum PlaybackCommand {
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effects) {
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
+    if stops_time(state, command) {
+        state.live.stopped_by_drag = None;
+    }
     match command {
         PlaybackCommand::SetPaused(paused) => state.live.playback.paused = paused,
         PlaybackCommand::TogglePause => state.live.playback.paused = !state.live.playback.paused,
@@ -114,6 +117,22 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
     }
     send(state, effects);
+}
+
+/// Returns whether the user wants time to stand.
+fn stops_time(state: &AppState, command: PlaybackCommand) -> bool {
+    match command {
+        PlaybackCommand::TogglePause => !state.live.playback.paused,
+        PlaybackCommand::SetPaused(true)
+        | PlaybackCommand::Step
+        | PlaybackCommand::StepBack
+        | PlaybackCommand::ShowTime(_)
+        | PlaybackCommand::ResumeFromShown
+        | PlaybackCommand::Reset
+        | PlaybackCommand::UndoRestart
+        | PlaybackCommand::CancelSolve => true,
+        _ => false,
+    }
 }
 
 /// Tells the worker whether time runs: not while what was recorded is replayed.

@@ -203,8 +203,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     submit_edited_scene(state, dragged, effects);
 }
 
-/// Returns whether an undo or redo leads to the scene of the run that an edit ended, with nothing
-/// run since.
+/// Returns whether an undo or redo leads to the scene of the other run, which an edit ended or
+/// which came after that edit.
 fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     let scene = state.live.earlier_run.as_ref().and_then(|run| match &run.cause {
         RestartCause::Edit(scene) => Some(scene),
@@ -212,7 +212,7 @@ fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     });
     let [back, forward] = state.document.undo.neighbours();
     let to = if *command == SceneCommand::Undo { back } else { forward };
-    scene.is_some() && to == scene && !state.live.has_run()
+    scene.is_some() && to == scene
 }
 
 /// Returns whether the scene has no answer because a support was moved, after time had run, farther
@@ -263,7 +263,15 @@ fn pull_past_length(
 /// Sends the edited scene: as a drag while time runs, else to be solved.
 fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effects: &mut Effects) {
     state.document.validate();
+    let grabbed = state.selection.grab.map(|g| g.item).filter(|_| dragged.is_some());
+    let stops = !state.live.playback.paused || state.live.stopped_by_drag.is_some();
     match dragged {
+        Some(_) if stops && state.document.fault.is_some() => {
+            submit_edit(state, effects);
+            state.live.stopped_by_drag = grabbed;
+        }
+        // Back within reach: `resume_after_drag` goes on as soon as the worker has stopped.
+        Some(_) if grabbed.is_some() && state.live.stopped_by_drag == grabbed => {}
         Some((cable, support, to_m)) if !state.live.playback.paused && state.document.fault.is_none() => {
             state.live.show_time(None);
             // A pointer holds by a spring; a key or a robot puts it there.
@@ -275,6 +283,31 @@ fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Poin
         }
         _ => submit_edit(state, effects),
     }
+}
+
+/// Time that stopped because a drag led farther than a cable reaches goes on once the thing is back
+/// within reach: a support from where the cable held it last, to be drawn on from there.
+pub fn resume_after_drag(state: &mut AppState, effects: &mut Effects) {
+    let Some(item) = state.live.stopped_by_drag else { return };
+    // Not before the worker has said that it stopped: that would stop time once more.
+    if state.document.fault.is_some() || !state.live.playback.paused || !state.live.latest.stale {
+        return;
+    }
+    if let Item::Support { cable, support } = item {
+        let answer = state.live.latest.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
+        let at = answer.map(|s| [s.x_m, s.y_m]);
+        let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
+        if let (Some(at), Some(held)) = (at, held) {
+            let to = held.at_m.replace(at);
+            if state.document.scene.validate().is_err()
+                && let Some(held) = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+            {
+                held.at_m = to;
+            }
+        }
+    }
+    state.live.playback.paused = false;
+    submit_edit(state, effects);
 }
 
 /// Has a support drawn to a point (m), by a spring or not.

@@ -13,7 +13,6 @@ use crate::render::colour::ColourScale;
 use crate::state::job_questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Grab, GraphRequest, Item, Layers, OpenPanels, Reference, TensionMarker, ToolSection};
-use crate::units::labels;
 use crate::units::system::System;
 
 /// Changes what is shown.
@@ -219,12 +218,11 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
                 && state.analysis.references.len() < Reference::MAX_COUNT
             {
-                let name =
-                    format!("{}, {} model, {:.2}\u{a0}s", scene.name, labels::model(solution.model), solution.time_s);
                 let recording = &state.live.recording;
                 let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
                 let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
-                state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
+                let changes = state.analysis.changes_to(&scene, &state.document.saved);
+                state.analysis.references.push(Reference { scene, changes, folder: None, solution, wall_s, run });
             }
         }
         ViewCommand::CompareModels(true) => {

@@ -51,6 +51,17 @@ pub fn cables(state: &AppState) -> [Point; 2] {
     bounds.or_unit()
 }
 
+/// Least and greatest corner of cables and robot where they are in the answer on screen, m.
+#[must_use]
+pub fn moving(state: &AppState) -> [Point; 2] {
+    let mut bounds = Bounds::EMPTY;
+    for n in state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.nodes) {
+        bounds.add([n.x_m, n.y_m]);
+    }
+    crate::geometry::robot::robot_outline(state).into_iter().for_each(|p| bounds.add(p));
+    bounds.or_unit()
+}
+
 /// Least and greatest corner of cables, obstacles and robot, with the ground below them, m.
 #[must_use]
 pub fn scene(state: &AppState) -> [Point; 2] {

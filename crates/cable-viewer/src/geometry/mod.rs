@@ -5,6 +5,7 @@
 //! - `hit_test`: the thing under a screen point
 //! - `bounds`: the rectangle that things take up
 //! - `terrain_extent`: the ground between a tank's walls
+//! - `leader`: the thing that leads a cable while time runs
 //! - `torn_cable`: the pieces of a cable that broke
 //! - `triangulate`: triangles of a polygon
 
@@ -12,6 +13,7 @@ pub mod arrows;
 pub mod bounds;
 pub mod handles;
 pub mod hit_test;
+pub mod leader;
 pub mod robot;
 pub mod supports;
 pub mod terrain_extent;

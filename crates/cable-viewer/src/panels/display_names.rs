@@ -78,6 +78,25 @@ pub fn change(change: &Change) -> String {
     }
 }
 
+/// The value of a change after it, in words: `length 15.20 m`.
+#[must_use]
+pub fn present_value(change: &Change) -> String {
+    let key = change.key.as_str();
+    let name = property(key);
+    // Not of an abbreviation.
+    let all_capital = name.chars().nth(1).is_some_and(char::is_uppercase);
+    let mut letters = name.chars();
+    let first = letters.next().filter(|_| !all_capital);
+    let name = first.map_or(name.clone(), |c| c.to_lowercase().chain(letters).collect());
+    match (&change.was, &change.is) {
+        (_, Some(FieldValue::List(_))) => format!("other {name}"),
+        (_, Some(is)) => format!("{name} {}", value(key, is)),
+        (Some(_), None) if of_cable(key) => format!("usual {name}"),
+        (Some(was), None) => format!("without {name} {}", value(key, was)),
+        (None, None) => name,
+    }
+}
+
 fn of_cable(key: &str) -> bool {
     PROPERTIES.iter().any(|p| p.key == key)
 }
@@ -136,6 +155,15 @@ mod tests {
             ("points_m", Some(FieldValue::List(3)), Some(FieldValue::List(4)), "Points: list of 3, now list of 4"),
         ] {
             assert_eq!(change(&Change { key: key.to_owned(), was, is }), said);
+        }
+        for (key, was, is, said) in [
+            ("length_m", number("14.2"), number("15.2"), "length 15.20 m"),
+            ("service_tension_n", number("800"), None, "usual service tension"),
+            ("to_x_m", number("3"), None, "without path: drive to 3.000 m"),
+            ("kind", text("fixed"), text("pulley"), "kind pulley"),
+            ("points_m", Some(FieldValue::List(3)), Some(FieldValue::List(4)), "other points"),
+        ] {
+            assert_eq!(present_value(&Change { key: key.to_owned(), was, is }), said);
         }
     }
 

@@ -8,11 +8,13 @@
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
 //! - `display_names`: keys of scene files and names of models as the window says them
+//! - `pin_names`: pinned results, named by what they are of
 
 pub mod analysis;
 pub mod cable;
 pub mod display_names;
 pub mod environment;
+pub mod pin_names;
 pub mod playback;
 pub mod plots;
 pub mod quality;

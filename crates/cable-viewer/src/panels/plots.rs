@@ -4,6 +4,7 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand, PlaybackCommand};
+use crate::panels::pin_names::pin_names;
 use crate::panels::readouts::dimmed_if_old;
 use crate::panels::timeline;
 use crate::plot::{GraphResponse, GraphView, along_cable, over_time};
@@ -144,10 +145,11 @@ fn pick(ui: &Ui, view: &mut GraphView, measure: Measure) {
 }
 
 /// A graph over time.
-type TimeGraph = fn(&mut Ui, &AppState, GraphView, f32) -> GraphResponse;
+type TimeGraph = fn(&mut Ui, &AppState, &[String], GraphView, f32) -> GraphResponse;
 
 fn over_time(ui: &mut Ui, state: &AppState, view: GraphView, height: f32, graph: TimeGraph) -> GraphResponse {
-    dimmed_if_old(ui, state, |ui| graph(ui, state, view, height))
+    let pins: Vec<String> = pin_names(state).into_iter().map(|name| name.short).collect();
+    dimmed_if_old(ui, state, |ui| graph(ui, state, &pins, view, height))
 }
 
 fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {

@@ -64,16 +64,22 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     });
     if let Some(run) = &state.live.earlier_run {
+        let is_later = is_later_run(state);
         let help = match &run.cause {
             RestartCause::Reset(_) if state.live.reset_is_last => {
                 "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
             }
             RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
+            RestartCause::Edit(_) if is_later => {
+                "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
+                 in its place (Ctrl+Shift+Z)"
+            }
             RestartCause::Edit(_) => {
-                "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)"
+                "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
+                 kept in its place (Ctrl+Z)"
             }
         };
-        if ui.button("Undo restart").on_hover_text(help).clicked() {
+        if ui.button(restart_button(state)).on_hover_text(help).clicked() {
             push(PlaybackCommand::UndoRestart);
         }
     }
@@ -112,6 +118,19 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if counted {
         ui.weak(count);
     }
+}
+
+/// The other run is the one that came after the edit that began it anew.
+fn is_later_run(state: &AppState) -> bool {
+    let [_, redone] = state.document.undo.neighbours();
+    let cause = state.live.earlier_run.as_ref().map(|run| &run.cause);
+    matches!(cause, Some(RestartCause::Edit(scene)) if redone == Some(scene))
+}
+
+/// Returns what the button says that goes on with the other run.
+#[must_use]
+pub fn restart_button(state: &AppState) -> &'static str {
+    if is_later_run(state) { "Redo restart" } else { "Undo restart" }
 }
 
 /// Width of a text and the space before it, points.

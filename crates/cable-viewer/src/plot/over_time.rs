@@ -24,18 +24,20 @@ const MIN_SPAN_S: f64 = 1.0;
 
 /// Draws the first one. Stress and strain follow from tension for a single cable only; with
 /// several, tension is shown.
-pub fn ui(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
-    graph(ui, state, view, TITLE, height)
+///
+/// `pins`: the names of pinned results.
+pub fn ui(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, height: f32) -> GraphResponse {
+    graph(ui, state, pins, view, TITLE, height)
 }
 
 /// Draws the second one, with time linked to the first.
-pub fn second(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
+pub fn second(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, height: f32) -> GraphResponse {
     let Some(measure) = view.second else { return GraphResponse::default() };
     let title = format!("{} over time", measure.name());
-    graph(ui, state, GraphView { measure, ..view }, &title, height)
+    graph(ui, state, pins, GraphView { measure, ..view }, &title, height)
 }
 
-fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f32) -> GraphResponse {
+fn graph(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, title: &str, height: f32) -> GraphResponse {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };
     let measure = match view.measure {
@@ -76,10 +78,10 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
             .then_some("Play draws this over time"),
         export: view.export == Some(title),
     };
-    let mut touched = show(ui, &graph, &lines(state, scene, measure, seen, Some(columns)));
+    let mut touched = show(ui, &graph, &lines(state, scene, pins, measure, seen, Some(columns)));
     if let Some(sheet) = &mut touched.export {
         // Every sample, not only those that can be told apart on screen.
-        sheet.lines = lines(state, scene, measure, [f64::NEG_INFINITY, f64::INFINITY], None);
+        sheet.lines = lines(state, scene, pins, measure, [f64::NEG_INFINITY, f64::INFINITY], None);
     }
     touched
 }
@@ -95,7 +97,14 @@ fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
 
 /// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are
 /// any; then those of held runs.
-fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
+fn lines(
+    state: &AppState,
+    scene: &Scene,
+    pins: &[String],
+    measure: Measure,
+    seen: [f64; 2],
+    columns: Option<usize>,
+) -> Vec<Series> {
     let mut lines = recorded_lines(state, scene, measure, seen, columns);
     for (k, held) in state.analysis.references.iter().enumerate() {
         let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
@@ -110,7 +119,8 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], colu
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);
-        lines.push(Series { name: format!("Pinned {}", k + 1), points, reference: Some(k), ..Series::default() });
+        let name = format!("Pinned: {}", pins.get(k).map_or("", String::as_str));
+        lines.push(Series { name, points, reference: Some(k), ..Series::default() });
     }
     lines
 }

@@ -10,8 +10,9 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use eframe::egui_wgpu::{self, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu};
+use egui::emath::GuiRounding;
 use egui::epaint::{ClippedPrimitive, ClippedShape, ImageData, ImageDelta, Mesh, Primitive, Shape, WHITE_UV};
-use egui::{Context, FullOutput, Rect, TextureId};
+use egui::{Context, FullOutput, Pos2, Rect, Stroke, TextureId};
 
 /// Colour times font.
 const SHADER: &str = "
@@ -36,6 +37,11 @@ struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) col
 /// buttons and plots ask the font for nothing.
 const PLAIN: f32 = 4000.0;
 
+/// Bytes that are got from the system and given back once before the first frame, of the 32 MiB at
+/// most at which glibc learns from it. Fewer: what the renderer frees after each frame goes back to
+/// the system, page by page, and is got again for the next: a third of the window's thread.
+const RETAINED_MEMORY: usize = 31 << 20;
+
 /// Bytes of a corner: place, place in the font, colour.
 const CORNER_BYTES: u64 = 20;
 
@@ -54,8 +60,63 @@ impl SoftwarePainter {
         // egui blends in the eye's scale of brightness: a target that converts by itself would need
         // another shader.
         let plain = !state.target_format.is_srgb();
-        (software && plain).then(|| Self { format: state.target_format, font: Arc::default() })
+        (software && plain).then(|| {
+            retain_freed_memory();
+            Self { format: state.target_format, font: Arc::default() }
+        })
     }
+}
+
+/// From now on the allocator keeps what is freed at the end of its heaps, up to twice
+/// [`RETAINED_MEMORY`]: glibc raises its limit when a block that had a mapping of its own is freed.
+/// Other allocators are not affected.
+fn retain_freed_memory() {
+    drop(std::hint::black_box(Vec::<u8>::with_capacity(RETAINED_MEMORY)));
+}
+
+/// Upright and level lines of whole pixels become two triangles each, where egui makes ten, with
+/// borders that fade into nothing: the picture is the same, since egui puts such lines on whole
+/// pixels. Each triangle of a long line costs as much as the tiles of the screen that it passes.
+fn with_lines_as_rectangles(shape: Shape, pixels_per_point: f32) -> Shape {
+    match shape {
+        Shape::LineSegment { points, stroke } => match rectangle_of(points, stroke, pixels_per_point) {
+            Some(rect) => {
+                let mut mesh = Mesh::default();
+                mesh.add_colored_rect(rect, stroke.color);
+                Shape::mesh(mesh)
+            }
+            None => Shape::LineSegment { points, stroke },
+        },
+        Shape::Vec(shapes) => {
+            Shape::Vec(shapes.into_iter().map(|s| with_lines_as_rectangles(s, pixels_per_point)).collect())
+        }
+        other => other,
+    }
+}
+
+/// The pixels of an upright or level line of a whole number of pixels, as egui rounds it, points.
+fn rectangle_of([a, b]: [Pos2; 2], stroke: Stroke, pixels_per_point: f32) -> Option<Rect> {
+    let pixels = stroke.width * pixels_per_point;
+    let (upright, level) = (a.x == b.x, a.y == b.y);
+    if pixels < 0.5 || (pixels - pixels.round()).abs() > 1e-3 || upright == level {
+        return None;
+    }
+    let (mut rect, half) = (Rect::from_two_pos(a, b), 0.5 * stroke.width);
+    let (pixel, mut middle) = (1.0 / pixels_per_point, if upright { a.x } else { a.y });
+    stroke.round_center_to_pixel(pixels_per_point, &mut middle);
+    // From pixel to pixel, both of them within the line.
+    let along = |from: f32, to: f32| {
+        let [from, to] = [from + 0.25 * pixel, to - 0.25 * pixel].map(|v| v.round_to_pixel_center(pixels_per_point));
+        (from - 0.5 * pixel, to + 0.5 * pixel)
+    };
+    if upright {
+        (rect.min.y, rect.max.y) = along(rect.min.y, rect.max.y);
+        (rect.min.x, rect.max.x) = (middle - half, middle + half);
+    } else {
+        (rect.min.x, rect.max.x) = along(rect.min.x, rect.max.x);
+        (rect.min.y, rect.max.y) = (middle - half, middle + half);
+    }
+    Some(rect)
 }
 
 impl egui::Plugin for SoftwarePainter {
@@ -80,7 +141,10 @@ impl egui::Plugin for SoftwarePainter {
         if output.shapes.is_empty() || !output.shapes.iter().all(own) {
             return;
         }
-        let jobs = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let shapes = std::mem::take(&mut output.shapes).into_iter();
+        let shapes =
+            shapes.map(|s| ClippedShape { shape: with_lines_as_rectangles(s.shape, output.pixels_per_point), ..s });
+        let jobs = ctx.tessellate(shapes.collect(), output.pixels_per_point);
         let screen = ctx.viewport_rect();
         let picture = FrameGeometry::of(&jobs, screen, self.format, Arc::clone(&self.font));
         let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
@@ -232,27 +296,28 @@ impl CallbackTrait for FrameGeometry {
 /// for nothing where enough of them follow each other.
 fn fills(mesh: &Mesh) -> Vec<Fill> {
     let mut fills = Vec::with_capacity(mesh.indices.len() / 3);
-    // Where the row of small white ones began, and twice its area, points².
-    let (mut began, mut area) = (0, 0.0);
+    // The row of small ones that are drawn alike, and twice its area, points².
+    let (mut row, mut area) = (0..0, 0.0);
+    let mut row_fill = Fill::Font;
     for triangle in mesh.indices.chunks_exact(3) {
         let (size, fill) = single_triangle_fill(mesh, triangle);
-        if fill == Some(Fill::Plain) && size <= PLAIN {
-            area += size;
-            fills.push(Fill::Font);
-            continue;
+        let fill = fill.unwrap_or(Fill::Font);
+        if fill != row_fill {
+            close_triangle_row(&mut fills, row, area, row_fill);
+            (row, area, row_fill) = (fills.len()..fills.len(), 0.0, fill);
         }
-        close_triangle_run(&mut fills, began, area);
-        fills.push(fill.unwrap_or(Fill::Font));
-        (began, area) = (fills.len(), 0.0);
+        area += size;
+        fills.push(if size > PLAIN { fill } else { Fill::Font });
+        row.end = fills.len();
     }
-    close_triangle_run(&mut fills, began, area);
+    close_triangle_row(&mut fills, row, area, row_fill);
     fills
 }
 
-/// A row of small triangles is over.
-fn close_triangle_run(fills: &mut [Fill], began: usize, area: f32) {
+/// A row of triangles that are drawn alike is over.
+fn close_triangle_row(fills: &mut [Fill], row: std::ops::Range<usize>, area: f32, fill: Fill) {
     if area > PLAIN {
-        fills.iter_mut().skip(began).for_each(|f| *f = Fill::Plain);
+        fills.get_mut(row).into_iter().flatten().for_each(|f| *f = fill);
     }
 }
 
@@ -266,7 +331,7 @@ fn single_triangle_fill(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
         return (size, None);
     }
     let even = a.color.is_opaque() && a.color == b.color && a.color == c.color;
-    (size, Some(if even && size > PLAIN { Fill::Solid } else { Fill::Plain }))
+    (size, Some(if even { Fill::Solid } else { Fill::Plain }))
 }
 
 /// The resources that stay on the device.
@@ -454,4 +519,31 @@ fn pipeline(
         multiview_mask: None,
         cache: None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Color32, pos2};
+
+    use super::*;
+
+    #[test]
+    fn upright_and_level_lines_of_whole_pixels_are_two_triangles_on_these_pixels() {
+        let line = |a, b, width| Shape::line_segment([a, b], Stroke::new(width, Color32::RED));
+        let drawn = |shape, scale| match with_lines_as_rectangles(shape, scale) {
+            Shape::Mesh(mesh) => Some((mesh.indices.len() / 3, mesh.calc_bounds())),
+            _ => None,
+        };
+        let rect = |x0, y0, x1, y1| Rect::from_min_max(pos2(x0, y0), pos2(x1, y1));
+        let level = line(pos2(2.0, 5.3), pos2(9.0, 5.3), 1.0);
+        assert_eq!(drawn(level.clone(), 1.0), Some((2, rect(2.0, 5.0, 9.0, 6.0))));
+        let upright = line(pos2(5.0, 9.0), pos2(5.0, 2.0), 2.0);
+        assert_eq!(drawn(upright, 1.0), Some((2, rect(4.0, 2.0, 6.0, 9.0))));
+        // A pixel and a half, and a slope, have borders that fade.
+        assert_eq!(drawn(level.clone(), 1.5), None);
+        assert_eq!(drawn(line(pos2(0.0, 0.0), pos2(9.0, 1.0), 1.0), 1.0), None);
+        assert!(
+            matches!(with_lines_as_rectangles(Shape::Vec(vec![level]), 1.0), Shape::Vec(v) if matches!(v[0], Shape::Mesh(_)))
+        );
+    }
 }

@@ -1,13 +1,14 @@
 //! Analyses are what is asked beyond the answer itself, and answers kept to compare with.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use cable_core::scene::Change;
 use cable_core::{Scene, Solution};
 
 use crate::jobs::model_comparison::{self, Outcome};
 use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision};
 use crate::record::kept_run::Run;
-use crate::units::labels;
 
 /// The questions beyond the answer itself.
 #[derive(Debug, Default)]
@@ -28,6 +29,15 @@ pub struct Analysis {
     pub friction_range: friction_range::FrictionRangeState,
 }
 
+impl Analysis {
+    /// Returns what differs in a scene that is to be pinned from that of the first pin, or else
+    /// from the one as it was opened or saved.
+    #[must_use]
+    pub fn changes_to(&self, scene: &Scene, saved: &Scene) -> Vec<Change> {
+        self.references.first().map_or(saved, |first| &first.scene).changes_to(scene)
+    }
+}
+
 /// A place on a cable whose tension is taken apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TensionMarker {
@@ -42,10 +52,13 @@ pub struct TensionMarker {
 /// An answer that is kept to compare with.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// What it is of.
-    pub name: String,
     /// The scene it answers.
     pub scene: Arc<Scene>,
+    /// The changes that lead to it from the scene of the pin that was the first then, or else from
+    /// the scene as it was opened or saved.
+    pub changes: Vec<Change>,
+    /// The folder that it was read from.
+    pub folder: Option<PathBuf>,
     /// The answer.
     pub solution: Arc<Solution>,
     /// Wall time it took, s; of a run that was read from its folder, the whole run; NaN where that
@@ -66,19 +79,22 @@ impl Reference {
     }
 }
 
-/// Holds each answer, in place of one held before of the same scene and model, as far as there is
-/// room.
-pub fn hold(all: &mut Vec<Reference>, found: &Outcome) {
+/// Holds each answer, in place of one held before of the same scene and model at rest, as far as
+/// there is room. `saved`: the scene as it was opened or saved.
+pub fn hold(analysis: &mut Analysis, found: &Outcome, saved: &Scene) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };
-        let name = format!("{}, {} model at rest", found.scene.name, labels::model(answer.model));
-        let scene = Arc::clone(&found.scene);
-        let held = Reference { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
-        let before = all.iter().position(|h| h.name == held.name && h.run.is_none() && h.scene == held.scene);
-        if let Some(before) = before.and_then(|k| all.get_mut(k)) {
+        let (scene, changes) = (Arc::clone(&found.scene), analysis.changes_to(&found.scene, saved));
+        let (solution, folder) = (Arc::clone(solution), None);
+        let held = Reference { scene, changes, folder, solution, wall_s: *wall_s, run: None };
+        let is_same = |h: &Reference| {
+            let at_rest = h.run.is_none() && h.folder.is_none() && h.solution.time_s == held.solution.time_s;
+            at_rest && h.solution.model == held.solution.model && h.scene == held.scene
+        };
+        if let Some(before) = analysis.references.iter_mut().find(|h| is_same(h)) {
             *before = held;
-        } else if all.len() < Reference::MAX_COUNT {
-            all.push(held);
+        } else if analysis.references.len() < Reference::MAX_COUNT {
+            analysis.references.push(held);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The camera turns metres of the world into points on screen and back, in f64 until the last step.
 
 use cable_core::math::Point;
-use egui::{Pos2, Rect, Vec2, pos2};
+use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 /// Which point of the world is in the middle of the canvas, and how large a metre is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,13 +14,26 @@ pub struct Camera {
     pub fit_wanted: bool,
     /// Size of the canvas that the scene was fitted to, points, until the view is moved by hand.
     pub fitted_to: Option<[f32; 2]>,
-    /// A piece that is torn off and falls is kept in view, until the view is moved by hand.
+    /// What leads a cable, or a piece that is torn off, is kept in view, until the view is moved by
+    /// hand.
     pub follows: bool,
+    /// What leads a cable has been in view since the view was moved by hand.
+    pub leader_seen: bool,
+    /// Scale that the scene was fitted at, points per metre, once the view has widened since.
+    pub widened_from: Option<f64>,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true, fitted_to: None, follows: false }
+        Self {
+            centre_m: [0.0; 2],
+            points_per_m: 50.0,
+            fit_wanted: true,
+            fitted_to: None,
+            follows: false,
+            leader_seen: false,
+            widened_from: None,
+        }
     }
 }
 
@@ -31,6 +44,10 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 /// Free border of a fitted scene, points: left (axis numbers), right, top, bottom. Smaller and
 /// labels cover the ends of the cable; larger wastes the window.
 pub const BORDER: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
+
+/// Most that a view widens when something leaves it, over the view of the scene. More: what falls
+/// for ever becomes a dot; less: a robot that drives far has its cable out of view.
+const MAX_WIDENING: f64 = 4.0;
 
 impl Camera {
     /// World (m) to screen.
@@ -102,12 +119,48 @@ impl Camera {
     /// and follows nothing.
     fn leave_fit(&mut self) {
         (self.fit_wanted, self.fitted_to, self.follows) = (false, None, false);
+        (self.leader_seen, self.widened_from) = (false, None);
+    }
+
+    /// The part of the world in the canvas: lower left and upper right corner, m.
+    #[must_use]
+    pub fn visible_m(&self, canvas: Rect) -> [Point; 2] {
+        [canvas.left_bottom(), canvas.right_top()].map(|p| self.to_world(canvas, p))
+    }
+
+    /// Widens a fitted view by as little as brings a rectangle (m) into the canvas within free
+    /// borders (points), where what it shows now stays in it; returns whether the rectangle is in
+    /// view then. The view is no more than [`MAX_WIDENING`] times as wide as it was fitted.
+    pub fn widen(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) -> bool {
+        let [left, right, top, bottom] = border;
+        let free = Rect::from_min_max(canvas.min + vec2(left, top), canvas.max - vec2(right, bottom));
+        if !(low.iter().chain(&high).all(|v| v.is_finite()) && free.is_positive()) {
+            return true;
+        }
+        let [from, to] = self.visible_m(canvas);
+        let [least, most] = [free.left_bottom(), free.right_top()].map(|p| self.to_world(canvas, p));
+        // Rounding on the way to the screen and back is no way out of the view.
+        let tolerance_m = 1e-6 * (to[0] - from[0]);
+        if (0..2).all(|k| low[k] >= least[k] - tolerance_m && high[k] <= most[k] + tolerance_m) {
+            return true;
+        }
+        let before = *self;
+        let fitted = self.widened_from.unwrap_or(self.points_per_m);
+        let both = [0, 1].map(|k| (least[k].min(low[k]), most[k].max(high[k])));
+        self.fit(canvas, [both.map(|(low, _)| low), both.map(|(_, high)| high)], border);
+        if self.points_per_m * MAX_WIDENING < fitted {
+            *self = before;
+            return false;
+        }
+        self.widened_from = Some(fitted);
+        true
     }
 
     /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points).
     pub fn fit(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) {
         self.fit_wanted = false;
         self.fitted_to = Some(canvas.size().into());
+        self.widened_from = None;
         if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
             return;
         }
@@ -135,8 +188,7 @@ mod tests {
 
     #[test]
     fn screen_and_world_are_inverse_and_zoom_keeps_the_point_under_the_pointer() {
-        let mut camera =
-            Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false, fitted_to: None, follows: false };
+        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false, ..Camera::default() };
         let pointer = pos2(431.0, 222.0);
         let before = camera.to_world(CANVAS, pointer);
         assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-3);

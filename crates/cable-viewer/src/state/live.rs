@@ -10,6 +10,7 @@ use cable_core::{Error, Scene, Solution, UnitSystem};
 use crate::record::recording::Recording;
 use crate::record::sample::Sample;
 use crate::record::sample_history::History;
+use crate::state::selection::Item;
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding
 /// counts as moving.
@@ -31,12 +32,15 @@ pub struct Live {
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Option<ReopenedRun>,
     /// The run that the last restart ended, until the next one or another scene; or the run since,
-    /// where a reset was taken back.
+    /// where that restart was taken back.
     pub earlier_run: Option<Box<EarlierRun>>,
     /// The reset is the last thing that was done: undo takes it back.
     pub reset_is_last: bool,
     /// A reset whose answer has not come yet: the next history that restarts is its.
     pub reset_asked: Option<ResetOrigin>,
+    /// The thing that was dragged, while time ran, to where a cable does not reach: time stands
+    /// until a drag leads it back.
+    pub stopped_by_drag: Option<Item>,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_speed_command: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
@@ -86,15 +90,16 @@ impl Live {
     }
 
     /// Puts back what was recorded before the last restart and shows its end; returns what had
-    /// ended it. After an edit the end is that of the scene before it, while the cable was whole;
-    /// after a reset it is the present, to which the worker goes back, and what has run since is
-    /// kept in its place. `present`: the window as it is.
+    /// ended it. What has run since is kept in its place. After an edit the end is that of the
+    /// scene before it, while the cable was whole; after a reset it is the present, to which the
+    /// worker goes back. `present`: the window as it is.
     pub fn undo_restart(&mut self, present: ResetOrigin) -> Option<RestartCause> {
         self.reset_is_last = false;
         let before = self.earlier_run.take()?;
-        if matches!(before.cause, RestartCause::Reset(_)) {
-            self.end_run(RestartCause::Reset(present));
-        }
+        self.end_run(match before.cause {
+            RestartCause::Reset(_) => RestartCause::Reset(present),
+            RestartCause::Edit(_) => RestartCause::Edit(present.scene),
+        });
         (self.recording, self.history) = (before.recording, before.history);
         match &before.cause {
             RestartCause::Edit(scene) => {

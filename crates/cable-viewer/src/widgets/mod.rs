@@ -9,9 +9,11 @@
 //! - `time_table`: a vector that changes with time, as a table
 //! - `icon`: painted signs
 //! - `highlight`: a frame round the control that a guide speaks of
+//! - `focus`: a frame round what has the keyboard focus
 
 pub mod checkbox_and_radio;
 pub mod field;
+pub mod focus;
 pub mod highlight;
 pub mod icon;
 pub mod progress;

@@ -198,8 +198,9 @@ pub fn compared() -> AppState {
     }
     for (scene, solution) in [(state.document.scene.clone(), None), (other, Some(answer))] {
         let solution = solution.map_or_else(|| state.live.snapshot.solution.clone().unwrap(), Arc::new);
-        let name = format!("{}, fem model", scene.name);
-        state.analysis.references.push(Reference { name, scene: Arc::new(scene), solution, wall_s: 2.5e-3, run: None });
+        let changes = state.analysis.changes_to(&scene, &state.document.saved);
+        let (scene, folder, run) = (Arc::new(scene), None, None);
+        state.analysis.references.push(Reference { scene, changes, folder, solution, wall_s: 2.5e-3, run });
     }
     state
 }

@@ -6,9 +6,9 @@ use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand};
 use cable_viewer::state::dialog::Dialog;
 use cable_viewer::state::{AppState, Item};
-use egui::{Key, Modifiers, Vec2};
+use egui::{Key, Modifiers, Shape, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::kittest::{By, NodeT, Queryable};
 
 use crate::rows::play;
 use crate::{apply, open, open_span};
@@ -90,6 +90,86 @@ fn s12_graphs_are_read_and_zoomed_by_keys() {
     press(&mut harness, Modifiers::NONE, Key::Escape);
     press(&mut harness, Modifiers::NONE, Key::ArrowLeft);
     assert!(state(&harness).live.recording.shown_s.is_some());
+}
+
+/// Issue 20: with Tab alone the focus went where it could not be seen: below the edge of a panel
+/// that scrolls, and on menus, headings and graphs nothing showed it.
+#[test]
+fn issue_020_tab_leads_to_every_control_and_the_focus_is_seen() {
+    for size in [Vec2::new(1280.0, 800.0), Vec2::new(1024.0, 640.0)] {
+        let mut harness = open(catalog::tank_robot());
+        harness.set_size(size);
+        play(&mut harness, 20);
+        press(&mut harness, Modifiers::NONE, Key::Space);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+        let window = egui::Rect::from_min_size(egui::Pos2::ZERO, size);
+        let mut passed = Vec::new();
+        loop {
+            press(&mut harness, Modifiers::NONE, Key::Tab);
+            harness.run_steps(12);
+            let id = harness.ctx.memory(|m| m.focused()).expect("Tab gives the focus");
+            if passed.first().is_some_and(|(first, _)| *first == id) {
+                break;
+            }
+            let [node] = &harness.query_all(By::new().predicate(|n| n.is_focused())).collect::<Vec<_>>()[..] else {
+                panic!("one thing has the focus")
+            };
+            let data = node.accesskit_node();
+            let name = data.label().unwrap_or_default();
+            let rect = node.rect();
+            assert!(window.contains_rect(rect), "“{name}” at {rect} is out of sight at {size}");
+            let framed = |s: &egui::epaint::ClippedShape| match &s.shape {
+                Shape::Rect(r) => {
+                    r.stroke.width >= 1.0 && r.rect.intersects(rect) && rect.expand(3.0).contains_rect(r.rect)
+                }
+                _ => false,
+            };
+            let is_field = data.role() == egui::accesskit::Role::TextInput;
+            assert!(is_field || harness.output().shapes.iter().any(framed), "nothing shows the focus on “{name}”");
+            passed.push((id, name));
+            assert!(passed.len() < 300, "{passed:?}");
+        }
+        let names: Vec<&str> = passed.iter().map(|(_, name)| name.as_str()).collect();
+        let controls = crate::help::controls(&harness);
+        for (name, ..) in &controls {
+            let works = || harness.query_all_by_label(name).any(|n| !n.accesskit_node().is_disabled());
+            assert!(
+                name.is_empty() || !works() || names.contains(&name.as_str()),
+                "Tab passes “{name}” by at {size}: {names:?}"
+            );
+        }
+        assert!(controls.len() > 50, "{}", controls.len());
+    }
+}
+
+/// What the pointer does with a menu, the keys do: open, choose, and leave.
+#[test]
+fn issue_020_a_menu_is_used_by_keys() {
+    let mut harness = open(catalog::tank_robot());
+    press(&mut harness, Modifiers::NONE, Key::Tab);
+    press(&mut harness, Modifiers::NONE, Key::Tab);
+    press(&mut harness, Modifiers::NONE, Key::Tab);
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(harness.query_by_label("Recentre on the cable (C)").is_some(), "the third menu is open");
+    let focused = |h: &Harness<'_, ViewerApp>| {
+        let node = h.query_all(By::new().predicate(|n| n.is_focused())).next();
+        node.and_then(|n| n.accesskit_node().label()).unwrap_or_default()
+    };
+    for _ in 0..60 {
+        if focused(&harness) == "Grid" {
+            break;
+        }
+        press(&mut harness, Modifiers::NONE, Key::Tab);
+    }
+    assert!(state(&harness).view.layers.grid && focused(&harness) == "Grid", "{}", focused(&harness));
+    press(&mut harness, Modifiers::NONE, Key::Space);
+    assert!(!state(&harness).view.layers.grid);
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert!(harness.query_by_label("Recentre on the cable (C)").is_none(), "it is closed");
+    // Single keys are the window's again.
+    press(&mut harness, Modifiers::NONE, Key::Space);
+    assert!(!state(&harness).live.playback.paused);
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod job;
 mod keys;
 mod layers;
 mod layout;
+mod leaving;
 mod outline;
 mod pictures;
 mod playing;

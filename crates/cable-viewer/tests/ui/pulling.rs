@@ -53,6 +53,56 @@ fn a_pull_past_the_length_is_refused_at_first() {
     assert!(state.document.fault.is_some() && state.live.playback.paused);
 }
 
+/// Issue 20: time stood still from then on, although the end was led back and let go within reach.
+#[test]
+fn issue_020_time_goes_on_once_an_end_is_back_within_reach() {
+    for (ran, let_go_between) in [(true, false), (true, true), (false, false)] {
+        let (mut harness, from) = held(1e3);
+        if !ran {
+            apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+        }
+        let mut at = lead(&mut harness, from, 5.0);
+        assert!(harness.state().state.document.fault.is_some() && harness.state().state.live.playback.paused);
+        if let_go_between {
+            press(&harness, at, false);
+            harness.run_steps(3);
+            assert!(harness.state().state.live.playback.paused, "out of reach");
+            let now = support(&harness, "right");
+            harness.hover_at(now);
+            harness.step();
+            press(&harness, now, true);
+            harness.step();
+            at = now;
+        }
+        let stopped_s = harness.state().state.live.now_s();
+        let at = lead(&mut harness, at, -5.5);
+        press(&harness, at, false);
+        harness.run_steps(5);
+        let state = &harness.state().state;
+        assert_eq!((&state.document.fault, &state.live.latest.error), (&None, &None));
+        assert_eq!(state.live.playback.paused, !ran, "as before the drag");
+        harness.run_steps(30);
+        let state = &harness.state().state;
+        assert_eq!(state.live.now_s() > stopped_s + 0.3, ran, "{} s after {stopped_s} s", state.live.now_s());
+        // It went on from where the cable was, without a snatch.
+        let peak_n = state.live.history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
+        assert!(!ran || peak_n < 3e3, "{peak_n} N");
+    }
+}
+
+/// Who pauses while the end is out of reach wants time to stand.
+#[test]
+fn issue_020_a_pause_out_of_reach_is_kept() {
+    let (mut harness, from) = held(1e3);
+    let at = lead(&mut harness, from, 5.0);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let at = lead(&mut harness, at, -5.5);
+    press(&harness, at, false);
+    harness.run_steps(10);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_none() && state.live.latest.error.is_none() && state.live.playback.paused);
+}
+
 /// A pull that was refused did not tell that it can pull.
 #[test]
 fn a_pull_that_is_refused_offers_to_pull_past_the_length() {

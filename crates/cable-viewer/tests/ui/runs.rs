@@ -85,7 +85,9 @@ fn s16_a_saved_run_is_compared_with_its_model_and_its_cost() {
     harness.run_steps(2);
     let [held] = state(&harness).analysis.references.as_slice() else { panic!("it is held") };
     assert_eq!(held.wall_s, took_s);
-    assert!(held.solution.model == cable_core::Model::Fem && held.name.contains("model"), "{}", held.name);
+    assert_eq!(held.solution.model, cable_core::Model::Fem);
+    let name = &cable_viewer::panels::pin_names::pin_names(state(&harness))[0].full;
+    assert!(name.ends_with("read from “again”"), "{name}");
     let cost = cable_viewer::units::format::rough_duration(took_s);
     assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
 }
@@ -124,7 +126,8 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     assert!(now > 1.8 * own.peak(tension).unwrap().value);
     harness.get_by_label("Whole runs");
     let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
-    assert!(spoken.contains("Pinned 1") && spoken.contains("Pinned 2"), "{spoken}");
+    let names = ["Pinned: Hanging span", "Pinned: read from “run”"];
+    assert!(names.iter().all(|name| spoken.contains(name)), "{spoken}");
     // The picture of a held run is that of the time shown.
     apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.2))));
     let time_s = state(&harness).live.snapshot.solution.as_ref().unwrap().time_s;

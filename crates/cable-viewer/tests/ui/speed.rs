@@ -322,8 +322,9 @@ fn speed_of_graphs() {
             );
             let scene = state.live.snapshot.scene.clone().expect("a scene");
             state.analysis.references.push(cable_viewer::state::Reference {
-                name: "held".to_owned(),
                 scene,
+                changes: Vec::new(),
+                folder: None,
                 solution,
                 wall_s: 0.0,
                 run,

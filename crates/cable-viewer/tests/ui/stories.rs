@@ -301,7 +301,13 @@ fn s16_four_answers_are_held_and_their_differences_told() {
     let told = cable_viewer::panels::analysis::compare::differences(&state.analysis.references[0], state);
     assert!(told.iter().any(|l| l.starts_with("Length: 12")), "{told:?}");
     assert!(harness.get_all_by_label_contains(" %").count() >= 8, "differences of tension and sag");
-    click(&mut harness, "Unpin 2");
+    // Issue 20: they were named 1 to 4.
+    let names = cable_viewer::panels::pin_names::pin_names(&harness.state().state);
+    let names: Vec<&str> = names.iter().map(|name| name.full.as_str()).collect();
+    let lengths = ["12.10", "12.30", "12.60"].map(|length| format!("Hanging span: length {length} m"));
+    assert_eq!(names, ["Hanging span", &lengths[0], &lengths[1], &lengths[2]]);
+    assert!(harness.query_all_by_label(&lengths[1]).count() > 0, "the panel names it");
+    click(&mut harness, "Unpin Hanging span: length 12.10 m");
     assert_eq!(harness.state().state.analysis.references.len(), 3);
     click(&mut harness, "Unpin all");
     assert!(harness.state().state.analysis.references.is_empty());

@@ -376,6 +376,46 @@ fn an_edit_that_begins_the_run_anew_keeps_what_was_recorded() {
     }
 }
 
+/// Issue 20: to take back an edit that had begun the run anew dropped what had run since.
+#[test]
+fn issue_020_the_run_since_an_edit_that_began_another_is_kept_when_it_is_taken_back() {
+    let scene = catalog::tank_robot();
+    let mut harness = open(scene.clone());
+    let run = |harness: &mut Harness<'_, ViewerApp>, frames: usize| {
+        harness.key_press(Key::Space);
+        harness.run_steps(frames);
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        (state(harness).document.scene.clone(), state(harness).live.recording.span_s(), answer(harness).time_s)
+    };
+    let first = run(&mut harness, 60);
+    let start = scene.robot.as_ref().unwrap().at_m;
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m: [start[0] - 0.2, start[1]] }));
+    apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+    assert_eq!(answer(&harness).time_s, 0.0, "another start is another run");
+    let second = run(&mut harness, 20);
+    assert!(first.0 != second.0 && first.1 != second.1);
+    let shown = |harness: &Harness<'_, ViewerApp>| {
+        (state(harness).document.scene.clone(), state(harness).live.recording.span_s(), answer(harness).time_s)
+    };
+    // By the button, and by the keys of undo and redo.
+    for (button, then) in [("Undo restart", &first), ("Redo restart", &second), ("Undo restart", &first)] {
+        harness.get_by_label(button).click();
+        harness.run_steps(4);
+        assert_eq!(&shown(&harness), then, "{button}");
+    }
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run_steps(4);
+    assert_eq!(shown(&harness), second);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(4);
+    assert_eq!(shown(&harness), first);
+    // Time goes on from its end.
+    harness.key_press(Key::Space);
+    harness.run_steps(10);
+    assert!(answer(&harness).time_s > first.2);
+}
+
 /// The button does the same, also after further edits; a new run takes the place of the old one.
 #[test]
 fn a_restart_is_undone_by_its_button_whatever_was_edited_since() {

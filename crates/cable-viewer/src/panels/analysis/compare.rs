@@ -9,6 +9,7 @@ use egui::{Grid, Id, RichText, Ui};
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::panels::display_names;
+use crate::panels::pin_names::{PinName, pin_names};
 use crate::panels::readouts::DIMMED;
 use crate::record::kept_run::Peak;
 use crate::record::plotted_quantity::Measure;
@@ -59,6 +60,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Nothing pinned. Pin a result, then change something to compare");
         return;
     }
+    let names = pin_names(state);
     // An answer goes with the scene that it is of, which may not be the one being edited.
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let answer = state.live.snapshot.solution.as_deref();
@@ -67,7 +69,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     readout::wide(ui, "compare", |ui| {
         let gap = if ui.available_width() < MIN_WIDE_TABLE { 4.0 } else { 14.0 };
         let grid = Grid::new("compare").num_columns(5).spacing([gap, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
-        grid.striped(true).show(ui, |ui| {
+        grid.show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
             }
@@ -79,37 +81,44 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 });
                 ui.end_row();
             }
-            for (k, held) in state.analysis.references.iter().enumerate() {
+            for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
+                name_above(ui, k, &name.full);
+                ui.end_row();
                 ui.horizontal(|ui| {
-                    ui.spacing_mut().item_spacing.x = 2.0;
                     let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
-                    field::name(&away, &format!("Unpin {}", k + 1));
+                    field::name(&away, &format!("Unpin {}", name.full));
                     if away.on_hover_text("Unpins this result").clicked() {
                         commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
                     }
-                    number(ui, k).on_hover_text(&held.name);
                 });
                 row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), compared);
                 ui.end_row();
             }
         });
     });
-    runs(ui, state);
-    for (k, held) in state.analysis.references.iter().enumerate() {
-        ui.weak(format!("{}: {}", k + 1, held.name));
+    runs(ui, state, &names);
+    for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
+        ui.weak(&name.full);
         for line in remembered(ui, k, held, state).iter() {
             ui.label(RichText::new(line).small());
         }
     }
 }
 
-/// The number of a pin, underlined in the colour of its lines: that is too dark for text in one
-/// theme.
-fn number(ui: &mut Ui, k: usize) -> egui::Response {
-    let shown = ui.strong(format!("{}", k + 1));
-    let (x, y) = (shown.rect.x_range(), shown.rect.bottom() - 1.0);
-    ui.painter().hline(x, y, egui::Stroke::new(2.5, LINES[k % LINES.len()]));
-    shown
+/// Length of the line that shows the colour of a pin, points.
+const SWATCH_LENGTH: f32 = 14.0;
+
+/// The name of a pin over all columns of a grid, beside a line in the colour of its lines: that is
+/// too dark for text in one theme.
+fn name_above(ui: &mut Ui, k: usize, name: &str) {
+    let height = ui.text_style_height(&egui::TextStyle::Body);
+    let (cell, _) = ui.allocate_exact_size(egui::vec2(SWATCH_LENGTH, height), egui::Sense::hover());
+    ui.painter().hline(cell.x_range(), cell.center().y, egui::Stroke::new(2.5, LINES[k % LINES.len()]));
+    // The name takes no part in the widths of the columns.
+    let right = egui::pos2(ui.clip_rect().right() - 2.0, cell.bottom());
+    let room = egui::Rect::from_min_max(cell.right_top() + egui::vec2(4.0, 0.0), right);
+    let mut over = ui.new_child(egui::UiBuilder::new().max_rect(room));
+    over.add(egui::Label::new(RichText::new(name).strong()).truncate()).on_hover_text(name);
 }
 
 /// A row of a grid, dimmed while its figures are not of the scene as it is.
@@ -157,7 +166,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The greatest of each whole run, where time ran.
-fn runs(ui: &mut Ui, state: &AppState) {
+fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
     if state.analysis.references.iter().all(|h| h.run.is_none()) {
         return;
     }
@@ -170,7 +179,7 @@ fn runs(ui: &mut Ui, state: &AppState) {
     ui.separator();
     ui.strong("Whole runs");
     readout::wide(ui, "runs", |ui| {
-        Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).show(ui, |ui| {
             for (title, help) in [
                 ("", ""),
                 ("Lasts", "From its first to its last picture"),
@@ -190,11 +199,12 @@ fn runs(ui: &mut Ui, state: &AppState) {
                 Some((String::new(), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
             });
             for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+                if let Some((k, name)) = k.and_then(|k| Some((k, names.get(k)?))) {
+                    name_above(ui, k, &name.full);
+                    ui.end_row();
+                }
                 let cells = |ui: &mut Ui| {
-                    match k {
-                        Some(k) => number(ui, k),
-                        None => ui.strong(&name),
-                    };
+                    ui.strong(&name);
                     ui.label(format::duration(last - first));
                     for peak in peaks {
                         let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
