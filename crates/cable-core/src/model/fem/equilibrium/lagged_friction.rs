@@ -4,8 +4,7 @@
 use crate::math::{larger, smaller};
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, ChangedNodes, StickSlipChanges, update_stick_slip};
-use crate::model::fem::system::contact::friction_limits::FrictionLimits;
-use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::system::{Converged, Failure, FailureCause, FrictionLimits, Unknowns};
 
 /// Tolerance of a round in which friction limits are sought, as a fraction of that of the
 /// equilibrium. Larger: the search follows noise; smaller: every round seeks what round-off hides.

@@ -27,6 +27,7 @@ pub(in crate::model::fem) use contact::contact_pair::ContactPair;
 pub(in crate::model::fem) use contact::contact_set::ContactSet;
 pub(in crate::model::fem) use contact::floor_friction::RoundFloorFriction;
 pub(in crate::model::fem) use contact::friction_contact::slip_at_rest;
+pub(in crate::model::fem) use contact::friction_limits::FrictionLimits;
 pub(in crate::model::fem) use contact::outline_motion::OutlineMotion;
 pub(in crate::model::fem) use contact::self_contact::{Coupling, SelfContactLaws, couple};
 pub(in crate::model::fem) use loss_branches::{Loss, damping_time};
