@@ -130,7 +130,7 @@ impl Camera {
 
     /// Widens a fitted view by as little as brings a rectangle (m) into the canvas within free
     /// borders (points), where what it shows now stays in it; returns whether the rectangle is in
-    /// view then. The view is no more than [`MAX_WIDENING`] times as wide as it was fitted.
+    /// view then. The view is no more than `MAX_WIDENING` times as wide as it was fitted.
     pub fn widen(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) -> bool {
         let [left, right, top, bottom] = border;
         let free = Rect::from_min_max(canvas.min + vec2(left, top), canvas.max - vec2(right, bottom));
