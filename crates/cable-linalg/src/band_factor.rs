@@ -1,8 +1,8 @@
 //! Factors of band matrices.
 
 use crate::band_matrix::BandMatrix;
-use crate::both_ends::{meet_in_the_middle, rows_beside_middle, solve_from_both_ends};
-use crate::chain::{Chain, factor, solve};
+use crate::one_way_elimination::{FactorRows, factor, solve};
+use crate::two_way_elimination::{meet_in_the_middle, rows_beside_middle, solve_from_both_ends};
 use crate::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, FactorError, WIDEST};
 
 /// The factor of a [`BandMatrix`], with everything needed to factorise again and again.
@@ -11,9 +11,9 @@ pub struct BandFactor {
     rows: usize,
     half_bandwidth: usize,
     /// From the first row to the last.
-    whole: Chain,
+    whole: FactorRows,
     /// From both ends to the b rows in the middle, which are the last of each.
-    halves: [Chain; 2],
+    halves: [FactorRows; 2],
     /// L of the rows in the middle, and 1/d on its diagonal.
     middle: [[f64; WIDEST]; WIDEST],
     /// True if the last factor is the one from both ends.
@@ -31,7 +31,7 @@ impl BandFactor {
         if b > WIDEST {
             return Err(too_large);
         }
-        let chain = |rows| Chain::new(rows, b).ok_or(too_large);
+        let chain = |rows| FactorRows::new(rows, b).ok_or(too_large);
         let [first, second] = rows_beside_middle(rows, b);
         Ok(Self {
             rows,

@@ -16,17 +16,17 @@
 
 mod band_factor;
 mod band_matrix;
-mod both_ends;
-mod chain;
-mod coupled;
+mod one_way_elimination;
 mod pivoting_band;
+mod sparse_cholesky;
 #[cfg(test)]
 mod tests;
+mod two_way_elimination;
 
 pub use band_factor::BandFactor;
 pub use band_matrix::BandMatrix;
-pub use coupled::solve_coupled;
 pub use pivoting_band::PivotingBand;
+pub use sparse_cholesky::solve_coupled;
 
 use thiserror::Error;
 

@@ -5,7 +5,7 @@
 //! | `mod.rs` | [`Verifier`]: checks the laws of an answer; the result is a [`Verification`] |
 //! | `checked_cable.rs` | one cable with the quantities that the laws need: forces, bars,
 //! neighbouring obstacles |
-//! | `answer.rs` | finite numbers, and nodes in order along the material |
+//! | `well_formed_answer.rs` | finite numbers, and nodes in order along the material |
 //! | `penetration.rs` | no cable lies inside an obstacle or itself |
 //! | `balance.rs` | forces on each piece, contacts and their friction, momentum |
 //! | `flexible_cable.rs`, `stiff_cable.rs` | tension, length and bending moment from node to node |
@@ -24,7 +24,6 @@
 //! balance; there the momentum of each cable must change by the impulses of its account of the
 //! step.
 
-mod answer;
 mod balance;
 mod checked_cable;
 mod flexible_cable;
@@ -38,6 +37,7 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 mod tolerance;
+mod well_formed_answer;
 
 use serde::{Deserialize, Serialize};
 
@@ -101,11 +101,11 @@ impl Verifier {
 fn check(found: &mut Verification, checked: &CheckedCable<'_>, depth: Depth) {
     let (cable, answer) = (checked.cable, checked.answer);
     found.ask(Law::Finite);
-    if let Some(finding) = answer::not_finite(checked) {
+    if let Some(finding) = well_formed_answer::not_finite(checked) {
         found.report(finding);
         return;
     }
-    if !answer::check_material(checked, found) {
+    if !well_formed_answer::check_material(checked, found) {
         return;
     }
     let near = checked.near();

@@ -10,16 +10,16 @@
 //! | `shared_nodes.rs` | [`SharedNodes`]: the copies of an answer have them in common |
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `inertia_effect.rs` | [`InertiaEffect`]: how fast a motion is, and what it would be without inertia |
-//! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
+//! | `cheaper_choice_error.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
 //! | `node_motion.rs` | displacements and accelerations of the nodes, from earlier ones |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
+mod cheaper_choice_error;
 mod energy;
 mod energy_account;
 pub(crate) mod error_estimates;
 mod inertia_effect;
 mod model_reason;
-mod next_cheaper;
 pub(crate) mod node_motion;
 pub(crate) mod robot_report;
 mod shared_nodes;
@@ -31,12 +31,12 @@ use crate::math::{Vec2, larger};
 use crate::model_id::Model;
 use crate::verification_report::Verification;
 
+pub use self::cheaper_choice_error::{NeglectedEffect, NextCheaper};
 pub use self::energy::Energy;
 pub use self::energy_account::EnergyAccount;
 pub use self::error_estimates::ErrorEstimates;
 pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
-pub use self::next_cheaper::{NeglectedEffect, NextCheaper};
 pub use self::robot_report::{Going, RobotReport, RobotWork};
 pub use self::shared_nodes::SharedNodes;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};

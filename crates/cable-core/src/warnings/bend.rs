@@ -21,7 +21,7 @@
 //! where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) /
 //! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
 
-use super::guide::{Guide, guide_at_node};
+use super::guide_at_node::{Guide, guide_at_node};
 use super::tangle::turns;
 use crate::math::larger;
 use crate::problem::Problem;

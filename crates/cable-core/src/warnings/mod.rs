@@ -6,7 +6,7 @@
 //! | `monitor.rs` | [`WarningMonitor`]: warnings that persist |
 //! | `tension.rs` | tension limits, breaks, slack |
 //! | `bend.rs` | bend radii and sidewall pressure |
-//! | `guide.rs` | what leads the cable at a node |
+//! | `guide_at_node.rs` | what leads the cable at a node |
 //! | `tangle.rs` | loops, curls and wraps |
 //! | `snag.rs` | an obstacle that holds the cable while the pull grows |
 //! | `energy_growth.rs` | energy that nothing has given |
@@ -17,7 +17,7 @@
 
 mod bend;
 mod energy_growth;
-mod guide;
+mod guide_at_node;
 mod monitor;
 mod snag;
 mod tangle;

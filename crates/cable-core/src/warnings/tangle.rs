@@ -7,7 +7,7 @@ use crate::math::{Vec2, angle};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node, Warning, WarningCause};
 
-use super::guide::{Guide, guide_at_node};
+use super::guide_at_node::{Guide, guide_at_node};
 use crate::contact::self_crossings::{SelfCrossing, crossings};
 
 /// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and

@@ -57,7 +57,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
-            Dialog::StartHere => crate::app::welcome_dialog::ui(ui, &state.ui.recent, commands),
+            Dialog::StartHere => crate::app::guidance::welcome_dialog::ui(ui, &state.ui.recent, commands),
             Dialog::About => about(ui, commands),
             Dialog::Palette { text } => crate::app::palette::ui(ui, text, state, commands),
             Dialog::ImportMap { path, text, unit_m } => {

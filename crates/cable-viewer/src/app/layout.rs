@@ -3,7 +3,8 @@
 use egui::style::ScrollAnimation;
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui, UiBuilder, vec2};
 
-use crate::app::{first_steps, menu, tutorial_bar};
+use crate::app::guidance::{first_step_hints, tutorial_bar};
+use crate::app::menu;
 use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
 use crate::state::{AppState, ToolSection};
@@ -197,7 +198,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     canvas::follow::offer(ui, canvas.response.rect, state, commands);
-    first_steps::ui(ui, canvas.response.rect, state, commands);
+    first_step_hints::ui(ui, canvas.response.rect, state, commands);
     highlight::frame(ui.ctx());
     focus::frame(ui.ctx());
 }

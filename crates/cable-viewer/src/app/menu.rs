@@ -25,7 +25,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Tools", |ui| crate::app::analysis_tools::menu(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
-        ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
+        ui.menu_button("Learn", |ui| crate::app::guidance::tutorial_bar::menu(ui, commands));
         if ui.ctx().content_rect().width() < MIN_WHOLE_WIDTH {
             ui.menu_button("More", |ui| dialogs(ui, commands));
         } else {

@@ -3,12 +3,11 @@
 //! - `layout`, `menu`, `keys`, `palette`, `palette_entries`: where panels are, and every command by
 //!   menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
-//! - `first_steps`, `welcome_dialog`: the hints of the first minute, and what to begin with
 //! - `frame_pacing`: fewer frames where there is no GPU
 //! - `headline`: the scene's name and the figures that always stand at the top
 //! - `held_clicks`: clicks that come before the first frame, or are over within one
 //! - `analysis_tools`: what is asked beside the answer, as verbs
-//! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
+//! - `guidance`: hints of the first minute, the welcome dialog, and tutorials
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
 //! - `canvas_picture`: the canvas with its legend as a picture file
 
@@ -17,8 +16,8 @@ mod canvas_picture;
 mod dialogs;
 pub mod documentation_pictures;
 mod feedback_form;
-mod first_steps;
 mod frame_pacing;
+pub mod guidance;
 mod headline;
 mod held_clicks;
 mod keys;
@@ -28,9 +27,6 @@ pub mod palette;
 mod palette_entries;
 mod path_picker;
 pub mod screenshot;
-mod tutorial_bar;
-pub mod tutorials;
-mod welcome_dialog;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -42,7 +38,7 @@ use crate::app::frame_pacing::{FramePacing, SOFTWARE_FRAME_INTERVAL};
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::{Autosave, Changes};
-use crate::io::{first_steps as first_steps_file, recent_files};
+use crate::io::{first_steps_mark, recent_files};
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach, work_precision};
 use crate::render::theme;
 use crate::state::analysis::hold;
@@ -153,7 +149,7 @@ impl ViewerApp {
         }
         self.recent_list = Some((list, Vec::new()));
         let mark = path.with_file_name("first-steps.txt");
-        if first_steps_file::are_done(&mark) {
+        if first_steps_mark::are_done(&mark) {
             self.state.ui.first_steps.hide();
         } else {
             self.first_steps_mark = Some(mark);
@@ -397,7 +393,7 @@ impl ViewerApp {
         if self.state.ui.first_steps.open().is_empty()
             && let Some(mark) = self.first_steps_mark.take()
         {
-            first_steps_file::remember(&mark);
+            first_steps_mark::remember(&mark);
         }
         let title = format!("{} – Cable simulator", headline::title(&self.state));
         if title != self.title {

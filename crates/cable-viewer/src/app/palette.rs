@@ -5,8 +5,8 @@ use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
 use crate::app::analysis_tools::tools;
+use crate::app::guidance::tutorials::{self, TUTORIALS};
 use crate::app::palette_entries;
-use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
 use crate::panels::timeline::restart_button;

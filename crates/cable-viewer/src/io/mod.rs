@@ -2,7 +2,7 @@
 //! show.
 //!
 //! - `scene_file`: scenes
-//! - `recent_files`, `first_steps`: what was opened last, and that the hints were followed
+//! - `recent_files`, `first_steps_mark`: what was opened last, and that the hints were followed
 //! - `folder`: what is in a folder, for dialogs that ask for a path
 //! - `saved_run`: the folder of a run, read again
 //! - `graph_file`: what is in view of a graph, as CSV, SVG or PNG
@@ -13,7 +13,7 @@
 
 pub mod autosave;
 pub mod feedback;
-pub mod first_steps;
+pub mod first_steps_mark;
 pub mod folder;
 pub mod graph_drawing;
 pub mod graph_file;

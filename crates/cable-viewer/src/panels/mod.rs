@@ -3,7 +3,7 @@
 //! - `scene`: the outline on the left, and the forms of what stands in it
 //! - `selected_item`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on
 //!   the right
-//! - `readouts`, `warnings`, `warning_figures`, `analysis`: what was answered, on the right
+//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
 //! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
@@ -25,5 +25,4 @@ pub mod scene_errors;
 pub mod selected_item;
 pub mod solver;
 pub mod timeline;
-mod warning_figures;
 pub mod warnings;

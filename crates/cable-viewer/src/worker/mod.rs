@@ -7,7 +7,7 @@
 //! - `solver_thread`: the loop of the thread
 //! - `slots`: the request, the answer and the solve that window and thread share
 //! - `superseded_solve`: the solve that nobody waits for any more, and its abandoned thread
-//! - `tunnelling`: whether a cable passed an obstacle
+//! - `winding_number`: whether a cable passed an obstacle
 //! - `request`: what the window asks
 //! - `draft`: coarse answers that follow the hand
 //! - `timing`: frames, drafts and bounds
@@ -19,7 +19,7 @@ mod slots;
 mod solver_thread;
 mod superseded_solve;
 pub mod timing;
-mod tunnelling;
+mod winding_number;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;

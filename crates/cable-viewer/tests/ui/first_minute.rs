@@ -3,7 +3,7 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::app::tutorials::TUTORIALS;
+use cable_viewer::app::guidance::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::Item;
 use cable_viewer::state::dialog::{Dialog, Replacement};

@@ -423,7 +423,7 @@ fn issue_020_the_bar_of_a_panel_lies_beside_its_figures_under_the_pointer_too() 
 fn issue_020_a_step_of_a_guide_is_one_row() {
     let mut harness = open(catalog::tank_robot());
     harness.set_size(Vec2::new(1024.0, 640.0));
-    for (tutorial, guide) in cable_viewer::app::tutorials::TUTORIALS.iter().enumerate() {
+    for (tutorial, guide) in cable_viewer::app::guidance::tutorials::TUTORIALS.iter().enumerate() {
         for step in 0..guide.steps.len() {
             let place = cable_viewer::state::tutorial_place::TutorialPlace { tutorial, step };
             harness.state_mut().state.ui.tutorial = Some(place);

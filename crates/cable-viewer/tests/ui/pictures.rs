@@ -292,7 +292,7 @@ fn guide_light() {
 
     let draw = |app: &mut ViewerApp, ctx: &egui::Context| {
         app.state.view.theme = egui::ThemePreference::Light;
-        app.apply(ctx, vec![Command::File(cable_viewer::app::tutorials::open(0))]);
+        app.apply(ctx, vec![Command::File(cable_viewer::app::guidance::tutorials::open(0))]);
         (app.state.live.snapshot.solve_wall_s, app.state.live.latest.solve_wall_s) = (1e-3, 1e-3);
     };
     let picture = screenshot::draw(catalog::hanging_span(), [1100, 640], draw).unwrap();

@@ -5,33 +5,28 @@
 //! |---|---|
 //! | `state` | the state of the cable (`state/cable_state.rs`) and its parts, and the setup of a step |
 //! | `stepper` | takes implicit steps from that state: one with inertia, halvings, reports |
-//! | `contact_free` | can the cable touch anything? |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: the choice of its solver, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
 //! | `mesh`, `remesh` | nodes, bars, sliding nodes and paths round corners; changes of nodes between steps |
-//! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
+//! | `obstacle` | can the cable touch anything? does it run through an obstacle? the robot's outline |
 //! | `first_shape` | the first shape: along the route, clear of obstacles |
 //! | `transfer` | states and answers of other meshes and models |
-//! | `results`, `mesh_error` | the answer of a state, and its errors |
-//! | `equilibrium_search`, `easier_start` | the search for an equilibrium: choice of solver and of start |
-//! | `stiff_equilibrium` | the equilibrium of a stiff cable in contact, by `elastica` |
+//! | `results` | the answer of a state |
+//! | `equilibrium_search` | the search for an equilibrium: choice of solver, start and mesh |
 //! | `settings` | the tuned constants |
 //!
 //! [`FemModel`] decides which part answers, and passes the state to another part when the question
 //! changes.
 
-mod contact_free;
-mod easier_start;
 mod elastica;
 mod equilibrium;
 mod equilibrium_search;
 mod first_shape;
 mod free;
 mod mesh;
-mod mesh_error;
 pub(in crate::model) mod newton;
 mod obstacle;
 mod remesh;
@@ -39,7 +34,6 @@ mod results;
 mod settings;
 mod state;
 mod stepper;
-mod stiff_equilibrium;
 pub(crate) mod system;
 #[cfg(test)]
 mod tests;
@@ -50,8 +44,8 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
-use crate::model::fem::contact_free::touches_nothing;
-use crate::model::fem::mesh_error::TwoMeshes;
+use crate::model::fem::equilibrium_search::TwoMeshes;
+use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::obstacle::{outline_report, place_outline};
 use crate::model::fem::system::WorkBudget;
 use crate::model::tension_gauge::TensionGauge;

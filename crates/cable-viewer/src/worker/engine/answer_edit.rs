@@ -12,7 +12,7 @@ use crate::state::NoAnswer;
 use crate::worker::draft;
 use crate::worker::request::{Edit, EditStart};
 use crate::worker::timing::{DRAFT_AFTER_S, DRAFT_FIRST_S};
-use crate::worker::tunnelling;
+use crate::worker::winding_number;
 
 impl Engine {
     /// Shows an edit with few segments, if answering it in full would take long; whether it did. A
@@ -104,7 +104,7 @@ impl Engine {
             return laid;
         };
         let tunnelled_cables = match &laid {
-            Ok(laid) => tunnelling::tunnelled_cables(old, laid),
+            Ok(laid) => winding_number::tunnelled_cables(old, laid),
             // Only a scene that could be solved from where the cable is gets a second look.
             Err(_) if draft::penetrates_new_obstacle(edit, old) => return laid,
             Err(_) => (0..edit.scene.cables.len()).collect(),
@@ -114,14 +114,14 @@ impl Engine {
         }
         let mut scene = edit.scene.clone();
         let routes: Vec<(usize, Vec<Point>)> =
-            tunnelled_cables.iter().filter_map(|&k| Some((k, tunnelling::cable_route(old, k)?))).collect();
+            tunnelled_cables.iter().filter_map(|&k| Some((k, winding_number::cable_route(old, k)?))).collect();
         for (k, way) in &routes {
             if let Some(cable) = scene.cables.get_mut(*k) {
                 cable.route_m.clone_from(way);
             }
         }
         match of(&scene) {
-            Ok(led) if laid.is_err() || tunnelling::tunnelled_cables(old, &led).len() < tunnelled_cables.len() => {
+            Ok(led) if laid.is_err() || winding_number::tunnelled_cables(old, &led).len() < tunnelled_cables.len() => {
                 self.outbox.routes = routes;
                 edit.scene = scene;
                 Ok(led)

@@ -5,7 +5,7 @@ use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
 };
-use crate::model::fem::elastica::guess::contacts::contact_at;
+use crate::model::fem::elastica::guess::contacts_of_answer::contact_at;
 use crate::problem::Problem;
 
 /// Depth to which a cable may lie in an obstacle, as a fraction of its radius: the error of the

@@ -33,18 +33,18 @@
 //! | `active_set` | the contacts, each a point or a stretch |
 //! | `stiffening` | continuation from the flexible cable up in EI |
 //! | `refinement` | new nodes, and states between nodes |
-//! | `answer` | the answer of an elastica, with its error |
+//! | `results` | the answer of an elastica, with its error |
 //! | `chain/` | a chain of bars that is let go: another way to the contacts, and a test of stability |
 //! | `buckled_equilibria` | the other equilibria of a cable that is compressed |
 
 mod active_set;
-mod answer;
 mod boundary_value;
 pub(in crate::model::fem) mod buckled_equilibria;
 mod chain;
 mod guess;
 mod reference_curve;
 mod refinement;
+mod results;
 mod stiffening;
 
 pub(in crate::model::fem) use buckled_equilibria::other_equilibria;
@@ -54,9 +54,9 @@ use crate::math::{Vec2, larger, smaller};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
-pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
+pub(in crate::model::fem) use results::{refine, solution};
 
 /// Relative accuracy of the forces of another equilibrium that a warning reports. Smaller: more
 /// time; larger: its tensions have fewer correct digits than are written.
@@ -88,7 +88,7 @@ pub fn rest(
     let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.filter(|flexible| !chain::is_folded(problem, flexible)).and_then(|flexible| {
         let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
-        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+        let found = results::stiffen_and_refine(elastica, problem, tolerance)?;
         keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
     });
     let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
@@ -119,7 +119,7 @@ fn rest_by_chain(
     let (problem, flexible, chain) = (chain_input.problem, chain_input.friction_source, chain?);
     let bent_from = |chain: &Chain<'_>| {
         let elastica = Elastica::from_chain(chain)?;
-        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+        let found = results::stiffen_and_refine(elastica, problem, tolerance)?;
         keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
     };
     if let Some(found) = bent_from(&chain) {
@@ -203,7 +203,7 @@ pub fn rest_near(
     shape: &[Node],
 ) -> Option<Vec<Node>> {
     let chain = Chain::rest_near(ChainInput { problem, time_s, dragged, friction_source: None }, shape)?;
-    let (found, _) = answer::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
+    let (found, _) = results::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
     keeps_sides(problem, from, &found).then(|| found.nodes.into())
 }
 

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::math::Vec2;
 use crate::model::Settings;
-use crate::model::fem::contact_free::touches_nothing;
 use crate::model::fem::first_shape::push_out::depenetrate;
 use crate::model::fem::first_shape::route::{place_nodes, route};
 use crate::model::fem::first_shape::threading::thread_pulleys;
 use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES, bar_count};
+use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
     CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,

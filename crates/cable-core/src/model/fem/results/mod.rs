@@ -4,13 +4,13 @@
 //! |---|---|
 //! | `mod.rs` | the answer as a whole, and the tension of inner steps |
 //! | `forces.rs` | tensions of bars, forces on ends and nodes, moments |
-//! | `nodes.rs`, `supports.rs`, `contacts.rs`, `self_contact.rs` | those parts of the answer |
+//! | `nodes.rs`, `supports.rs`, `contact_reports.rs`, `self_contact.rs` | those parts of the answer |
 //! | `points_on_round.rs` | the points that draw the cable round a corner, post or pulley |
 //! | `weighted_capstan.rs` | the tension along a round between those at its ends |
 //! | `bending_error.rs` | the error of tension by neglected moments at rounds |
 
 pub(in crate::model::fem) mod bending_error;
-mod contacts;
+mod contact_reports;
 pub(in crate::model::fem) mod forces;
 mod nodes;
 mod points_on_round;
@@ -42,7 +42,7 @@ fn solution_now(d: &CableState) -> CableSolution {
         name: problem.cable.name.clone(),
         nodes: nodes::nodes(d, x, v, &tension, &ends).into(),
         supports: supports::supports(d, x, &ends, &tension),
-        contacts: contacts::contacts(d, x, &tension, &lying_ends),
+        contacts: contact_reports::contacts(d, x, &tension, &lying_ends),
         assumptions: Assumptions {
             bending_stiffness_n_m2: problem.bending_stiffness,
             self_contact: problem.cable.self_contact,

@@ -3,12 +3,12 @@
 //! | room | content |
 //! |---|---|
 //! | `nodes.rs` | positions, tensions, internal forces and curvatures; support reactions |
-//! | `contacts.rs` | contact reports, and the uncertainty of tension beyond each contact |
+//! | `contact_reports.rs` | contact reports, and the uncertainty of tension beyond each contact |
 
-pub(in crate::model::mass_spring) mod contacts;
+pub(in crate::model::mass_spring) mod contact_reports;
 pub(in crate::model::mass_spring) mod nodes;
 
-pub(in crate::model::mass_spring) use contacts::corner_warning;
+pub(in crate::model::mass_spring) use contact_reports::corner_warning;
 
 use crate::math::Vec2;
 use crate::model::mass_spring::dynamics::ChainState;
@@ -34,10 +34,13 @@ pub(in crate::model::mass_spring) fn answer(
             ..Assumptions::default()
         },
         momentum: report.account.report(mesh),
-        contacts: contacts::read(mesh, contacts, &report.cost).into_iter().map(|contact| contact.report).collect(),
+        contacts: contact_reports::read(mesh, contacts, &report.cost)
+            .into_iter()
+            .map(|contact| contact.report)
+            .collect(),
         ..CableSolution::default()
     };
-    let by_contacts = || contacts::tension_uncertainty(mesh, contacts, &report.cost, tolerance);
+    let by_contacts = || contact_reports::tension_uncertainty(mesh, contacts, &report.cost, tolerance);
     let error_estimate = errors.relative(&answer).or_else(by_contacts);
     CableSolution { error_estimate, errors: *errors, ..answer }
 }

@@ -5,7 +5,7 @@ use crate::math::Vec2;
 use crate::model::spans::boundary::{LooseSection, Mode};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
-use crate::model::spans::initial::{contacts, tightening};
+use crate::model::spans::initial::{section_along_route, tightening};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
 use crate::model::spans::section_layout::SectionLayout;
@@ -82,7 +82,7 @@ impl CableEquilibrium {
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = contacts::section_along_route(layout, k, &self.context, begin, shape.posts);
+            let laid = section_along_route::section_along_route(layout, k, &self.context, begin, shape.posts);
             let no_way = Failure::ContactImpossible { s: layout.sections[k].material[0], at: begin.places[0] };
             let (section, route) = laid.ok_or(no_way)?;
             self.sections.push(section);

@@ -6,7 +6,7 @@
 
 use crate::math::{bounded, larger, smaller};
 use crate::model::spans::continuation::StepStats;
-use crate::model::spans::initial::contacts;
+use crate::model::spans::initial::section_along_route;
 use crate::model::spans::newton::{self, Workspace};
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
 use crate::model::spans::section_layout::SectionLayout;
@@ -121,7 +121,8 @@ impl CableEquilibrium {
             c.ends.material = c.ends.material.map(|s| s + by);
         }
         for section in &mut self.sections {
-            contacts::solve_spans(section, &self.context).ok_or(Failure::ContactCycling { s: section.from })?;
+            section_along_route::solve_spans(section, &self.context)
+                .ok_or(Failure::ContactCycling { s: section.from })?;
         }
         for _ in 0..layout.settings.changes.max_changes {
             let materials = self.material_at_contacts();

@@ -4,7 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `initial_mesh.rs` | bars laid along a curve, with a node at each support and load |
-//! | `contacts.rs` | gaps of nodes and bars to obstacles; which contacts push |
+//! | `chain_contacts.rs` | gaps of nodes and bars to obstacles; which contacts push |
 //! | `newton_step.rs` | one Newton step with tensions as unknowns and an active set of contacts |
 //! | `relaxation.rs` | pseudo-transient continuation to rest; a push sideways off unstable balances |
 //! | `solution.rs` | a chain at rest as an answer: nodes, moments, reactions, contact reports |
@@ -16,11 +16,11 @@
 //! ```
 //! The chain is laid along a curve (`initial_mesh`) and comes to rest by Newton's method with a
 //! resistance to motion that fades (`relaxation`, of steps by `newton_step`). Obstacles enter as
-//! contacts that the step opens and closes (`contacts`), and a chain at rest is written as an
+//! contacts that the step opens and closes (`chain_contacts`), and a chain at rest is written as an
 //! answer (`solution`). At the end the second derivative of E on the active set is positive
 //! definite: the equilibrium is stable.
 
-mod contacts;
+mod chain_contacts;
 mod initial_mesh;
 mod newton_step;
 mod relaxation;
@@ -32,7 +32,7 @@ use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::first_shape::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
-pub(super) use contacts::ChainContact;
+pub(super) use chain_contacts::ChainContact;
 pub(super) use relaxation::{CLAMPED_EULER, LYING_EULER, RestState};
 
 /// Ratio of a bar's length to its unstretched length below which an answer is folded there.

@@ -12,7 +12,7 @@ use crate::energy::{Curvature, Energy};
 use crate::linalg::{BandFactor, BandMatrix, PivotingBand};
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::fem::elastica::chain::Chain;
-use crate::model::fem::elastica::chain::contacts::ChainContact;
+use crate::model::fem::elastica::chain::chain_contacts::ChainContact;
 
 /// Maximum number of changes of the active set in a step. Larger: the first steps pay for accuracy
 /// they do not need.

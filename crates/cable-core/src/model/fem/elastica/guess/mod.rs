@@ -3,15 +3,15 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `contacts.rs` | contacts read off an answer's nodes or reports, or off a chain, with friction |
+//! | `contacts_of_answer.rs` | contacts read off an answer's nodes or reports, or off a chain, with friction |
 //! | `pieces.rs` | the cable divided into pieces at contacts, holds and loads; reduced EI |
 //! | `bends.rs` | angles and moments of the pieces: boundary layers e^{−s/λ} or those of the nodes |
 //!
-//! The contacts of that answer (`contacts`), the supports and the loads divide the cable into
-//! pieces (`pieces`). Their nodes lie along the curve of the answer, and are bent like those of a
-//! stiff cable (`bends`).
+//! The contacts of that answer (`contacts_of_answer`), the supports and the loads divide the cable
+//! into pieces (`pieces`). Their nodes lie along the curve of the answer, and are bent like those
+//! of a stiff cable (`bends`).
 
-pub(super) mod contacts;
+pub(super) mod contacts_of_answer;
 
 mod bends;
 mod pieces;

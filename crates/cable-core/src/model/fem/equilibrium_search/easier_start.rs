@@ -14,7 +14,7 @@ use crate::problem::Problem;
 use crate::solution::Warning;
 
 /// The outcome of starting from the solution of `spans`.
-pub(super) enum SpansStart {
+pub(in crate::model::fem) enum SpansStart {
     /// The mesh is in equilibrium there, too; with the warnings about it.
     Accepted(Vec<Warning>),
     /// The mesh is not in equilibrium there and relaxes from its own first shape.
@@ -29,7 +29,7 @@ impl FemModel {
     /// Starts from the equilibrium of `spans` with the least slide, if it has one: a cable that
     /// relaxes by itself forms folds, which friction then holds. Returns the outcome, and the
     /// solution of `spans` if it belongs to this cable.
-    pub(super) fn start_from_spans(&mut self) -> (SpansStart, Option<InitialEquilibrium>) {
+    pub(in crate::model::fem) fn start_from_spans(&mut self) -> (SpansStart, Option<InitialEquilibrium>) {
         let first = match initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose) {
             Ok(Some(first)) => first,
             Ok(None) => return (SpansStart::Unknown, None),
@@ -61,7 +61,7 @@ impl FemModel {
     /// inextensible bars is ill-conditioned although the equilibrium hardly differs. That search
     /// may itself start from an easier one. Cables with an axial stiffness below `eased_loads`, in
     /// whole loads, are not eased like this. All searches share the `work`.
-    pub(super) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
+    pub(in crate::model::fem) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
         let segments = if fine > tuning.start.two_mesh_bars {
@@ -101,7 +101,7 @@ impl FemModel {
     }
 
     /// Starts from the equilibrium without obstacles, and then from that of an easier cable.
-    pub(super) fn start_from_own_statics(&mut self, eased_loads: f64, work: &mut WorkBudget) {
+    pub(in crate::model::fem) fn start_from_own_statics(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         if self.statics.settle(&self.dragged).is_ok() {
             self.stepper.start_from_shape(&self.statics.state(), &self.dragged);
         }

@@ -4,7 +4,7 @@
 //!
 //! Masses and springs are of the second order in the air and of the first at corners and where the
 //! cable touches down, as the bars of `fem` in contact are, and the estimate is the same
-//! (`fem/mesh_error`).
+//! (`fem/equilibrium_search/mesh_error.rs`).
 
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;

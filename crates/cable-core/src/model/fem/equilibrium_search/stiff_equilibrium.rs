@@ -20,7 +20,7 @@ const STIFF_SHIFT_LIMIT: f64 = 0.05;
 impl FemModel {
     /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None if
     /// none is found.
-    pub(super) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
+    pub(in crate::model::fem) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
@@ -35,7 +35,7 @@ impl FemModel {
     }
 
     /// Finds the elastica from the equilibrium of the mesh.
-    pub(super) fn elastica_from_mesh(&mut self) -> Option<Cost> {
+    pub(in crate::model::fem) fn elastica_from_mesh(&mut self) -> Option<Cost> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
@@ -57,14 +57,14 @@ impl FemModel {
     }
 
     /// A warning of a stiff cable's equilibrium whose error exceeds the tolerance.
-    pub(super) fn elastica_warning(&self) -> Option<Warning> {
+    pub(in crate::model::fem) fn elastica_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.elastica_answer.as_ref()?.error_estimate?, self.settings.tolerance);
         let cause = WarningCause::BarContacts;
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     /// Raises an elastica to the whole stiffness, refines it and stores its answer.
-    pub(super) fn accept_elastica(&mut self, mut found: Elastica) -> Option<Cost> {
+    pub(in crate::model::fem) fn accept_elastica(&mut self, mut found: Elastica) -> Option<Cost> {
         if !found.stiffen(&self.problem) {
             return None;
         }
@@ -78,7 +78,7 @@ impl FemModel {
 
     /// A warning of the bending of a stiff cable that the mesh neglects, if it exceeds the
     /// tolerance.
-    pub(super) fn coarse_bend_warning(&mut self) -> Option<Warning> {
+    pub(in crate::model::fem) fn coarse_bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
@@ -93,7 +93,7 @@ impl FemModel {
     }
 
     /// A warning of the other equilibria of a compressed stiff cable: it may bow to another side.
-    pub(super) fn bow_warning(&self) -> Option<Warning> {
+    pub(in crate::model::fem) fn bow_warning(&self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }

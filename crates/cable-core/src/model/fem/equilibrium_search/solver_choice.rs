@@ -3,10 +3,10 @@
 
 use crate::error::SolveError;
 use crate::model::StepReport;
-use crate::model::fem::contact_free::touches_nothing;
-use crate::model::fem::easier_start::SpansStart;
 use crate::model::fem::equilibrium::slides_as_a_whole;
-use crate::model::fem::mesh_error::Refinement;
+use crate::model::fem::equilibrium_search::easier_start::SpansStart;
+use crate::model::fem::equilibrium_search::mesh_error::Refinement;
+use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, Part};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
@@ -15,7 +15,7 @@ use crate::state::State;
 
 impl FemModel {
     /// Finds the equilibrium.
-    pub(super) fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
+    pub(in crate::model::fem) fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
         if touches_nothing(&self.problem) {
             return self.equilibrium_without_contact();
         }
@@ -33,7 +33,7 @@ impl FemModel {
     /// Finds the equilibrium of a cable that can touch nothing. The continuation in EI of a stiff
     /// cable ends where its shape snaps over, as when clamps turn upwards a cable that sags against
     /// them: a relaxed chain of bars follows the snap, as in contact.
-    pub(super) fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
+    pub(in crate::model::fem) fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
         self.make_present(Part::Statics)?;
         self.elastica_answer = None;
         let found = self.statics.settle(&self.dragged);
@@ -51,7 +51,7 @@ impl FemModel {
     }
 
     /// Finds the equilibrium of a cable that can touch something.
-    pub(super) fn equilibrium_in_contact(&mut self) -> Result<StepReport, SolveError> {
+    pub(in crate::model::fem) fn equilibrium_in_contact(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.stepper.rested && self.stepper.cable.time() == 0.0;
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
@@ -89,7 +89,7 @@ impl FemModel {
 
     /// Settles the mesh. If no other model `has_equilibrium` for the cable, the unbalanced forces
     /// of its nodes must not add up to a force that moves it.
-    pub(super) fn settle_mesh(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
+    pub(in crate::model::fem) fn settle_mesh(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
         let report = self.stepper.settle(&self.dragged)?;
         match if has_equilibrium { None } else { slides_as_a_whole(&self.stepper.cable) } {
             Some(why) => Err(SolveError::NoRestingPlace { why }),
@@ -99,7 +99,7 @@ impl FemModel {
 
     /// The equilibrium of a cable that slides from its `first` place: it may rest elsewhere, if it
     /// came down to there and does not slide on.
-    pub(super) fn rest_after_slide(
+    pub(in crate::model::fem) fn rest_after_slide(
         &self,
         found: Result<StepReport, SolveError>,
         first: &State,
@@ -117,7 +117,7 @@ impl FemModel {
 
     /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
     /// refines it if the scene leaves its number of bars open.
-    pub(super) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
+    pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
         let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
@@ -125,7 +125,7 @@ impl FemModel {
     }
 
     /// A warning of a mesh that is too coarse for the tolerance.
-    pub(super) fn coarse_mesh_warning(&self) -> Option<Warning> {
+    pub(in crate::model::fem) fn coarse_mesh_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.meshes.errors.relative(&self.stepper.solution())?, self.settings.tolerance);
         let cause = WarningCause::CoarseForces { elements: self.stepper.cable.meshing.even_bars };
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))

@@ -11,7 +11,7 @@ use crate::command::scene::is_refused_pull;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::quality;
 use crate::panels::scene_errors::{self, Fix};
-use crate::panels::warning_figures::{figures, short_title};
+use crate::panels::warnings::figures::{figures, short_title};
 use crate::state::{AppState, Item, NoAnswer, OpenPanels, WorkerStatus};
 use crate::units::sentence::sentence;
 use crate::units::{format, unit};

@@ -1,6 +1,6 @@
 //! Elimination from both ends of a band matrix to its middle.
 
-use crate::chain::{Chain, eliminate, pass_back, substitute, substitute_back};
+use crate::one_way_elimination::{FactorRows, eliminate, pass_back, substitute, substitute_back};
 use crate::{FactorError, WIDEST};
 
 /// Rows before and after the `b` rows in the middle.
@@ -29,7 +29,7 @@ pub(super) fn column_from_below<const B: usize>(values: &[f64], j: usize) -> [f6
 #[inline(always)]
 pub(super) fn meet_in_the_middle<const B: usize>(
     values: &[f64],
-    halves: &mut [Chain; 2],
+    halves: &mut [FactorRows; 2],
     middle: &mut [[f64; WIDEST]; WIDEST],
     x: &mut [f64],
 ) -> Result<(), FactorError> {
@@ -92,7 +92,12 @@ pub(super) fn meet_in_the_middle<const B: usize>(
 
 /// Row `t` of the middle in the `rows` before it: L, and v = L D, which it returns.
 #[inline(always)]
-pub(super) fn eliminate_middle<const B: usize>(rows: usize, t: usize, column: &[f64], chain: &mut Chain) -> [f64; B] {
+pub(super) fn eliminate_middle<const B: usize>(
+    rows: usize,
+    t: usize,
+    column: &[f64],
+    chain: &mut FactorRows,
+) -> [f64; B] {
     let j = rows + t;
     let mut v = [0.0; B];
     for i in 0..B - t {
@@ -118,7 +123,7 @@ pub(super) fn share<const B: usize>(v: &[f64; B], t: usize, row: &[f64], u: usiz
 /// Solves with a factor from both ends.
 #[inline(always)]
 pub(super) fn solve_from_both_ends<const B: usize>(
-    halves: &[Chain; 2],
+    halves: &[FactorRows; 2],
     middle: &[[f64; WIDEST]; WIDEST],
     x: &mut [f64],
 ) {
@@ -140,7 +145,7 @@ pub(super) fn solve_from_both_ends<const B: usize>(
 #[inline(always)]
 pub(super) fn solve_middle<const B: usize>(
     [first, second]: [usize; 2],
-    halves: &[Chain; 2],
+    halves: &[FactorRows; 2],
     middle: &[[f64; WIDEST]; WIDEST],
     [above, below]: [[f64; B]; 2],
     x: &mut [f64],

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::Ui;
 
-use crate::app::tutorials::{self, TUTORIALS};
+use crate::app::guidance::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand};
 use crate::state::dialog::Dialog;
 

@@ -4,14 +4,14 @@ use crate::FactorError;
 
 /// Rows of a factor, one after the other.
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
+pub(super) struct FactorRows {
     /// Rows of L, b numbers each up to the diagonal of ones, after b rows of zeros.
     pub(super) lower: Vec<f64>,
     /// 1/d of each row, after b zeros.
     pub(super) inverse: Vec<f64>,
 }
 
-impl Chain {
+impl FactorRows {
     /// Room for so many rows; None where there is no memory for it.
     pub(super) fn new(rows: usize, b: usize) -> Option<Self> {
         let (mut lower, mut inverse) = (Vec::new(), Vec::new());
@@ -26,7 +26,7 @@ impl Chain {
 
 /// L and 1/d of a matrix of half-bandwidth `b`.
 #[inline(always)]
-pub(super) fn factor(b: usize, values: &[f64], chain: &mut Chain) -> Result<(), FactorError> {
+pub(super) fn factor(b: usize, values: &[f64], chain: &mut FactorRows) -> Result<(), FactorError> {
     let mut done = Ok(());
     for (j, column) in values.chunks_exact(b + 1).enumerate() {
         let d = eliminate(b, j, column, column[b], chain);
@@ -43,7 +43,7 @@ pub(super) fn factor(b: usize, values: &[f64], chain: &mut Chain) -> Result<(), 
 /// Row `j` of L and of 1/d from the `b` entries of column `j` of the matrix above the diagonal, the
 /// one on it, and the rows before it; returns d.
 #[inline(always)]
-pub(super) fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, chain: &mut Chain) -> f64 {
+pub(super) fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, chain: &mut FactorRows) -> f64 {
     let (before, here) = chain.lower[j * b..].split_at_mut(b * b);
     let (scales, pivot) = chain.inverse[j..].split_at_mut(b);
     let row = &mut here[..b];
@@ -84,7 +84,7 @@ pub(super) fn substitute<const B: usize>(row: &[f64], x: &mut f64, last: &mut [f
 /// Adds what row `j` of a chain, whose unknown is `found`, takes from the B before it, nearest
 /// first.
 #[inline(always)]
-pub(super) fn pass_back<const B: usize>(j: usize, chain: &Chain, found: f64, taken: &mut [f64; B]) {
+pub(super) fn pass_back<const B: usize>(j: usize, chain: &FactorRows, found: f64, taken: &mut [f64; B]) {
     let row = &chain.lower[(j + B) * B..][..B];
     for k in 0..B {
         let before = if k + 1 < B { taken[k + 1] } else { 0.0 };
@@ -94,7 +94,7 @@ pub(super) fn pass_back<const B: usize>(j: usize, chain: &Chain, found: f64, tak
 
 /// The unknown of row `j` of a chain from Lᵀ, when those after it are known.
 #[inline(always)]
-pub(super) fn substitute_back<const B: usize>(j: usize, chain: &Chain, x: &mut f64, taken: &mut [f64; B]) {
+pub(super) fn substitute_back<const B: usize>(j: usize, chain: &FactorRows, x: &mut f64, taken: &mut [f64; B]) {
     let found = *x * chain.inverse[j + B] - taken.first().unwrap_or(&0.0);
     *x = found;
     pass_back(j, chain, found, taken);
@@ -102,7 +102,7 @@ pub(super) fn substitute_back<const B: usize>(j: usize, chain: &Chain, x: &mut f
 
 /// Solves L D Lᵀ x = x for a half-bandwidth B. What the next row needs stays in registers.
 #[inline(always)]
-pub(super) fn solve<const B: usize>(chain: &Chain, x: &mut [f64]) {
+pub(super) fn solve<const B: usize>(chain: &FactorRows, x: &mut [f64]) {
     let mut last = [0.0; B];
     for (j, x) in x.iter_mut().enumerate() {
         substitute(&chain.lower[(j + B) * B..][..B], x, &mut last);

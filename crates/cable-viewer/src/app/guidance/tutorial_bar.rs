@@ -2,7 +2,7 @@
 
 use egui::{Align, Label, Layout, Ui};
 
-use crate::app::tutorials::{self, TUTORIALS};
+use crate::app::guidance::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::AppState;
 use crate::state::dialog::Dialog;
