@@ -114,13 +114,13 @@ pub struct Map {
     pub id: &'static str,
     /// The question.
     pub about: &'static str,
-    /// Who is asked.
+    /// The model that is asked.
     pub model: Model,
     /// Both parameters.
     pub axes: [Axis; 2],
     /// Relative error up to which an answer is right.
     pub tolerance: f64,
-    /// Who else is asked where the model refuses.
+    /// The models that are asked where this one refuses.
     others: &'static [Model],
     ask: fn(Model, [f64; 2]) -> Result<Asked, Error>,
 }

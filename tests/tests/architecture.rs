@@ -170,7 +170,7 @@ fn modules(source: &Path) -> BTreeMap<String, String> {
             continue;
         }
         let text = std::fs::read_to_string(path).expect("a source");
-        // What may see an item is no import.
+        // The module in `pub(in …)` is not imported.
         let text = without_unit_tests(&text).replace("pub(in crate::", "pub(in ");
         let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
         found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());

@@ -85,7 +85,7 @@ fn a_little_bending_stiffness_changes_little() {
     }
 }
 
-/// What lets go later holds the cable until then.
+/// A support that lets go later holds the cable until then.
 #[test]
 fn supports_that_let_go_later_hold_the_first_lay() {
     let mut scene = catalog::over_beam();

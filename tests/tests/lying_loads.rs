@@ -316,8 +316,8 @@ fn what_lies_on_flat_ground_balances_and_keeps_its_cone() {
             let greatest = greatest(a);
             let mut sum = Vec2::new(wx, wy - weight) * cable.length_m;
             for s in &cable.supports {
-                // What a support feels of the cable the cable feels of it; what a load feels is
-                // minus the load.
+                // The force of the cable on a support is that of the support on the cable,
+                // reversed; a load feels minus the load.
                 sum -= reaction(a, &s.name);
             }
             for c in &a.contacts {
@@ -367,7 +367,7 @@ fn held_still_nothing_changes() {
     }
 }
 
-/// What presses on nothing that slides lies in a heap: said, with the place.
+/// A cable that presses on nothing that slides lies in a heap, which is reported with the place.
 #[test]
 fn a_free_end_that_comes_down_on_level_ground_has_lost_its_tension() {
     let s = scene(6.0, "[[0.0, 7.0], [0.0, 1.0]]", &[held("A", &[[0.0, 7.0], [0.0, 4.0]]), free("B"), flat(0.3)]);

@@ -164,8 +164,8 @@ fn list_methods_of_other_files(sources: &Path, out: &mut BTreeSet<String>) {
             if let Some(head) = line.strip_prefix("impl") {
                 let name = without_parameters(head.trim_end_matches([' ', '{'])).trim();
                 let name = name.split(['<', ' ']).next().unwrap_or_default();
-                // What the file itself defines under that name is listed, or private, unless it is
-                // handed out from elsewhere.
+                // An item that the file itself defines under that name is listed, or private,
+                // unless it is handed out from elsewhere.
                 let is_head =
                     |line: &str| line.contains(&format!("struct {name} ")) || line.contains(&format!("enum {name} "));
                 let defines = !handed_out.contains(name) && text.lines().any(is_head);

@@ -403,7 +403,7 @@ impl SolveError {
     #[must_use]
     pub(crate) fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });
-        // That a search ended says nothing of the scene.
+        // The end of a search says nothing about the scene.
         let ended = |e: &Self| matches!(e, Self::NotConverged { .. } | Self::TooMuchWork { .. });
         match (certain(&first), certain(&second)) {
             (_, true) => second,

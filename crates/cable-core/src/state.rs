@@ -24,8 +24,8 @@ pub struct State {
 }
 
 impl State {
-    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the
-    /// answer has two.
+    /// The state of a whole cable at the nodes of its answer. If the answer has two nodes at one
+    /// place, as where the tension jumps, the state has one.
     #[must_use]
     pub fn of_nodes(nodes: &[Node], time_s: f64) -> Self {
         let mut state = Self { time_s, ..Self::default() };

@@ -68,7 +68,7 @@ fn worst(scene: &Scene, index: usize, answer: &CableSolution) -> (f64, f64, Stri
     for w in answer.pieces().flat_map(|p| p.windows(2)) {
         let chord = [place(&w[0]), place(&w[1])];
         for o in &scene.obstacles {
-            // What a node itself lies inside is not the chord's fault.
+            // The depth of the nodes themselves is not the chord's fault.
             let ends = chord.map(|p| cut(&o.shape, radius, [p, p]).max(0.0));
             let depth = cut(&o.shape, radius, chord) - ends[0].max(ends[1]);
             if depth > worst.0 {

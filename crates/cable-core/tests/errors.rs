@@ -46,7 +46,7 @@ const ROUNDED: f64 = 1e-8;
 /// And of this part of the length: by as much the truth's own nodes leave it open where the cable
 /// is between them.
 const READ: f64 = 1e-5;
-/// How many more elements the truth has where no model without a mesh answers.
+/// Factor by which the reference has more elements where no model without a mesh answers.
 const FINER: usize = 6;
 
 /// A cable on a level floor that holds, drawn at one end until a front of sliding has gone
@@ -320,7 +320,8 @@ fn truth(case: &Case, model: Model) -> Option<(CableSolution, Model)> {
         return Some((drawn.answer(), Model::Auto));
     }
     let exact = Settings::default();
-    // Where friction of a wheel chooses among histories, that of the least sliding is asked for.
+    // If the friction of a wheel leaves a choice of histories, the one with the least sliding is
+    // asked for.
     let rubs = case.scene.cables[0].supports.iter().any(|s| s.friction.is_some_and(|f| f > 0.0));
     let by_mesh = std::env::var("ERRORS_TRUTH").is_ok_and(|t| t == "mesh");
     let models = [(Model::Catenary, !rubs), (Model::Spans, true)];
@@ -373,8 +374,8 @@ fn stated(c: &CableSolution) -> [Option<f64>; 4] {
     [e.max_tension_n, e.support_force_n, e.contact_force_n, e.position_m]
 }
 
-/// What came of one family and model: ratios of stated to true error, one list a quantity; None =
-/// nothing is said.
+/// The results of one family and model: ratios of stated to true error, one list a quantity; None =
+/// no error is stated.
 #[derive(Default)]
 struct Tally {
     ratios: [Vec<Option<f64>>; 4],

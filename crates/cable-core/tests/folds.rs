@@ -67,7 +67,7 @@ fn faults(s: &Scene, answer: &Solution) -> Vec<String> {
         if d > ds * (1.0 + strain) + 1e-4 * ds + 1e-4 {
             out.push(format!("{ds:.3} m of material are {d:.3} m long at {:.3} m", pair[0].arc_length_m));
         }
-        // What is in folds between two nodes has no tension at either.
+        // Cable in folds between two nodes has no tension at either.
         let pull = pair[0].tension_n.min(pair[1].tension_n) / weight;
         if d < 0.8 * ds && ds > 1e-9 * c.length_m && pull > 1e-2 {
             out.push(format!("folds under {pull:.2e} of the weight at {:.3} m", pair[0].arc_length_m));

@@ -92,7 +92,7 @@ fn what_a_hand_did_is_repeated() {
     let pulled = found.over_time.iter().map(|b| b.high_n).fold(0.0, f64::max);
     let [low, _, high] = found.most_n;
     assert!(pulled > 1.05 * still && (high - low).abs() > 0.01 * still, "{pulled} {still} {:?}", found.most_n);
-    // Where a hand had moved it before, it begins there.
+    // A support that a hand moved before begins where the hand left it.
     ask.hands =
         vec![Action { time_s: 0.0, what: ActionKind::Support { cable: 0, support, to_m: [from[0], from[1] - 0.2] } }];
     ask.span_s = 0.0;

@@ -248,7 +248,7 @@ fn a_hand_beyond_the_length_pulls_until_the_cable_breaks() {
     }
 }
 
-/// What the hand gives is what the cable gains: it lifts an end by 2 m, slowly.
+/// The work of the hand is the energy that the cable gains: it lifts an end by 2 m, slowly.
 #[test]
 fn a_hand_gives_the_energy_that_the_cable_gains() {
     for model in [Model::Fem, Model::MassSpring] {

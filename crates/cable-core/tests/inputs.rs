@@ -149,7 +149,7 @@ fn ends_that_nothing_holds_come_down_on_what_is_below_them() {
         for more in ["", "route_m = [[0.0, 2.0], [0.3, 0.3], [0.4, -1.0]]"] {
             let s = rest(&scene(&(cable(3.0, 0.028, more, &ends) + &floor)), Model::Auto);
             let s = s.unwrap_or_else(|e| panic!("{end}, {more}: {e}"));
-            // What hangs is 1.986 m at most, and the load lies.
+            // At most 1.986 m hang, and the load lies.
             let top = -s.cables[0].supports[0].reaction_y_n;
             assert!((24.0..24.6).contains(&top), "{end}, {more}: {top} N");
         }

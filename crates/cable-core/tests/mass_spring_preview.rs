@@ -220,7 +220,8 @@ fn uneven_frames_end_where_even_ones_do() {
     }
 }
 
-/// What no step can follow is cut, braked, and said with place and time; either way of stepping.
+/// A motion that no step can follow is cut and braked, and reported with place and time, by either
+/// way of stepping.
 #[test]
 fn what_runs_away_is_held_back_and_said_with_place_and_time() {
     for stepping in [Stepping::Explicit, Stepping::Preview] {
@@ -240,7 +241,7 @@ fn what_runs_away_is_held_back_and_said_with_place_and_time() {
             assert!((w.arc_length_m - place).abs() < 1.0 && w.at_m.is_some(), "{w:?}");
         }
         assert!(s.cables[0].nodes.iter().all(|n| n.vx_m_per_s.hypot(n.vy_m_per_s) <= 300.0 + 1e-9));
-        // What is sound is left alone: the same cable let go at one end, and swung.
+        // A sound motion is left alone: the same cable let go at one end, and swung.
         let mut ends = vec![Support::fixed("left", [0.0, 5.0]), Support::fixed("right", [9.0, 4.0])];
         ends[1].release_s = Some(0.05);
         let mut sim = begun(&cable([10.5, 1.246, 1e6], 40, ends), stepping);

@@ -84,8 +84,8 @@ fn scene(family: usize, number: u64) -> Scene {
     scene
 }
 
-/// How often something was said, was enough, and was neither less than half nor more than ten times
-/// what it should have been.
+/// Counts of errors that were stated, that were large enough, and that were between half of and ten
+/// times the true error.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     all: usize,
@@ -169,7 +169,7 @@ fn compare(scene: &Scene, model: Model, tallies: &mut [Tally; 4], peaks: &mut Pe
             continue;
         }
         let (said, is) = (answer.errors, lately.iter().fold(ErrorEstimates::default(), larger));
-        // What nobody asks about: a millionth of the weight, and of the length.
+        // Differences that are too small to matter: a millionth of the weight, and of the length.
         let cable = &scene.cables[0];
         let (force, length) = (1e-6 * 9.81 * cable.linear_density_kg_per_m * cable.length_m, 1e-6 * cable.length_m);
         tallies[0].note(said.max_tension_n, is.max_tension_n, force);

@@ -28,7 +28,7 @@ struct Way {
     tolerance: f64,
     friction: f64,
     every_s: f64,
-    /// How far the ends that are held begin to the side, m.
+    /// Distance by which the held ends begin to the side, m.
     aside: f64,
 }
 
@@ -99,14 +99,14 @@ fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]
     Ok((most, [range[0].min(most), range[1].max(most)]))
 }
 
-/// What the other runs of a scene are compared with: that on its own mesh, and those that begin a
-/// little aside.
+/// The runs with which the others of a scene are compared: the one on its own mesh, and those that
+/// begin a little aside.
 #[derive(Clone, Copy, Debug)]
 struct Reference {
     most: f64,
     /// From what to what it may be, as it says itself and as the others are, N.
     range: [f64; 2],
-    /// How far apart runs are that begin micrometres apart.
+    /// Greatest difference between runs that begin micrometres apart.
     scatter: f64,
 }
 
@@ -283,9 +283,10 @@ fn a_draped_cable_slips_without_inertia_on_a_fine_mesh() {
     assert!((most / 224.46 - 1.0).abs() < 1e-3, "{most} N");
 }
 
-/// Where cables go slack on the way back, friction that was still that of the round before, what
-/// was left at a hundred nodes, and bars that were changed and not balanced again ended runs: the
-/// tank at 7.2 s (`fem`) and 36.7 s (`auto`), the robot's cable at 31.8 s.
+/// Four faults ended runs: cables that go slack on the way back, friction that was still that of
+/// the round before, a residual left at a hundred nodes, and bars that were changed and not
+/// balanced again. They struck the tank at 7.2 s (`fem`) and 36.7 s (`auto`), and the robot's cable
+/// at 31.8 s.
 #[test]
 fn slack_cables_run_to_their_end_without_inertia() {
     let still = Way { inertia: Inertia::QuasiStatic, ..PLAIN };

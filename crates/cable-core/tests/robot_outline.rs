@@ -125,7 +125,7 @@ fn whatever_the_ground_it_never_crosses_the_robot() {
     }
 }
 
-/// Where the ground rises before it, its rear leans over the cable behind it.
+/// If the ground rises before the robot, its rear leans over the cable behind it.
 #[test]
 fn in_a_valley_it_never_crosses_the_robot() {
     let valley = [[-4.0, 1.0], [4.0, 0.6], [7.5, 0.0], [9.0, 0.0], [13.0, 1.2], [20.0, 1.4]];
@@ -166,8 +166,8 @@ fn lying_over_the_robot_the_forces_balance() {
     assert!(r.push_y_n < -0.05 * weight, "{r:?}");
     let sideways = sum(|s| s.reaction_x_n) + r.push_x_n;
     assert!(sideways.abs() <= ground.x + 2e-3 * weight, "{sideways}: {r:?} {:?}", cable.contacts);
-    // What it turns round on the deck leads it: sharp, but no kink of a free cable, as there may be
-    // in what hangs slack behind it.
+    // The edge of the deck leads the cable: a sharp bend, but no kink of a free cable, as there may
+    // be in the slack part behind it.
     let on_deck = |w: &&cable_core::solution::Warning| w.at_m.is_some_and(|at| at[1] > 1.0);
     let kinks = answer.warnings.iter().filter(on_deck).filter(|w| w.kind == WarningKind::Kink).count();
     assert_eq!(kinks, 0, "{:?}", answer.warnings);
@@ -222,7 +222,7 @@ fn robot_and_cable_agree_in_every_step() {
 fn a_model_that_knows_nothing_of_it_says_so() {
     let mut over = scene(11.5, &LEVEL);
     over.cables[0].supports[0].at_m = Some([18.0, 3.0]);
-    // What lies through the robot is no answer; masses and springs, a quick look, are told so.
+    // A cable that lies through the robot is no answer; `mass-spring`, as a preview, warns of it.
     let refused = Simulation::new(over.clone(), Model::Spans).unwrap().settle().unwrap_err();
     assert!(matches!(&refused, SolveError::Unsound { finding, .. } if finding.with == "robot"), "{refused}");
     let answer = Simulation::new(over, Model::MassSpring).unwrap().settle().unwrap();

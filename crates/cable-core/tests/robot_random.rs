@@ -97,7 +97,7 @@ fn buried(simulation: &Simulation) -> Option<String> {
 /// The checks of every frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Check {
-    /// That nothing of the cable is inside an obstacle.
+    /// No part of the cable is inside an obstacle.
     Burial,
     Nothing,
 }

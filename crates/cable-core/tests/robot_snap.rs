@@ -36,7 +36,7 @@ fn hanging() -> Scene {
 struct Snap {
     /// Greatest mean tension over the time that it takes to break, N.
     peak_n: f64,
-    /// How far the robot comes, m.
+    /// Greatest distance that the robot reaches, m.
     farthest_m: f64,
     /// Its greatest speed, m/s.
     speed_m_per_s: f64,

@@ -141,7 +141,8 @@ fn a_replacement_that_stops_anywhere_is_gone_on_with() {
     }
 }
 
-/// What a manifest says it is replaced by is one of the folder's own, whatever a hostile one says.
+/// The file that a manifest names as its replacement is one of the folder's own, even in a hostile
+/// manifest.
 #[test]
 fn a_successor_elsewhere_is_not_followed() {
     let folder = tempfile::tempdir().unwrap();

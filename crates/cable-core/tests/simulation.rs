@@ -148,7 +148,7 @@ fn nodes_say_how_far_they_came_and_how_their_speed_changes() {
         for _ in 0..60 {
             sim.step(1.0 / 240.0).unwrap();
         }
-        // What held it at its ends leaves waves; its middle of mass knows nothing of them.
+        // The release of its ends leaves waves; the centre of mass does not feel them.
         let nodes = &sim.solution().cables[0].nodes;
         let mean = |of: &dyn Fn(&cable_core::solution::Node) -> f64| {
             let length = nodes[nodes.len() - 1].arc_length_m;

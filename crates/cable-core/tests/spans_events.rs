@@ -261,7 +261,7 @@ fn loads_and_wind_over_a_post() {
     let (c, given) = (&answer.contacts[0], problem.body_force(0.0) * problem.length + Vec2::new(5.0, -65.0));
     let held = answer.supports.iter().fold(Vec2::zeros(), |sum, s| sum + Vec2::new(s.reaction_x_n, s.reaction_y_n));
     let pressed = held - given;
-    // What remains is the post's: its normal and its friction.
+    // The force that remains is the post's: its normal and its friction.
     let size = c.normal_n.hypot(c.friction_n);
     assert!(pressed.norm() > 0.2 * size && pressed.norm() < size * (1.0 + 1e-9), "{pressed} {c:?}");
     assert_eq!(answer.contacts.len(), 1);

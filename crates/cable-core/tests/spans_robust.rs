@@ -34,7 +34,7 @@ struct Case {
     moves: Vec<[Vec2; 2]>,
 }
 
-/// How low and how high the taut string may pass at an x.
+/// Lowest and highest place at which the taut string may pass an x.
 type Gate = (f64, f64, f64);
 
 /// The shortest way from a to b through gates in order of x (the funnel of D. T. Lee and F. P.
@@ -239,7 +239,7 @@ impl Table {
     }
 }
 
-/// What an answer must be, seen from outside.
+/// Requirements on an answer that can be checked without the model.
 fn sound(number: u64, model: &SpansModel, problem: &Problem) {
     let answer = model.solution();
     let greatest = answer.nodes.iter().fold(0.0f64, |m, n| m.max(n.tension_n));
@@ -322,7 +322,7 @@ fn run(number: u64, case: &Case, table: &mut Table) {
     let mut now = Some((model, problem));
     for (k, ends) in case.moves.iter().enumerate() {
         let Some((model, problem)) = &mut now else {
-            // Where a step was not taken it goes on from a rest where the hand is next.
+            // After a step that was refused, it goes on from a rest at the hand's next place.
             now = laid(case, *ends);
             table.again[0] += 1;
             table.again[1] += usize::from(now.is_none());
@@ -367,7 +367,7 @@ fn random_moves_over_random_scenes() {
         run(k, &case(k), &mut table);
     }
     table.told();
-    // What is reached today; less is a change for the worse.
+    // These bounds are reached today; fewer answers are a change for the worse.
     let (rests, unfound, steps, refused) = (table.rests, table.unfound(), table.steps, sum(&table.refused));
     assert!(20 * unfound <= rests, "{unfound} rests not found of {rests}");
     assert!(1000 * refused <= steps, "{refused} steps refused of {steps}");

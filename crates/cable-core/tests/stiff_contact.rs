@@ -180,7 +180,7 @@ impl Shooting<'_> {
             if i == self.events.len() && self.lies {
                 break;
             }
-            // What the event needs, before the way to it.
+            // The quantity that the event needs, before the way to it.
             let marked: Vec<f64> = match event {
                 Some(Event::Contact(m)) if self.marks[*m].stretch => {
                     take(if self.lies && *m + 1 == self.marks.len() { 2 } else { 4 }).to_vec()
@@ -399,7 +399,7 @@ fn root(case: &Case, cable: &CableSolution, steps: usize) -> Result<(Vec<V>, Vec
         s = beyond;
     }
     let (forces, normals, y) = shooting.newton(y)?;
-    // What makes the root a resting place.
+    // The condition under which the root is a resting place.
     let mut k = 0;
     for (i, event) in shooting.events.iter().enumerate() {
         if let Event::Contact(m) = event {

@@ -1,8 +1,8 @@
 //! Stiff cables at rest on rough ground, with boxes, posts, friction and slack, drawn at random:
 //! every scene has an answer that is sound.
 //!
-//! Whether it is sound the checker says of every answer before it is handed out; here it is asked
-//! that there is one, and that it says how accurate it is.
+//! The checker judges every answer before it is handed out; these tests require that there is an
+//! answer, and that it states its error.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

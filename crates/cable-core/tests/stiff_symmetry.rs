@@ -184,7 +184,7 @@ fn differs(a: &CableSolution, b: &CableSolution, length: f64) -> Vec<String> {
 
 type Back = fn(CableSolution) -> CableSolution;
 
-/// What came of a campaign.
+/// The results of a campaign.
 #[derive(Debug, Default)]
 struct Came {
     compared: u64,
@@ -245,7 +245,7 @@ fn stiff_cables_rest_alike_however_they_are_seen() {
     assert!(came.wrong.is_empty() && came.refused.is_empty(), "{came:#?}");
 }
 
-/// What a stiff cable begins with.
+/// The answer of the flexible cable is the start of the stiff one.
 #[test]
 fn flexible_cables_rest_alike_however_they_are_seen() {
     let flexible = |k: u64| {

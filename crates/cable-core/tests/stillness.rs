@@ -1,4 +1,4 @@
-//! What lies still is still: nothing creeps, rattles or gains energy when nothing moves any more.
+//! A cable that lies still stays still: nothing creeps, rattles or gains energy once nothing moves.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;

@@ -90,7 +90,7 @@ fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
     assert!(said && held, "up to {to} N");
 }
 
-/// What hangs and swings has one greatest tension; where what falls on rubble is pulled hardest
+/// A cable that hangs and swings has one greatest tension; the peak of one that falls on rubble
 /// depends on which nodes strike which corners, and the answer says so.
 #[test]
 fn a_greatest_tension_that_depends_on_small_differences_says_so() {

@@ -70,7 +70,7 @@ fn scene(number: u64) -> Scene {
     scene
 }
 
-/// What was found in a campaign.
+/// The faults found in a campaign.
 #[derive(Debug, Default)]
 struct Found {
     steps: usize,

@@ -186,7 +186,7 @@ fn difference(found: &CableSolution, exact: &CableSolution) -> f64 {
     off.fold(0.0, f64::max) / most
 }
 
-/// What came of a campaign.
+/// The results of a campaign.
 #[derive(Debug, Default)]
 struct Came {
     compared: usize,

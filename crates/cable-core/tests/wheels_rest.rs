@@ -101,7 +101,7 @@ fn corners(dice: &mut Dice, hangs: bool) -> Vec<Corner> {
 /// A scene that has a resting place.
 struct Case {
     scene: Scene,
-    /// What is special, for the sum of refusals.
+    /// The kind of the scene, by which refusals are summed.
     kind: String,
 }
 

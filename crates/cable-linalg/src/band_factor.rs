@@ -1,4 +1,5 @@
-//! Factors of band matrices.
+//! A band factor factorises a symmetric band matrix and solves with it, again and again in the same
+//! memory.
 
 use crate::band_matrix::BandMatrix;
 use crate::one_way_elimination::{FactorRows, factor, solve};
@@ -10,9 +11,10 @@ use crate::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, FactorError, WIDEST};
 pub struct BandFactor {
     rows: usize,
     half_bandwidth: usize,
-    /// From the first row to the last.
+    /// Factors by elimination from the first row to the last.
     whole: FactorRows,
-    /// From both ends to the b rows in the middle, which are the last of each.
+    /// Factors by elimination from both ends to the b rows in the middle, which are the last of
+    /// each.
     halves: [FactorRows; 2],
     /// L of the rows in the middle, and 1/d on its diagonal.
     middle: [[f64; WIDEST]; WIDEST],
@@ -31,13 +33,13 @@ impl BandFactor {
         if b > WIDEST {
             return Err(too_large);
         }
-        let chain = |rows| FactorRows::new(rows, b).ok_or(too_large);
+        let factors = |rows| FactorRows::new(rows, b).ok_or(too_large);
         let [first, second] = rows_beside_middle(rows, b);
         Ok(Self {
             rows,
             half_bandwidth: b,
-            whole: chain(rows)?,
-            halves: [chain(first + b)?, chain(second + b)?],
+            whole: factors(rows)?,
+            halves: [factors(first + b)?, factors(second + b)?],
             middle: [[0.0; WIDEST]; WIDEST],
             from_both_ends: false,
         })
@@ -58,7 +60,7 @@ impl BandFactor {
     pub fn factor(&mut self, a: &BandMatrix) -> Result<(), FactorError> {
         debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth);
         self.from_both_ends = false;
-        // With the band known when this is compiled its loops are unrolled: three times as fast.
+        // A half-bandwidth known at compile time lets the loops be unrolled: three times as fast.
         match self.half_bandwidth {
             BARS_HALF_BANDWIDTH => factor(BARS_HALF_BANDWIDTH, &a.values, &mut self.whole),
             BENDING_HALF_BANDWIDTH => factor(BENDING_HALF_BANDWIDTH, &a.values, &mut self.whole),
@@ -66,8 +68,8 @@ impl BandFactor {
         }
     }
 
-    /// Number of negative pivots of the last factorisation: how many directions the matrix bends
-    /// down in.
+    /// Number of negative pivots of the last factorisation: the number of negative eigenvalues of
+    /// the matrix (Sylvester).
     #[must_use]
     pub fn negative_pivots(&self) -> usize {
         self.whole.inverse.iter().skip(self.half_bandwidth).filter(|&&d| !(d > 0.0)).count()

@@ -1,4 +1,4 @@
-//! Symmetric band matrices.
+//! A band matrix stores the entries of a symmetric matrix near its diagonal.
 
 /// A symmetric matrix with entries up to `half_bandwidth` b away from the diagonal. The upper
 /// triangle is stored, b + 1 numbers a column with the diagonal last; those above the first row are

@@ -1,5 +1,5 @@
-//! Symmetric band matrices and their factorisation `A = L D Lᵀ`, sparse ones with faer, and band
-//! matrices without symmetry.
+//! This crate solves linear systems with a banded matrix: symmetric ones by `A = L D Lᵀ`, those
+//! that also couple nodes far apart by faer, and those without symmetry by LU with pivoting.
 //!
 //! A chain of nodes numbered along the cable fills nothing outside its band, so the factor has the
 //! shape of the matrix and needs no symbolic part. Row j of L and d_j follow from the rows before
@@ -10,9 +10,9 @@
 //! ```
 //! [`BandFactor::factor`] and [`BandFactor::solve_in_place`] allocate nothing. There is no
 //! pivoting, so a pivot ≤ 0 (or NaN) means "not positive definite" and is reported with its row,
-//! which tells the node where a structure is not stable. What couples nodes far apart is left to
-//! faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]). A matrix that is not
-//! symmetric, or may be singular on the way, is a [`PivotingBand`].
+//! which tells the node where a structure is not stable. A matrix that also couples nodes far apart
+//! is solved by faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]). A matrix
+//! that is not symmetric, or that may become singular on the way, is a [`PivotingBand`].
 
 mod band_factor;
 mod band_matrix;

@@ -1,8 +1,10 @@
-//! Elimination and substitution row by row from one end of a band matrix to the other.
+//! These functions factorise a symmetric band matrix and substitute row by row, from its first row
+//! to its last.
 
 use crate::FactorError;
 
-/// Rows of a factor, one after the other.
+/// Rows of the factors L and D, in the order of elimination. Room for rows of zeros before the
+/// first lets every row be computed alike.
 #[derive(Clone, Debug)]
 pub(super) struct FactorRows {
     /// Rows of L, b numbers each up to the diagonal of ones, after b rows of zeros.
@@ -24,12 +26,12 @@ impl FactorRows {
     }
 }
 
-/// L and 1/d of a matrix of half-bandwidth `b`.
+/// Computes L and 1/d of a matrix of half-bandwidth `b`.
 #[inline(always)]
-pub(super) fn factor(b: usize, values: &[f64], chain: &mut FactorRows) -> Result<(), FactorError> {
+pub(super) fn factor(b: usize, values: &[f64], factors: &mut FactorRows) -> Result<(), FactorError> {
     let mut done = Ok(());
     for (j, column) in values.chunks_exact(b + 1).enumerate() {
-        let d = eliminate(b, j, column, column[b], chain);
+        let d = eliminate(b, j, column, column[b], factors);
         if !(d > 0.0) {
             done = done.and(Err(FactorError::NotPositive { row: j, pivot: d }));
             if !(d < 0.0) {
@@ -40,14 +42,14 @@ pub(super) fn factor(b: usize, values: &[f64], chain: &mut FactorRows) -> Result
     done
 }
 
-/// Row `j` of L and of 1/d from the `b` entries of column `j` of the matrix above the diagonal, the
-/// one on it, and the rows before it; returns d.
+/// Computes row `j` of L and of 1/d from column `j` of the matrix (`b` entries above the diagonal,
+/// and the diagonal) and from the rows before it; returns d.
 #[inline(always)]
-pub(super) fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, chain: &mut FactorRows) -> f64 {
-    let (before, here) = chain.lower[j * b..].split_at_mut(b * b);
-    let (scales, pivot) = chain.inverse[j..].split_at_mut(b);
+pub(super) fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, factors: &mut FactorRows) -> f64 {
+    let (before, here) = factors.lower[j * b..].split_at_mut(b * b);
+    let (scales, pivot) = factors.inverse[j..].split_at_mut(b);
     let row = &mut here[..b];
-    // Into `row` first v, then L.
+    // `row` holds v first, and L after that.
     for i in 0..b {
         let mut v = column[i];
         for k in 0..i {
@@ -65,7 +67,8 @@ pub(super) fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, chain
     d
 }
 
-/// Takes from an unknown what its row of L takes of the B before it.
+/// One step of forward substitution: subtracts from `x` the product of its row of L with the B
+/// unknowns before it, which `last` holds.
 #[inline(always)]
 pub(super) fn substitute<const B: usize>(row: &[f64], x: &mut f64, last: &mut [f64; B]) {
     let mut sum = *x;
@@ -81,34 +84,35 @@ pub(super) fn substitute<const B: usize>(row: &[f64], x: &mut f64, last: &mut [f
     }
 }
 
-/// Adds what row `j` of a chain, whose unknown is `found`, takes from the B before it, nearest
-/// first.
+/// Adds the product of row `j` of L with its unknown, `found`, to the sums `taken` that back
+/// substitution will subtract from the B unknowns before it, nearest first.
 #[inline(always)]
-pub(super) fn pass_back<const B: usize>(j: usize, chain: &FactorRows, found: f64, taken: &mut [f64; B]) {
-    let row = &chain.lower[(j + B) * B..][..B];
+pub(super) fn pass_back<const B: usize>(j: usize, factors: &FactorRows, found: f64, taken: &mut [f64; B]) {
+    let row = &factors.lower[(j + B) * B..][..B];
     for k in 0..B {
         let before = if k + 1 < B { taken[k + 1] } else { 0.0 };
         taken[k] = before + row[B - 1 - k] * found;
     }
 }
 
-/// The unknown of row `j` of a chain from Lᵀ, when those after it are known.
+/// One step of back substitution with Lᵀ: the unknown of row `j`, if those after it are known.
 #[inline(always)]
-pub(super) fn substitute_back<const B: usize>(j: usize, chain: &FactorRows, x: &mut f64, taken: &mut [f64; B]) {
-    let found = *x * chain.inverse[j + B] - taken.first().unwrap_or(&0.0);
+pub(super) fn substitute_back<const B: usize>(j: usize, factors: &FactorRows, x: &mut f64, taken: &mut [f64; B]) {
+    let found = *x * factors.inverse[j + B] - taken.first().unwrap_or(&0.0);
     *x = found;
-    pass_back(j, chain, found, taken);
+    pass_back(j, factors, found, taken);
 }
 
-/// Solves L D Lᵀ x = x for a half-bandwidth B. What the next row needs stays in registers.
+/// Solves L D Lᵀ y = x for a half-bandwidth B, with y in place of x. The unknowns that the next row
+/// needs stay in registers.
 #[inline(always)]
-pub(super) fn solve<const B: usize>(chain: &FactorRows, x: &mut [f64]) {
+pub(super) fn solve<const B: usize>(factors: &FactorRows, x: &mut [f64]) {
     let mut last = [0.0; B];
     for (j, x) in x.iter_mut().enumerate() {
-        substitute(&chain.lower[(j + B) * B..][..B], x, &mut last);
+        substitute(&factors.lower[(j + B) * B..][..B], x, &mut last);
     }
     let mut taken = [0.0; B];
     for (j, x) in x.iter_mut().enumerate().rev() {
-        substitute_back(j, chain, x, &mut taken);
+        substitute_back(j, factors, x, &mut taken);
     }
 }

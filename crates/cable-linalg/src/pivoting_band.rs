@@ -1,6 +1,6 @@
-//! This file holds the LU factorisation with partial pivoting of a matrix with a narrow band: G. H.
-//! Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. It is for
-//! Jacobians that are neither symmetric nor definite.
+//! A pivoting band matrix is solved by the LU factorisation with partial pivoting of a matrix with
+//! a narrow band: G. H. Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed.
+//! 2013, §4.3. It is for Jacobians that are neither symmetric nor definite.
 
 /// A band matrix that is factorised in place: `HALF` entries on either side of the diagonal, and
 /// `WIDTH` = 3 `HALF` + 1 in a stored row, as pivoting fills as many again on the right.
@@ -29,8 +29,8 @@ impl<const HALF: usize, const WIDTH: usize> PivotingBand<HALF, WIDTH> {
         self.rows.resize(n, [0.0; WIDTH]);
     }
 
-    /// Adds to an entry; entries outside the band or the matrix must not be asked for and are left
-    /// out.
+    /// Adds to an entry. Entries outside the band or the matrix are ignored; the caller must not
+    /// add to them.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         if let Some(entry) = self.rows.get_mut(row).and_then(|r| r.get_mut((column + HALF).wrapping_sub(row))) {
@@ -55,7 +55,7 @@ impl<const HALF: usize, const WIDTH: usize> PivotingBand<HALF, WIDTH> {
     /// quantities stand side by side.
     pub fn scale(&mut self, rhs: &mut [f64]) {
         for (row, r) in self.rows.iter_mut().zip(rhs) {
-            // As it was added: nothing has filled the right.
+            // No pivoting has filled the right of the row yet.
             let row = &mut row[..=2 * HALF];
             let largest = row.iter().fold(0.0f64, |m, v| if v.abs() > m { v.abs() } else { m });
             if largest > 0.0 {
@@ -76,7 +76,7 @@ impl<const HALF: usize, const WIDTH: usize> PivotingBand<HALF, WIDTH> {
     pub fn solve(&mut self, b: &mut Vec<f64>) -> bool {
         let n = self.rows.len();
         self.negative = false;
-        // Rows of nothing after the last, so that each has as many below it.
+        // Rows of zeros after the last give every row the same number of rows below it.
         self.rows.resize(n + HALF, [0.0; WIDTH]);
         b.resize(n + HALF, 0.0);
         let found = (0..n).all(|k| self.eliminate(k, b));
@@ -93,7 +93,7 @@ impl<const HALF: usize, const WIDTH: usize> PivotingBand<HALF, WIDTH> {
         b.iter().all(|v| v.is_finite())
     }
 
-    /// Column k goes from the rows below row k; false where it has no pivot.
+    /// Eliminates column k from the rows below row k; false if it has no pivot.
     #[inline]
     fn eliminate(&mut self, k: usize, b: &mut [f64]) -> bool {
         let windows = (self.rows.get_mut(k..=k + HALF), b.get_mut(k..=k + HALF));
@@ -109,7 +109,7 @@ impl<const HALF: usize, const WIDTH: usize> PivotingBand<HALF, WIDTH> {
             return false;
         }
         if let Some(d) = best {
-            // Both rows in the columns k … k + 2 HALF, each at its own place.
+            // Each row stores the columns k … k + 2 HALF at a place of its own.
             let other = &mut below[d][HALF - 1 - d..];
             pivot[HALF..].iter_mut().zip(other).for_each(|(a, b)| std::mem::swap(a, b));
             std::mem::swap(right, &mut b[d]);

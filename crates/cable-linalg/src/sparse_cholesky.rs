@@ -1,4 +1,4 @@
-//! Systems that couple nodes far apart, by sparse Cholesky.
+//! This function solves a system that also couples nodes far apart, by sparse Cholesky.
 
 use faer::prelude::Solve;
 use faer::sparse::linalg::LltError;
@@ -9,7 +9,8 @@ use crate::FactorError;
 use crate::band_matrix::BandMatrix;
 
 /// Solves `(A + C) x = b`, where C are symmetric entries outside the band, each given once for (i,
-/// j) with i ≠ j; `b` becomes `x`. Sparse Cholesky with a fill-reducing order; it allocates.
+/// j) with i ≠ j; `b` becomes `x`. It uses sparse Cholesky with a fill-reducing order, and
+/// allocates.
 ///
 /// # Errors
 /// `NotPositive` when the sum is not positive definite, `TooLarge` when there is no memory for it.

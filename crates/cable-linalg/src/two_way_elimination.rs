@@ -1,15 +1,16 @@
-//! Elimination from both ends of a band matrix to its middle.
+//! These functions factorise a symmetric band matrix from both ends to its middle, and substitute.
 
 use crate::one_way_elimination::{FactorRows, eliminate, pass_back, substitute, substitute_back};
 use crate::{FactorError, WIDEST};
 
-/// Rows before and after the `b` rows in the middle.
+/// Number of rows before and after the `b` rows in the middle.
 pub(super) fn rows_beside_middle(rows: usize, b: usize) -> [usize; 2] {
     let outside = rows.saturating_sub(b);
     [outside / 2, outside - outside / 2]
 }
 
-/// Column `j` of a matrix of half-bandwidth B, as it is read from the last row to the first.
+/// Column `j` of a matrix of half-bandwidth B as elimination from the last row to the first reads
+/// it.
 #[inline(always)]
 pub(super) fn column_from_below<const B: usize>(values: &[f64], j: usize) -> [f64; B] {
     let mut column = [0.0; B];
@@ -25,7 +26,7 @@ pub(super) fn column_from_below<const B: usize>(values: &[f64], j: usize) -> [f6
 /// ```text
 /// S = A_MM − L_MT D_T L_MTᵀ − L_MB D_B L_MBᵀ,      S x_M = f_M − L_MT y_T − L_MB y_B
 /// ```
-/// where L y = f in T and B, which do not see each other.
+/// where L y = f in T and B, which have no entries in common.
 #[inline(always)]
 pub(super) fn meet_in_the_middle<const B: usize>(
     values: &[f64],
@@ -55,7 +56,7 @@ pub(super) fn meet_in_the_middle<const B: usize>(
             substitute(&top.lower[(r + B) * B..][..B], &mut x[r], &mut above);
         }
     }
-    // S, its upper triangle; row t of the middle is row B − 1 − t as seen from below.
+    // This is the upper triangle of S; row t of the middle is row B − 1 − t counted from below.
     for t in 0..B {
         let column = &values[(first + t) * (B + 1)..][..B + 1];
         for u in 0..=t {
@@ -90,37 +91,39 @@ pub(super) fn meet_in_the_middle<const B: usize>(
     Ok(())
 }
 
-/// Row `t` of the middle in the `rows` before it: L, and v = L D, which it returns.
+/// Computes row `t` of the middle in the columns of the `rows` before it: stores L, and returns
+/// v = L D.
 #[inline(always)]
 pub(super) fn eliminate_middle<const B: usize>(
     rows: usize,
     t: usize,
     column: &[f64],
-    chain: &mut FactorRows,
+    factors: &mut FactorRows,
 ) -> [f64; B] {
     let j = rows + t;
     let mut v = [0.0; B];
     for i in 0..B - t {
         v[i] = column[i];
         for k in 0..i {
-            v[i] -= v[k] * chain.lower[(j + i) * B + B + k - i];
+            v[i] -= v[k] * factors.lower[(j + i) * B + B + k - i];
         }
     }
-    let (scales, row) = (&chain.inverse[j..j + B], &mut chain.lower[(j + B) * B..][..B]);
+    let (scales, row) = (&factors.inverse[j..j + B], &mut factors.lower[(j + B) * B..][..B]);
     for i in 0..B {
         row[i] = v[i] * scales[i];
     }
     v
 }
 
-/// The part of an entry of S: v of row `t` of the middle times L of row `u` ≤ `t`.
+/// The term that elimination subtracts from entry (u, t) of S: v of row `t` of the middle times L
+/// of row `u` ≤ `t`.
 #[inline(always)]
 pub(super) fn share<const B: usize>(v: &[f64; B], t: usize, row: &[f64], u: usize) -> f64 {
     // The row of t begins t − u columns after that of u.
     (0..B - t).map(|i| v[i] * row[i + t - u]).sum()
 }
 
-/// Solves with a factor from both ends.
+/// Solves with the factors that [`meet_in_the_middle`] made.
 #[inline(always)]
 pub(super) fn solve_from_both_ends<const B: usize>(
     halves: &[FactorRows; 2],
@@ -140,8 +143,8 @@ pub(super) fn solve_from_both_ends<const B: usize>(
     solve_middle([first, second], halves, middle, [above, below], x);
 }
 
-/// The rest of a solution, when L is solved before and after the middle: `above` and `below` are
-/// the unknowns beside it.
+/// Completes a solution once forward substitution has reached the middle from both ends: `above`
+/// and `below` are the unknowns beside it.
 #[inline(always)]
 pub(super) fn solve_middle<const B: usize>(
     [first, second]: [usize; 2],

@@ -24,7 +24,7 @@ pub struct Plan {
     pub cases: usize,
     /// Parts of names of families; empty: all.
     pub names: Vec<String>,
-    /// How many relations each case is asked.
+    /// Number of relations that each case is asked.
     pub relations: usize,
     /// True if `fem` with 300 elements is asked for a second opinion.
     pub second_model: bool,

@@ -474,7 +474,7 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let ds = w[1].arc_length_m - w[0].arc_length_m;
         let chord = size(sub([w[1].x_m, w[1].y_m], [w[0].x_m, w[0].y_m]));
         let tension = w[0].tension_n.max(w[1].tension_n).max(size(w[0].force_n));
-        // What stands between supports and rounds may be off by the discretisation, of the second
+        // The forces between supports and rounds may be off by the discretisation, of the second
         // order in the turn.
         let turn = turn_between(w[0].force_n, w[1].force_n)
             .max((w[0].curvature_per_m.abs().max(w[1].curvature_per_m.abs())) * ds);

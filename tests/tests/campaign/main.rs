@@ -45,7 +45,7 @@ fn names() -> Vec<String> {
     all.split(',').filter(|n| !n.is_empty()).map(str::to_owned).collect()
 }
 
-/// What fails a campaign: wrong answers, words that no user can read, and more than 2 % of scenes
+/// A campaign fails by wrong answers, words that no user can read, and more than 2 % of scenes
 /// refused that have a resting place; open faults are counted off.
 fn judged(tallies: &[Tally], open: &[known::Open]) {
     let mut failures = Vec::new();
@@ -93,7 +93,7 @@ fn scenes_that_were_wrong_are_right() {
         ("ground by fem", 740_116),
         // Friction beyond its cone on one pipe was let pass as what all bends together may hide.
         ("tank with beams", 470_176),
-        // What a bar has to spare beside a post was drawn on the post, under tension.
+        // The slack of a bar beside a post was drawn on the post, under tension.
         ("tank with beams", 470_048),
         ("tank with beams", 470_092),
         // A strand without tension was solved a thousandfold more loosely than others.

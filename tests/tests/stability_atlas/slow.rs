@@ -130,7 +130,7 @@ fn hold(model: Model) -> Result<Verdict, SolveError> {
     let answer = sim.solution();
     let mut verdict = Verdict::of((tension(&answer) / before - 1.0).abs(), 1e-3, &answer);
     if let Verdict::Said(e, _) = verdict {
-        // What it says is about the corner, not about a hold.
+        // The verdict is about the corner, not about a support.
         verdict = Verdict::Wrong(e);
     }
     Ok(verdict)

@@ -18,7 +18,7 @@ use crate::math::Vec2;
 /// A break.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Break {
-    /// When, s.
+    /// Time of the break, s.
     pub time_s: f64,
     /// Place on the cable, m.
     pub arc_length_m: f64,

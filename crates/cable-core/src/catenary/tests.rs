@@ -188,8 +188,8 @@ proptest! {
 
 #[test]
 fn nearly_vertical_and_nearly_taut_spans_close() {
-    // Where the cable's own stretch alone bridges the way the upper part carries H ≪ wL, and the
-    // energy is flat there to the last digit.
+    // At the places where the cable's own stretch alone closes the span, the upper part carries H ≪
+    // wL and the energy is flat to the last digit.
     for aside in [1e-8, 1e-6, 1e-5, 4.1e-5, 1e-4, 1e-3, 1e-2] {
         for excess in [-1e-3, -1e-6, -1e-9, 0.0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3] {
             for eps in [1e-12, 1e-9, 1e-7, 1e-6, 8.65e-6, 1e-4, 1e-3, 1e-2] {

@@ -122,7 +122,7 @@ impl SmoothedTarget {
 mod tests {
     use super::*;
 
-    /// That of a hand, m/s.
+    /// Greatest speed of a hand, m/s.
     const FASTEST: f64 = 2.0;
 
     #[test]

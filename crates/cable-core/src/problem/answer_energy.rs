@@ -13,7 +13,7 @@ fn squared(a: f64, b: f64, ds: f64) -> f64 {
 }
 
 impl Energy {
-    /// That of a cable.
+    /// The energy of one cable.
     #[must_use]
     pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
         let elements = answer.pieces().flat_map(|piece| piece.windows(2));

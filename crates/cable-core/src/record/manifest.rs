@@ -163,7 +163,7 @@ pub(crate) const MANIFEST_HEAD: &str =
     "# What `cable` says about this run; written by the program, not to be edited.\n";
 
 impl Manifest {
-    /// That of a run which begins.
+    /// The manifest of a run that begins.
     #[must_use]
     pub fn new(request: RunRequest, nodes: NodeChoice, scene: FileRecord) -> Self {
         Self {

@@ -25,7 +25,7 @@ const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// The break of a piece.
 pub(super) struct BreakPoint {
-    /// When, s.
+    /// Time of the break, s.
     pub time_s: f64,
     /// The state of the piece then.
     pub state: State,
@@ -70,7 +70,7 @@ impl Piece {
     ) -> Result<StepOutcome, SolveError> {
         let parts = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if parts > 1.0 && self.unwatched_steps == 0 {
-            // What cannot break is never taken again.
+            // A cable that cannot break never takes a step again, so no state is kept for it.
             let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));
             let report = self.gauged_step(dt_s, breaking_n)?;
             let Some(before) = before.filter(|_| self.gauge.reached().is_some()) else {

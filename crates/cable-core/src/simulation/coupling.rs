@@ -141,7 +141,7 @@ impl Simulation {
             }
         }
         let mut vehicle = start.clone();
-        // Where forces jump the robot has the speed at which they do.
+        // If the forces jump at a speed, the robot has the speed at which they do.
         let ends = if even { balance.speed } else { speed };
         vehicle.arrive(drive, to, speed, balance, ends, pulls);
         TrialOutcome::Ends(Box::new(vehicle), left_n)

@@ -218,7 +218,7 @@ pub struct TensionPeak {
     pub tension_n: f64,
     /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
 }
 
@@ -516,7 +516,7 @@ pub struct MaxTension {
 }
 
 impl MaxTension {
-    /// That of some cables (NaN propagates).
+    /// The greatest tension of some cables (NaN propagates).
     #[must_use]
     pub fn of(cables: &[CableSolution]) -> Self {
         let mut best = Self { tension_n: f64::NEG_INFINITY, ..Self::default() };

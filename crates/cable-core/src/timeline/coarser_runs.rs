@@ -171,8 +171,8 @@ impl CoarseRuns {
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
         // Of a cable that no run pulls nothing is apart.
         let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
-        // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are
-        // outside.
+        // Convergence of the runs is not enough: with that alone the greatest tensions of 6 in 100
+        // runs more are outside.
         let [down, up] = [0, 1].map(|j| smaller(PEAK_FACTORS[j] * apart, UNRESOLVED_FACTORS[j]));
         let here = [own * (-down).exp(), own * up.exp()];
         [larger(before[0], here[0]), larger(before[1], here[1])]

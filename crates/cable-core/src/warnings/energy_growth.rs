@@ -48,7 +48,7 @@ pub(super) struct EnergyGrowth {
     before: Option<Snapshot>,
     /// Work done since the motion began at most, J.
     work_j: f64,
-    /// When, s, and energy less work, J, lately.
+    /// Recent times, s, each with energy less work, J.
     recent: VecDeque<[f64; 2]>,
     /// None until an instant is taken in.
     least: Option<EnergyMinimum>,

@@ -112,15 +112,15 @@ fn it_rings_down_by_its_damping_ratio_at_every_frequency() {
                 "ratio {ratio} at {wanted} rad/s: {found:.3} of it, faster by {faster:.4}, of the law {stiffened:.4}"
             );
             assert!((found - 1.0).abs() < 0.2, "{found} of a damping ratio of {ratio} at {wanted} rad/s");
-            // Where the band begins is not sharp: the lowest branch has a half of its stiffness
+            // The lower edge of the band is not sharp: the lowest branch has half of its stiffness
             // there.
             assert!((faster - stiffened).abs() < 1.5 * ratio, "{wanted} rad/s: faster by {faster}, not {stiffened}");
         }
     }
 }
 
-/// What was taken is never given back: of a bar that is let go with more strain than it can keep,
-/// and is slack and taut in turn, too.
+/// Energy that was dissipated is never given back, also by a bar that is let go with more strain
+/// than it can keep, and is slack and taut in turn.
 #[test]
 fn loss_never_gives_energy() {
     let (length, density, ea, segments) = (10.0f64, 0.1f64, 1e5f64, 16);

@@ -14,7 +14,7 @@ use super::mass_spring;
 use super::measure::{G, cable, climbs, energy, spread_energy, started};
 
 const LENGTH: f64 = 10.0;
-/// How far the end falls, m.
+/// Height through which the end falls, m.
 const FALLEN: f64 = 6.0;
 
 /// Time to fall by `x` (m) as Calkin and March say: ∫dx/v with x = u², so that the root is gone.

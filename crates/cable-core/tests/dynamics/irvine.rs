@@ -86,7 +86,7 @@ fn frequency(model: Model, lambda2: f64, segments: usize, (bar, shape): (f64, &d
         state.position_m.iter().zip(&state.arc_length_m).map(|(p, s)| p.y * shape(s / length)).sum()
     });
     let found = ring(&samples, 36.0 * h);
-    // What explicit steps of at most 1.2e-4 s add is below 1e-6.
+    // Explicit steps of at most 1.2e-4 s add less than 1e-6.
     let Ring { omega, .. } = if model == Model::Fem { behind(found, h) } else { found };
     omega / exact - 1.0
 }
@@ -94,7 +94,7 @@ fn frequency(model: Model, lambda2: f64, segments: usize, (bar, shape): (f64, &d
 /// Frequencies at ever more bars against Irvine's: of the order of the model, and in the limit off
 /// by the theory's own (d/l)².
 fn check(model: Model, name: &str, lambda2: f64, mode: (f64, &dyn Fn(f64) -> f64)) {
-    // What is left at 40 bars is as little as the sixth of what the theory leaves out.
+    // The error left at 40 bars is as small as a sixth of the terms that the theory leaves out.
     let (order, least, bound) = if model == Model::Fem { (4.0, 1.5, 2e-4) } else { (2.0, 1.75, 2e-2) };
     let bars = if model == Model::Fem { [20, 40, 80] } else { [10, 20, 40] };
     let e = bars.map(|n| frequency(model, lambda2, n, mode));

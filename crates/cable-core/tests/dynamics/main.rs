@@ -2,10 +2,10 @@
 //! step, with the error at each rung, the observed order, and an identity that does not use the
 //! reference.
 //!
-//! What an error in time must be is known: a step h of BDF2 with a part β of BDF3 turns λ into
+//! The error in time is known from theory: a step h of BDF2 with a part β of BDF3 turns λ into
 //! λ(1 + (1 − β)(λh)²/3 − (1 − 2β)(λh)³/4 + …), so it swings (1 − β)(ωh)²/3 too slowly and damps by
-//! (1 − 2β) ω⁴h³/4 (see [`measure::slows`], [`measure::damps`]). Turned round it tells what bars
-//! without steps do (see [`measure::behind`]).
+//! (1 − 2β) ω⁴h³/4 (see [`measure::slows`], [`measure::damps`]). Inverted, this gives the frequency
+//! and decay that bars would have without steps (see [`measure::behind`]).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -205,8 +205,8 @@ pub fn ring(samples: &[f64], dt: f64) -> Ring {
 /// Part of BDF3 in even steps of a cable that can touch nothing.
 pub const THIRD: f64 = 0.48;
 
-/// What a ring is a ring of: steps of `h` (s) turn λ into μ with λh = δ(e^{−μh}), δ(z) = (1 − z) +
-/// (1 − z)²/2 + β (1 − z)³/3.
+/// Frequency and decay without the effect of steps: steps of `h` (s) turn λ into μ with λh =
+/// δ(e^{−μh}), δ(z) = (1 − z) + (1 − z)²/2 + β (1 − z)³/3.
 pub fn behind(Ring { omega, decay }: Ring, h: f64) -> Ring {
     let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
     let (size, angle) = ((decay * h).exp(), omega * h);

@@ -1,5 +1,5 @@
-//! When supports let go, the middle of mass then falls by ½g t², whatever the cable does; the end
-//! of a soft hanging cable does not know of it for L/c.
+//! After the supports let go, the middle of mass falls by ½g t², whatever the cable does; the end
+//! of a soft hanging cable stays where it is for L/c.
 
 use cable_core::scene::{Support, SupportKind};
 use cable_core::state::State;

@@ -41,7 +41,7 @@ fn an_undamped_swing_loses_what_the_scheme_takes() {
         let theory = 1.0 - (-2.0 * damps(omega, h) * time).exp();
         let found = lost(h);
         println!("h {h:.5}: {found:.3e} of the energy lost in 100 periods, theory {theory:.3e}");
-        // What is left unbalanced is some 1e-7 a period; BDF2 alone would take 25 times the theory,
+        // The imbalance is some 1e-7 a period; BDF2 alone would have 25 times the theory's loss,
         // 8.7e-5 and 1.1e-5.
         assert!((found - theory).abs() < 1e-6, "{found} instead of {theory}");
     }

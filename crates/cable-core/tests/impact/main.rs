@@ -28,7 +28,7 @@ fn show(name: &str, found: &[[f64; 3]; 3]) {
     println!("{name}: peak {peak} N, over 4 ms {mean} N, chatter {chatter} N");
 }
 
-/// What the explicit chain has at 84 bars: 454 to 486 N, 390 to 410 N over 4 ms.
+/// The explicit chain of 84 bars has 454 to 486 N, and 390 to 410 N over 4 ms.
 const CHAIN_PEAK_N: f64 = 470.0;
 
 /// With the loss of bars differenced over the history of their nodes, nodes put where tangents

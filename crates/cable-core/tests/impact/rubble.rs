@@ -13,7 +13,7 @@ const RELEASE_S: f64 = 0.025;
 /// Loss time of a cable that may rub, s.
 pub const LOSS_TIME: f64 = 1e-3;
 
-/// How long it is followed after the release, s.
+/// Time for which it is followed after the release, s.
 pub const FOLLOWED_S: f64 = 2.0;
 
 /// From when on it lies, s after the release.

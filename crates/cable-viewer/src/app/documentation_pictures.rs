@@ -146,7 +146,7 @@ fn safe_reach(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Light);
     let choice = SafeReachOptions { across: 20, ..SafeReachOptions::default() };
     view(app, ctx, ViewCommand::SetSafeReachOptions(choice));
-    // What is in view is what is looked at: as much as the cable reaches.
+    // The view covers as much as the cable reaches.
     let camera = &mut app.state.view.camera;
     (camera.centre_m, camera.points_per_m, camera.fit_wanted) = ([5.0, 4.0], 46.0, false);
     app.state.view.visible_m = [[-3.0, -1.0], [13.0, 9.0]];

@@ -117,7 +117,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
 
 /// Zoom by one key: three presses double the scale.
 const ZOOM: f64 = 1.26;
-/// What an arrow moves the view by, points.
+/// Distance by which an arrow key moves the view, points.
 const PAN: f32 = 60.0;
 
 /// + and − zoom about the middle, Shift with an arrow moves the view.

@@ -362,7 +362,8 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
             }
             let panel = section.panel(state.ui.results_beside);
             let top = ui.cursor().top();
-            // What comes and goes above changes no identity below: a drag in a section would end.
+            // Widgets above that come and go must not change identities below: a drag in a section
+            // would end.
             let named = UiBuilder::new().scope_id(ui.scope_id().with(title));
             let drawn = ui.scope_builder(named, |ui| {
                 // A section that is asked for is unfolded.

@@ -294,7 +294,7 @@ impl ViewerApp {
         }
     }
 
-    /// How long an answer has been sought; the window counts the seconds.
+    /// Counts the seconds for which an answer has been sought.
     fn time_solve(&mut self, ctx: &egui::Context) {
         let waits = !self.pending_edits.is_empty() || self.state.live.latest.draft;
         let dead = matches!(self.state.solver.status, WorkerStatus::Dead(_));

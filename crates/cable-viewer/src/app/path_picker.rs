@@ -10,8 +10,8 @@ use crate::widgets::field;
 
 /// Height of the list, points.
 const HEIGHT: f32 = 170.0;
-/// How long a listing is shown before the folder is read again. Shorter: a slow disk is read every
-/// frame; longer: a file that was just written is missed.
+/// Longest time for which a listing is shown before the folder is read again. Shorter: a slow disk
+/// is read every frame; longer: a file that was just written is missed.
 const MAX_LISTING_AGE: Duration = Duration::from_secs(2);
 /// No hand cancels a dialog within this time: there was none.
 const MIN_DIALOG_TIME: Duration = Duration::from_millis(300);

@@ -21,7 +21,7 @@ pub fn hints_height(state: &AppState) -> f32 {
 pub struct CanvasView<'a> {
     /// The canvas.
     pub rect: Rect,
-    /// What part of the world is in it.
+    /// The part of the world in the view.
     pub camera: Camera,
     /// Clipped to the canvas.
     pub painter: &'a Painter,
@@ -29,7 +29,7 @@ pub struct CanvasView<'a> {
     pub palette: &'a Palette,
     /// Rectangles that labels must not cover.
     pub occupied: Vec<Rect>,
-    /// What labels should not cover if there is room elsewhere: the cable, arrows.
+    /// Rectangles that labels should not cover if there is room elsewhere: the cable, arrows.
     pub avoided: Vec<Rect>,
 }
 

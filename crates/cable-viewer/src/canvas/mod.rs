@@ -46,7 +46,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if (state.view.camera.fit_wanted || (resized && !state.view.camera.follows)) && answered {
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
-        // Where its cable lies is not known yet: it is fitted once more with it.
+        // The shape of the cable is not known yet: the view is fitted once more when it is.
         state.view.camera.fit_wanted = !state.is_answered();
     }
     state.view.visible_m = state.view.camera.visible_m(rect);
@@ -68,7 +68,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 /// Shorter: they flicker in a drag.
 const BADGE_AFTER_S: [f64; 2] = [0.25, 0.8];
 
-/// That an answer is being sought, for how long, and a way out.
+/// Shows that an answer is being sought and for how long, with a button that ends the search.
 fn badge(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
     let Some(seconds) = state.solving().filter(|s| *s > BADGE_AFTER_S[0]) else { return };
     let top = egui::pos2(rect.center().x, rect.min.y + 12.0);

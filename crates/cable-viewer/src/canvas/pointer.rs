@@ -9,7 +9,7 @@ use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::{handles, hit_test};
 use crate::state::{AppState, Grab, Item, TensionMarker};
 
-/// How near to the cable a double-click adds a waypoint, points.
+/// Distance from the cable at which a double-click adds a waypoint, points.
 const WAYPOINT_REACH: f32 = 14.0;
 /// Zoom per point of wheel: e^0.0025 ≈ a tenth a notch of 40 points. Larger overshoots, smaller
 /// tires.

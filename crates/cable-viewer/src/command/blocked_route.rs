@@ -8,7 +8,7 @@ use cable_core::math::{Point, vec2};
 /// Points looked at on each piece of a way. Fewer: a thin beam is passed unseen, and the scene is
 /// refused as before.
 const SAMPLES_PER_LEG: usize = 64;
-/// How far round a point obstacles are asked for, m.
+/// Radius round a point within which obstacles are sought, m.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// Removes routes that lead through an obstacle: from then on the cable is laid straight and lifted

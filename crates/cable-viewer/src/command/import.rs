@@ -64,7 +64,7 @@ pub fn add(scene: &Scene, map: &Map<'_>) -> Result<(Scene, String), String> {
         scene.obstacles.push(Obstacle { name, shape, friction: None });
     }
     report.extend(read.changes.iter().map(sentence));
-    // What is already wrong with the scene is not the import's fault.
+    // A fault that the scene already had is not the import's.
     if let Err(fault) = scene.validate()
         && fault.path.starts_with("obstacles")
     {

@@ -60,7 +60,7 @@ fn first_step(command: &Command) -> Option<FirstStep> {
         Command::Playback(PlaybackCommand::TogglePause | PlaybackCommand::SetPaused(false) | PlaybackCommand::Step) => {
             Some(FirstStep::Play)
         }
-        // Who drives has time run, too.
+        // Driving the robot makes time run, too.
         Command::Playback(PlaybackCommand::DriveRobot(Some(speed))) if *speed != 0.0 => Some(FirstStep::Play),
         Command::View(ViewCommand::Zoom { .. }) => Some(FirstStep::Zoom),
         _ => None,

@@ -93,7 +93,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
         PlaybackCommand::Solve => submit_edit(state, effects),
         PlaybackCommand::DriveRobot(order) => {
-            // Who drives wants to see it: time runs, from the present on.
+            // Driving the robot lets time run from the present on, so that it is seen.
             if order.is_some_and(|v| v != 0.0) {
                 state.live.show_time(None);
                 state.live.playback.paused = false;
@@ -107,7 +107,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         PlaybackCommand::SetRobotSpeed(speed) => {
             if speed.is_finite() && speed > 0.0 {
                 state.live.manual_robot_speed = Some(speed);
-                // What is being driven goes on at the new speed.
+                // A robot that is being driven goes on at the new speed.
                 if let Some(order) = state.live.robot_speed_command.filter(|v| *v != 0.0) {
                     let order = Some(speed.copysign(order));
                     state.live.robot_speed_command = order;

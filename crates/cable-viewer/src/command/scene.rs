@@ -62,7 +62,7 @@ pub enum SceneCommand {
     /// Puts a thing (a support, a whole obstacle by its first corner or centre, a corner) at a
     /// point, m.
     Move {
-        /// What.
+        /// The item that is moved.
         item: Item,
         /// The target, m.
         to_m: Point,
@@ -107,7 +107,7 @@ pub enum SceneCommand {
     /// Puts what was copied into the scene, its middle at a point (m), else a little beside where
     /// it was.
     Paste {
-        /// Where, m.
+        /// The middle of the pasted items, m.
         at_m: Option<Point>,
     },
     /// A pointer drag or a typed value is complete: the next edit is undone by itself.

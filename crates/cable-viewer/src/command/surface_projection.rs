@@ -11,7 +11,7 @@ const MAX_CORNERS: usize = 20_000;
 /// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave
 /// a millionth of the way.
 const MAX_PUSHES: usize = 40;
-/// What is nearer than this to where it may be is there, m: rounding.
+/// Distance from a permitted place below which a point is there, m: rounding.
 const CLEAR_M: f64 = 1e-12;
 
 /// Returns where a support that is moved to a point (m) comes to stand: on the surface of what it

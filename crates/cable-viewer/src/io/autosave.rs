@@ -26,7 +26,7 @@ pub enum Changes {
 #[derive(Debug)]
 pub struct Autosave {
     path: PathBuf,
-    /// What the file holds, if this window wrote it.
+    /// The text that the file holds, if this window wrote it.
     written: Option<Scene>,
     /// The time when the scene first differed from it.
     changed: Option<Instant>,

@@ -28,7 +28,7 @@ pub struct Answers {
     pub words: String,
 }
 
-/// What was on screen while they were given.
+/// The state on screen while they were given.
 #[derive(Clone, Debug)]
 pub struct Context<'a> {
     /// Name of the scene.

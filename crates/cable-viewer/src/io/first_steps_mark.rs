@@ -1,4 +1,4 @@
-//! That the first steps are done is kept as a file beside the recovery file, so that the window
+//! The file that marks the first steps as done stands beside the recovery file, so that the window
 //! shows its hints once.
 
 use std::path::Path;

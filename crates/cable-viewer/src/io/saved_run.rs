@@ -25,8 +25,7 @@ pub struct SavedRun {
     pub answers: Vec<Solution>,
     /// Wall time that they took, s; None where the run does not say.
     pub wall_time_s: Option<f64>,
-    /// What the user should know about it, in sentences: that it is partial, that figures are
-    /// missing.
+    /// Remarks on the run in sentences, as that it is partial or that figures are missing.
     pub remarks: Vec<String>,
 }
 
@@ -112,7 +111,7 @@ fn answers(
             scene.cables.iter().map(|c| CableSolution { name: c.name.clone(), ..CableSolution::default() }).collect();
         while let Some(row) = nodes.next_if(|row| row.time_s <= time_s) {
             let Some(cable) = cables.iter_mut().find(|c| c.name == row.cable) else { continue };
-            // Where it broke, two nodes are the same point of the cable.
+            // At a break two nodes are the same point of the cable.
             if cable.nodes.last().is_some_and(|n| n.arc_length_m == row.node.arc_length_m) {
                 cable.breaks.push(cable.nodes.len());
             }

@@ -18,7 +18,7 @@ pub struct Answer {
     pub result: Result<(Arc<Solution>, f64), Error>,
 }
 
-/// What came of all of them, and the scene they were asked about.
+/// The answers of all models, and the scene they were asked about.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The scene.

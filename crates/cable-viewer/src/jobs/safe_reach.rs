@@ -24,8 +24,8 @@ pub const PLACES_ACROSS_RANGE: [usize; 2] = [8, 96];
 /// themselves, not thirty times.
 const RETURN_COARSENING: f64 = 2.0;
 
-/// How much more is shown at least before the next look, as a share: more often, and drawing it
-/// takes longer than finding it.
+/// Least progress, as a share, before the map is drawn again: if it were less, drawing would take
+/// longer than the search.
 const MIN_PROGRESS_STEP: f64 = 0.01;
 
 /// The thing that is taken somewhere.
@@ -45,7 +45,8 @@ pub enum ReachSubject {
 /// The choice of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SafeReachOptions {
-    /// What is taken somewhere; None: the robot, else what is picked, else what moves, else an end.
+    /// The item that is moved; None: the robot, else the selection, else a support that moves, else
+    /// an end.
     pub moved: Option<ReachSubject>,
     /// Shows the way there and back instead of the place itself.
     pub round_trip: bool,

@@ -1,6 +1,6 @@
-//! What is selected is edited here, with the answer about it: the force on a support, the contacts
-//! of an obstacle, the tension at a load, the motion of the robot. Cables, the environment and the
-//! solver have panels of their own, which stand here once they are selected.
+//! This panel edits the selected item and shows the answer about it: the force on a support, the
+//! contacts of an obstacle, the tension at a load, the motion of the robot. Cables, the environment
+//! and the solver have panels of their own, which stand here once they are selected.
 
 use cable_core::Solution;
 use cable_core::scene::SupportKind;

@@ -48,7 +48,7 @@ const HAND_STIFFNESS: Quantity = Quantity {
     help: "The spring by which the pointer holds a support while time runs. Stiffer: the support follows more exactly, and what is pulled beyond its length breaks sooner.",
 };
 
-/// What is set when the user first fixes the number and nothing was solved yet.
+/// Number of segments that is set when the user first fixes it before any answer.
 const FIRST_SEGMENTS: usize = 100;
 
 /// N/m, where the scene says nothing.
@@ -135,7 +135,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
     let mut stated = stiffness.is_some();
     let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
     if checkbox(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
-        // That of the present cable, which is as wide a choice as any.
+        // The choice of the present cable, which is as wide as any.
         let of_cable =
             problems(&state.document.scene).ok().and_then(|all| all.first().map(|p| hand::default_hand_stiffness(p)));
         commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));

@@ -14,7 +14,7 @@ use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.
 const MIN_SLIDER_WIDTH: f32 = 60.0;
-/// How near to a mark the pointer tells what it is, points.
+/// Distance from a mark within which the pointer shows its text, points.
 const MARK_REACH: f32 = 4.0;
 
 /// The reason why its controls are off.

@@ -6,10 +6,10 @@ use egui_plot::PlotUi;
 
 /// Zoom by one key: three presses double the scale.
 const ZOOM: f64 = 1.26;
-/// What an arrow moves the part in view by, as a share of it.
+/// Share of the part in view by which an arrow key moves it.
 const PAN: f64 = 0.125;
-/// What an arrow moves a cursor by, as a share of what is in view: held down it crosses it in a few
-/// seconds.
+/// Share of the part in view by which an arrow key moves a cursor: held down, it crosses the graph
+/// in a few seconds.
 const STEP: f64 = 0.01;
 
 /// The edits that keys ask of a graph.

@@ -79,7 +79,7 @@ pub struct GraphView {
     pub second: Option<Measure>,
     /// The view follows the data.
     pub follow: bool,
-    /// How much of the past is followed, s; None = all of it.
+    /// Length of the past that is shown, s; None = all of it.
     pub window_s: Option<f64>,
     /// The graph (by its title) whose export was asked for elsewhere than beside it.
     pub export: Option<&'static str>,
@@ -105,7 +105,8 @@ pub struct Graph<'a> {
     pub group: &'a str,
     /// The quantity that goes up, and its unit.
     pub measure: Measure,
-    /// What goes right, its unit, and how many SI units that holds, such as `Time`, `s`, 1.
+    /// The quantity that goes right, its unit, and the number of SI units in that, such as `Time`,
+    /// `s`, 1.
     pub across: (&'a str, Unit),
     /// Left and right end in view while following, SI.
     pub range: [f64; 2],

@@ -34,12 +34,12 @@ pub struct Run {
 pub struct Peak {
     /// Value, SI.
     pub value: f64,
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
 }
 
 impl Run {
-    /// That of what was recorded; None while that is not two instants.
+    /// The run that was recorded; None while it has fewer than two instants.
     #[must_use]
     pub fn of<'a>(
         samples: impl Iterator<Item = &'a Sample> + Clone,

@@ -15,7 +15,7 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// That of points in order of x; at most 2³² of them are kept.
+    /// The pyramid of points in order of x; at most 2³² of them are kept.
     #[must_use]
     pub fn new(mut points: Vec<[f64; 2]>) -> Self {
         points.truncate(u32::MAX as usize);

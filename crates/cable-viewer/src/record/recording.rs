@@ -19,7 +19,7 @@ const MAX_EVENTS: usize = 5000;
 /// A warning that began, or a break.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When, s.
+    /// Time, s.
     pub time_s: f64,
     /// The warning.
     pub warning: Warning,
@@ -35,7 +35,7 @@ pub struct Recording {
     pub shown_s: Option<f64>,
     /// Wall time that the answers took, s; None: it is not known.
     pub solve_wall_s: Option<f64>,
-    /// What is replayed begins anew at its end.
+    /// The replay begins anew at its end.
     pub looped: bool,
 }
 
@@ -66,7 +66,7 @@ impl Recording {
         }
         for w in &solution.warnings {
             let known = match w.kind {
-                // What is broken stays so: each break is an event of its own.
+                // A break stays: each one is an event of its own.
                 WarningKind::Broken => self.events.iter().any(|e| e.warning == *w),
                 _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
             };

@@ -174,7 +174,7 @@ mod tests {
         // The last five minutes are as they came.
         let recent: Vec<&Sample> = samples.iter().rev().take(240 * 300).collect();
         assert!(recent.iter().enumerate().all(|(j, s)| **s == at(count - 1 - j as u32)));
-        // What a graph of it shows has the greatest of all, and few samples.
+        // A graph of the history shows the greatest value of all, with few samples.
         for range in [[0.0, 1e9], [100.0, 1100.0], [600.0, 1200.0]] {
             let seen = history.view(range, Some(600));
             assert!(seen.len() < 20_000, "{range:?}: {}", seen.len());

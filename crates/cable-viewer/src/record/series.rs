@@ -12,8 +12,8 @@ pub struct Series {
     pub name: String,
     /// x and value.
     pub points: Vec<[f64; 2]>,
-    /// Where samples are denser than columns of the screen: x with the least and greatest
-    /// of each column, and the points are its means. Else empty.
+    /// If samples are denser than columns of the screen: x with the least and greatest of each
+    /// column, and the points are its means. Else empty.
     pub band: Vec<[f64; 3]>,
     /// It is of this held run, and drawn in its colour and dashed.
     pub reference: Option<usize>,

@@ -9,9 +9,9 @@ use crate::units::system;
 /// The colouring of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
-    /// Which quantity.
+    /// The quantity that is coloured.
     pub quantity: CableQuantity,
-    /// Which colours.
+    /// The map from values to colours.
     pub map: ColourMap,
     /// Least and greatest value in SI units (N, Pa, 1); None = those of the present answer.
     pub fixed: Option<[f64; 2]>,

@@ -1,11 +1,4 @@
-//! Where no GPU draws but Mesa's software Vulkan, a cheaper shader takes the place of egui's own.
-//!
-//! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the
-//! font by hand. A GPU skips what is not asked for; Mesa's software Vulkan works out everything and
-//! throws it away: 93 ns a pixel, 150 ms a screen of 1280×800. Where the adapter is software, what
-//! egui would draw is drawn by a shader that only multiplies colour and font; large pieces of one
-//! opaque colour (backgrounds, panels, the ground) by one that asks nothing and reads nothing back:
-//! whole tiles of the screen are then filled at once, and what lay below them is not drawn at all.
+//! A cheaper shader takes the place of egui's own if no GPU draws but Mesa's software Vulkan.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -134,8 +127,7 @@ impl egui::Plugin for SoftwarePainter {
             font.push(change.clone());
         }
         drop(font);
-        // What this cannot draw is left to egui: other pictures than the font, other programs'
-        // drawing.
+        // Other pictures than the font, and other programs' drawing, are left to egui.
         let own =
             |s: &ClippedShape| !matches!(s.shape, Shape::Callback(_)) && s.shape.texture_id() == TextureId::default();
         if output.shapes.is_empty() || !output.shapes.iter().all(own) {
@@ -492,7 +484,7 @@ fn pipeline(
         color: part(wgpu::BlendFactor::One, wgpu::BlendFactor::OneMinusSrcAlpha),
         alpha: part(wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One),
     };
-    // What is opaque covers what is below it: nothing is read back.
+    // An opaque fill covers the pixels below it: nothing is read back.
     let blend = (fill != Fill::Solid).then_some(blend);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("software drawing"),

@@ -21,11 +21,11 @@ pub struct Analysis {
     pub tension_marker: Option<TensionMarker>,
     /// The places to which the robot or an end can be taken.
     pub safe_reach: safe_reach::SafeReachState,
-    /// What neglecting bending stiffness changes.
+    /// The effect of neglected bending stiffness.
     pub neglected_bending: neglected_bending::NeglectedBendingState,
     /// Error over cost of every model and mesh.
     pub work_precision: work_precision::Progress,
-    /// What less and more friction does.
+    /// The effect of less and of more friction.
     pub friction_range: friction_range::FrictionRangeState,
 }
 

@@ -3,7 +3,7 @@
 use cable_core::math::Point;
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Which point of the world is in the middle of the canvas, and how large a metre is.
+/// The camera is the point of the world in the middle of the canvas, and the size of a metre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World point in the middle of the canvas, m.
@@ -14,10 +14,9 @@ pub struct Camera {
     pub fit_wanted: bool,
     /// Size of the canvas that the scene was fitted to, points, until the view is moved by hand.
     pub fitted_to: Option<[f32; 2]>,
-    /// What leads a cable, or a piece that is torn off, is kept in view, until the view is moved by
-    /// hand.
+    /// The view follows the leader of a cable, or a torn piece, until the user moves the view.
     pub follows: bool,
-    /// What leads a cable has been in view since the view was moved by hand.
+    /// True if the leader of a cable has been in view since the user moved the view.
     pub leader_seen: bool,
     /// Scale that the scene was fitted at, points per metre, once the view has widened since.
     pub widened_from: Option<f64>,

@@ -39,34 +39,34 @@ pub enum Dialog {
         /// It says what, where, why and what to do.
         text: String,
     },
-    /// Where to read a scene from.
+    /// The path from which a scene is read.
     Open {
         /// The path as typed so far.
         path: String,
     },
-    /// Where to save to.
+    /// The path to which the scene is saved.
     SaveAs {
         /// The path as typed so far.
         path: String,
     },
-    /// Where to export a graph to; the ending says how.
+    /// The path to which a graph is exported; its ending gives the format.
     Export {
         /// The path as typed so far.
         path: String,
         /// The part that was in view.
         sheet: Box<GraphInView>,
     },
-    /// Where to draw the canvas to.
+    /// The path to which the canvas is drawn.
     ExportPicture {
         /// The path as typed so far.
         path: String,
     },
-    /// Where to save what was recorded.
+    /// The folder in which the recording is saved.
     SaveRun {
         /// The folder as typed so far.
         path: String,
     },
-    /// Which run to open.
+    /// The folder of the run to open.
     OpenRun {
         /// The folder as typed so far.
         path: String,

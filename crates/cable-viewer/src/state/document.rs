@@ -11,7 +11,7 @@ use crate::state::undo::Undo;
 pub struct Document {
     /// The scene; may be half-typed.
     pub scene: Scene,
-    /// What is wrong with it now, if anything.
+    /// The fault of the present scene, if any.
     pub fault: Option<SceneError>,
     /// Its file, if it has one.
     pub path: Option<PathBuf>,

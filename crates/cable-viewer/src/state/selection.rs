@@ -66,7 +66,7 @@ pub enum Item {
     LoadHead(usize),
     /// The robot.
     Robot,
-    /// Where a leg of the robot's path ends.
+    /// The end of a leg of the robot's path.
     PathLeg(usize),
     /// The scene as a whole: its name, map and robot.
     Scene,
@@ -79,7 +79,7 @@ pub enum Item {
 /// A thing being dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grab {
-    /// What.
+    /// The item.
     pub item: Item,
     /// From the pointer to it when it was picked up, m.
     pub offset_m: Point,

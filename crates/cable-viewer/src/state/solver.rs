@@ -15,7 +15,7 @@ pub struct Solver {
     pub edits_sent: u64,
     /// Time from the last edit to the first picture that shows it, s.
     pub edit_latency_s: Option<f64>,
-    /// How long an answer has been sought, s; None: nothing is asked for.
+    /// Time for which an answer has been sought, s; None: nothing is asked for.
     pub solving_s: Option<f64>,
     /// A support dragged farther than the cable reaches while time runs is pulled, not refused.
     pub pulls_past_length: bool,

@@ -1,6 +1,6 @@
 //! A tutorial that is on has a place: a tutorial and one of its steps.
 
-/// Which tutorial, and which of its steps.
+/// The present tutorial, and the present one of its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TutorialPlace {
     /// Index of the tutorial.

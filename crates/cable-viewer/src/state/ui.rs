@@ -7,7 +7,7 @@ use crate::state::dialog::{Dialog, Replacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
 
-/// Which parts of the window are open.
+/// The open parts of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels {
     /// The form on the left, in which things are edited.
@@ -53,7 +53,7 @@ pub enum ToolSection {
 /// The window around the scene.
 #[derive(Debug, Default)]
 pub struct Ui {
-    /// Which parts of the window are open.
+    /// The open parts of the window.
     pub panels: OpenPanels,
     /// Results have a panel of their own on the right.
     pub results_beside: bool,

@@ -64,7 +64,7 @@ pub fn speed(metres_per_second: f64) -> String {
     format!("{} {symbol}", digits(metres_per_second / si))
 }
 
-/// That an answer is being sought, and for how long, s.
+/// Text which says that an answer is being sought, and for how long, s.
 #[must_use]
 pub fn solving(seconds: f64) -> String {
     if seconds < 1.0 { "Solving…".to_owned() } else { format!("Solving… {seconds:.0} s") }

@@ -7,13 +7,13 @@ use crate::units::unit::Unit;
 use crate::widgets::highlight;
 use crate::widgets::icon::{self, Icon};
 
-/// What a field holds while it differs from the value behind it.
+/// The text of a field while it differs from the value behind it.
 #[derive(Clone, Debug, Default)]
 struct FieldDraft {
     text: String,
     /// The value when typing began: if it changed since, the draft is about something else.
     value: String,
-    /// What is wrong with the text, once it was entered.
+    /// The fault of the text, once it was entered.
     fault: Option<String>,
 }
 

@@ -7,7 +7,7 @@ use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::slider::{self, SliderRange};
 
-/// What a quantity is called, shown in and usually worth.
+/// The name, unit and usual values of a quantity.
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity {
     /// Its name on screen, found by tests.
@@ -18,7 +18,7 @@ pub struct Quantity {
     pub usual: [f64; 2],
     /// Even steps of the slider are even factors.
     pub logarithmic: bool,
-    /// What it is and what it does, in a sentence or two.
+    /// A sentence or two on the quantity and its effect.
     pub help: &'static str,
 }
 
@@ -27,7 +27,7 @@ pub struct Quantity {
 pub struct Provenance {
     /// Now, SI.
     pub value: f64,
-    /// What reset returns to, SI, and where that comes from in a few words.
+    /// The value to which reset returns, SI, and its origin in a few words.
     pub origin: Option<(f64, String)>,
     /// The source of the value and how sure it is, for the hover text.
     pub source: Option<String>,

@@ -4,7 +4,7 @@
 use egui::emath::smart_aim::best_in_range_f64;
 use egui::{Response, SliderClamping, Ui};
 
-/// What a slider runs over.
+/// The range of a slider.
 #[derive(Clone, Copy, Debug)]
 pub struct SliderRange {
     /// Values at its ends.
@@ -13,7 +13,7 @@ pub struct SliderRange {
     pub logarithmic: bool,
 }
 
-/// What a slider says this frame.
+/// The outcome of a slider in this frame.
 #[derive(Debug)]
 pub struct SliderOutput {
     /// A new value.
@@ -24,7 +24,7 @@ pub struct SliderOutput {
     pub response: Response,
 }
 
-/// What a point of movement does beside the place where the knob was taken: a fraction of the value
+/// Change by a point of movement beside the place where the knob was taken: a fraction of the value
 /// on a logarithmic rail. More: a hand cannot set 10.8 m; less: an order of magnitude is further
 /// than the edge of the screen.
 pub const VALUE_FRACTION_PER_POINT: f64 = 0.005;
@@ -32,7 +32,7 @@ pub const VALUE_FRACTION_PER_POINT: f64 = 0.005;
 pub const RANGE_FRACTION_PER_POINT: f64 = 0.002;
 /// Points of movement over which a point comes to do twice as much.
 const DOUBLES_IN: f64 = 10.0;
-/// What Shift leaves of the movement.
+/// Fraction of the movement that is left while Shift is held.
 const SHIFT: f64 = 0.1;
 /// Rest of the hand after which movement is fine again about where the value is, s. Less: a slow
 /// hand never gets far; more: who overshot waits.
@@ -51,14 +51,14 @@ pub fn drag_help(logarithmic: bool) -> String {
     )
 }
 
-/// Where a drag is counted from.
+/// The place from which a drag is counted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Anchor {
     value: f64,
     /// Place of the pointer then, points.
     pointer_x: f32,
     fine: bool,
-    /// Where the pointer was last, and when it last moved, s.
+    /// Last place of the pointer, and the time at which it last moved, s.
     last: (f32, f64),
 }
 
@@ -68,7 +68,7 @@ impl SliderRange {
         if self.ends[0] > 0.0 { self.ends[0] } else { MIN_LOG_FRACTION * self.ends[1] }
     }
 
-    /// Where a value stands, from 0 to 1.
+    /// Place of a value on the rail, from 0 to 1.
     fn share(self, value: f64) -> f64 {
         let [low, high] = self.ends;
         let share = if self.logarithmic {

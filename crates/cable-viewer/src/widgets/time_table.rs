@@ -15,7 +15,7 @@ const HEIGHT: f32 = 140.0;
 const WIDTHS: [f32; 2] = [32.0, 46.0];
 /// Room for the buttons at the end of a row, points.
 const BUTTONS: f32 = 44.0;
-/// What a field has beside its text, points.
+/// Width of a field beyond its text, points.
 const FIELD_MARGIN: f32 = 8.0;
 /// Between columns, points.
 const GAP: f32 = 3.0;

@@ -116,8 +116,8 @@ fn transfer_state(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveE
     draft.set_states(&states)
 }
 
-/// How far round a point obstacles are asked for, m: what lies deeper than this inside something is
-/// in a scene out of all size.
+/// Radius round a point within which obstacles are sought, m: only a scene of absurd size has a
+/// point deeper inside something.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// Returns whether a cable that was carried over would lie inside an obstacle that was not there,

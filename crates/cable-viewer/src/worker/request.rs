@@ -90,7 +90,7 @@ const MAX_STEPS: u32 = 60;
 impl Request {
     /// Takes in a later request.
     pub fn merge(&mut self, later: Self) {
-        // What is asked after it is to be solved.
+        // A request that comes after the cancellation is to be solved.
         self.cancel = later.cancel || (self.cancel && !later.solves());
         if let Some(edit) = later.edit {
             let follows_new_scene = self.edit.as_ref().is_some_and(|e| e.start == EditStart::NewScene);

@@ -37,7 +37,7 @@ pub struct Solve {
     pub began: Instant,
     /// The engine as it was before.
     pub engine: Box<Engine>,
-    /// What it solves; None: the answer to a draft, or other histories of an answer.
+    /// The request that is solved; None: the answer to a draft, or other histories of an answer.
     pub request: Option<Request>,
     /// It seeks other histories of an answer that is on screen.
     pub seeks_histories: bool,

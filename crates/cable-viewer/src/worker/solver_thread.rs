@@ -29,8 +29,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let frame = Duration::from_secs_f64(FRAME_S);
     let mut next_tick = Instant::now();
     let mut last_tick = next_tick;
-    // When a draft has stood long enough to be replaced by the answer, and an answer to be asked
-    // for other histories.
+    // Times at which a draft is replaced by the answer, and an answer is asked for other histories.
     let mut refine_at = next_tick;
     let mut edited_at: Option<Instant> = None;
     loop {

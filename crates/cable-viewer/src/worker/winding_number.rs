@@ -12,7 +12,7 @@ use cable_core::scene::{Obstacle, Shape};
 /// Nearest points of a way, as a part of the cable's length. Nearer: the way is as long as the
 /// mesh; farther: it leads through what the cable was led round.
 const MIN_POINT_SPACING_FRACTION: f64 = 0.01;
-/// How far round a point obstacles are asked for, m.
+/// Radius round a point within which obstacles are sought, m.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// The cables (by number) that would have to pass an obstacle to get from one shape to another.

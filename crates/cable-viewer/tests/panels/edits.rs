@@ -1,4 +1,4 @@
-//! What a user does in a panel changes the scene, found by the names of the widgets.
+//! Edits in a panel change the scene; the widgets are found by their names.
 
 use cable_core::Model;
 use cable_core::scene::SupportKind;
@@ -415,7 +415,7 @@ fn a_support_moves_lets_go_and_pulls_by_times() {
     enter(&mut harness, "x 2 of right", "11");
     let motion = right(&harness).motion.expect("a motion");
     assert_eq!((motion.times_s, motion.points_m), (vec![0.0, 5.0], vec![at_m, [11.0, at_m[1]]]));
-    // Where it begins is where it stands.
+    // The motion begins at the place of the support.
     enter(&mut harness, "y 1 of right", "4.5");
     assert_eq!(right(&harness).at_m, Some([at_m[0], 4.5]));
     assert_eq!(harness.state().state.document.fault, None);

@@ -16,7 +16,7 @@ use egui_kittest::Harness;
 
 pub type PanelUi = fn(&mut egui::Ui, &AppState, &mut Vec<Command>);
 
-/// What a panel under test reads and what it asked for.
+/// The state that a panel under test reads, and the commands that it pushed.
 pub struct Bench {
     pub state: AppState,
     pub commands: Vec<Command>,
@@ -249,7 +249,7 @@ pub fn with_pulley(state: &mut AppState) {
     state.document.fault = state.document.scene.validate().err();
 }
 
-/// What lists the things of the scene, and what edits the one that is selected.
+/// The panel that lists the items of the scene, and the form of the selected one.
 pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
     cable_viewer::panels::scene::outline::ui(ui, state, commands);
     if state.selection.selected.is_some() {

@@ -122,7 +122,7 @@ fn at_rest_the_greatest_tension_is_still_and_no_node_stands_out() {
     let [low, high] =
         samples.fold([f64::INFINITY, 0.0_f64], |[low, high], s| [low.min(s.max_tension_n), high.max(s.max_tension_n)]);
     assert!(high - low < 1e-3 * high, "{low} to {high} N");
-    // What was seen then is seen by this.
+    // The defect that was seen then is seen by this check.
     let mut nodes = answer(&harness).cables[0].nodes.clone();
     let k = nodes.iter().position(|n| n.arc_length_m > 12.6).unwrap();
     nodes[k].tension_n = 150.0;
@@ -302,7 +302,7 @@ fn a_cable_that_is_far_too_long_is_said_to_lie_loose_and_stays_in_the_tank() {
         assert!(harness.query_by_label_contains("exact for this model").is_none(), "how it is folded is not known");
         let within = |n: &Node| (-11.43..=11.43).contains(&n.x_m) && n.y_m < 9.5;
         assert!(answer.cables[0].nodes.iter().all(within), "{length_m} m leave the tank");
-        // What pulls at the ends is what hangs there.
+        // The ends carry no more than the weight that hangs from them.
         assert!(answer.max_tension().tension_n < 1.1 * before.max_tension().tension_n);
         for s in &answer.cables[0].supports {
             assert!(s.reaction_x_n.hypot(s.reaction_y_n) < 1.1 * before.max_tension().tension_n, "{}", s.name);

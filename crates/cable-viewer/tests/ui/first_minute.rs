@@ -71,7 +71,7 @@ fn start_here_leads_to_the_guides() {
     let mut harness = open_span();
     harness.get_by_label("Start here…").click();
     harness.run_steps(4);
-    // What a guide begins with was cut at the dialog's edge.
+    // The button that begins a guide was cut at the dialog's edge.
     let heights = [0, 3].map(|k: usize| harness.get_by_label(TUTORIALS[k].steps[0].text).rect().height());
     assert!(heights[0] > 1.5 * heights[1], "the first takes two lines, the fourth one: {heights:?}");
     assert_eq!(harness.state().state.ui.dialog, Some(Dialog::StartHere));
@@ -97,7 +97,7 @@ fn guides_point_at_what_they_speak_of() {
         let begin = Replacement::OpenTutorial { tutorial, scene: guide.scene };
         apply(&mut harness, Command::File(FileCommand::Discard(begin)));
         for (step, told) in guide.steps.iter().enumerate() {
-            // What an earlier step would have made.
+            // The state that an earlier step would have made.
             match told.points_at {
                 "Support waypoint of cable" if step == 1 => {
                     let waypoint = SceneCommand::AddWaypoint { cable: 0, arc_length_m: 5.0, at_m: [5.0, 3.5] };

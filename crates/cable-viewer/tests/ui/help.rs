@@ -63,7 +63,7 @@ fn u11_every_control_explains_itself_on_hover() {
     every_control_explains_itself(open(catalog::robot_drive()), None);
 }
 
-/// What opens for something that is picked, and what only some scenes have.
+/// These panels open for a selection, or exist in some scenes only.
 #[test]
 fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
     for (scene, item) in [
@@ -109,7 +109,7 @@ fn every_control_explains_itself(mut harness: Harness<'static, ViewerApp>, picke
             silent.push((name, role));
         }
     }
-    // What says in its own words all there is to say.
+    // These controls need no help beyond their own words.
     let plain = ["File", "Edit", "View", "Tools", "Scenes", "Learn"];
     silent.retain(|(name, _)| !plain.contains(&name.as_str()));
     assert!(silent.is_empty(), "{} without help: {silent:?}", silent.len());
@@ -364,7 +364,7 @@ fn escape_closes_a_menu_or_list_before_it_drops_what_is_picked() {
     assert_eq!(state(&harness).selection.selected, None);
 }
 
-/// What is typed into stands off the dialog that asks for it, in both themes.
+/// Text fields stand out from their dialog in both themes.
 #[test]
 fn fields_stand_off_dialogs_and_panels() {
     let harness = open_span();
@@ -380,7 +380,7 @@ fn fields_stand_off_dialogs_and_panels() {
     }
 }
 
-/// Where there is no room for graphs below the canvas they are in the one panel, and the canvas is
+/// If there is no room for graphs below the canvas, they are in the one panel, and the canvas is
 /// larger than its labels.
 #[test]
 fn small_windows_keep_a_canvas_and_have_all_panels() {

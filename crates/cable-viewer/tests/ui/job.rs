@@ -145,7 +145,7 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     harness.get_by_label("Progress of the comparison");
     click(&mut harness, "Cancel comparison");
     assert!(matches!(state(&harness).analysis.models, Progress::None));
-    // What was ended holds nothing, however soon it comes.
+    // A job that was ended leaves no result, however soon one comes.
     apply(&mut harness, Command::View(ViewCommand::RemoveReferences(None)));
     let ctx = harness.ctx.clone();
     let commands = [true, false].map(|on| Command::View(ViewCommand::CompareModels(on)));

@@ -107,7 +107,7 @@ fn the_right_panel_follows_the_selection() {
     }
 }
 
-/// What is too wide for the panel pushes its figures out of sight.
+/// A row too wide for the panel would push its figures out of sight.
 #[test]
 fn the_form_of_what_is_selected_fits_the_panel() {
     for (scene, item) in [
@@ -134,7 +134,7 @@ fn the_form_of_what_is_selected_fits_the_panel() {
                 continue;
             }
             let rect = node.rect();
-            // What is in the panel of figures on supports scrolls by itself.
+            // The list of supports in the panel of figures scrolls by itself.
             let right = rect.left() > canvas.right() && rect.right() > 1024.0 - 3.0;
             let beside = rect.top() > canvas.top() && rect.bottom() < canvas.bottom();
             let left = beside && rect.right() < canvas.left() + 60.0 && rect.right() > canvas.left() - 3.0;

@@ -108,7 +108,7 @@ fn no_answer_dark() {
     compare("no_answer_dark", state, Theme::Dark);
 }
 
-/// What a contact looks like, whatever a model would answer: a cable laid over a beam by hand.
+/// A contact is drawn the same whatever a model would answer: a cable laid over a beam by hand.
 #[test]
 fn contacts_dark() {
     let scene = catalog::over_beam();

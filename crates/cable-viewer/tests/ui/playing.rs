@@ -255,7 +255,7 @@ fn figures_have_errors_while_time_runs() {
     let [from, to] = run.ranges.expect("a range").greatest_n;
     let most = run.peaks.greatest.tension_n;
     assert!(from <= most && most <= to && from > 0.0, "{most} in {from} to {to} N");
-    // What changes the scene while time runs ends what is known.
+    // An edit of the scene while time runs ends the run and its ranges.
     let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.linear_density_kg_per_m *= 2.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));

@@ -90,7 +90,7 @@ fn issue_020_time_goes_on_once_an_end_is_back_within_reach() {
     }
 }
 
-/// Who pauses while the end is out of reach wants time to stand.
+/// A pause while the end is out of reach stops time.
 #[test]
 fn issue_020_a_pause_out_of_reach_is_kept() {
     let (mut harness, from) = held(1e3);

@@ -94,7 +94,7 @@ fn a_search_that_is_dropped_ends() {
     patiently("the first words", || heard.load(Ordering::Relaxed) > 2);
     assert!(matches!(job.progress(), Progress::Running(..)), "a search that is done says nothing of ending");
     drop(job);
-    // What it was at, and its last word.
+    // The progress of the job, and its last message.
     std::thread::sleep(Duration::from_secs(1));
     let last = heard.load(Ordering::Relaxed);
     std::thread::sleep(Duration::from_secs(1));

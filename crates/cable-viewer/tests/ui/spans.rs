@@ -248,7 +248,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     assert!(!figure.accesskit_node().description().unwrap_or_default().contains("friction"));
 }
 
-/// What neglecting bending stiffness changes is told on request, of the answer on screen only.
+/// The effect of neglected bending stiffness is computed on request, for the answer on screen only.
 #[test]
 fn a_flexible_answer_is_compared_with_a_stiff_one() {
     use cable_viewer::jobs::background::Progress;

@@ -34,8 +34,8 @@ pub fn big(segments: usize, points: usize) -> Scene {
     scene
 }
 
-/// What a window does with a frame: tessellates it, hands it to the graphics driver, waits for the
-/// picture. Nothing is read back: a window shows it where it is.
+/// The screen does what a window does with a frame: it tessellates it, hands it to the graphics
+/// driver and waits for the picture. Nothing is read back: a window shows it where it is.
 struct Screen {
     state: RenderState,
     view: Option<wgpu::TextureView>,

@@ -152,7 +152,7 @@ fn s17_the_robot_says_that_its_cable_holds_it() {
     harness.run_steps(240);
     let r = robot(&harness);
     assert!(r.speed_m_per_s.abs() < 0.05, "{r:?}");
-    // Where its tracks slip, the swing of the cable may draw it back at this instant.
+    // While its tracks slip, the swing of the cable may draw it back at this instant.
     let held = [Going::Stalled, Going::Slipping, Going::Slowed, Going::Dragged];
     assert!(held.contains(&r.going), "{r:?}");
     harness.get_by_label(r.going.name());
@@ -272,7 +272,7 @@ fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
     assert_eq!(harness.state().state.document.scene, before);
-    // What cannot be read changes nothing and says the line.
+    // A table that cannot be read changes nothing, and the line is reported.
     let text = "0 0\n1 x\n".to_owned();
     apply(
         &mut harness,

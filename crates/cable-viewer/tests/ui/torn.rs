@@ -17,7 +17,7 @@ fn weak() -> Harness<'static, ViewerApp> {
     open(scene)
 }
 
-/// Where the longest piece of the cable is on screen.
+/// The place of the longest piece of the cable on screen.
 fn piece(harness: &Harness<'_, ViewerApp>) -> (Rect, Rect) {
     let canvas = harness.get_by_label("Canvas").rect();
     let state = &harness.state().state;

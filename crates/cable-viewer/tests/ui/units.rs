@@ -1,4 +1,4 @@
-//! What the solver says is read in the units on screen.
+//! The messages of the solver are shown in the units on screen.
 
 use cable_core::Model;
 use cable_core::scene::catalog;
@@ -46,7 +46,7 @@ fn warnings_and_refusals_are_read_in_us_units() {
     assert_eq!(metric(&harness), Vec::<String>::new());
     let pull = format!("is pulled with {:.1} lbf", most / 4.448_221_615_260_5);
     harness.get_by_label_contains(&pull);
-    // What cannot be solved, too.
+    // The reason why a scene cannot be solved is, too.
     set_cable(&mut harness, |c| c.length_m = 9.0);
     assert!(state(&harness).document.fault.is_some());
     assert_eq!(metric(&harness), Vec::<String>::new());

@@ -1,7 +1,7 @@
-//! Every row that was asked for, done by hand, with a picture of the whole window at its main
-//! states: to be looked at, nothing is asserted but that there is a picture.
-//! `KEEP_PICTURES=FOLDER cargo test --workspace --test ui walk`; without the folder nothing is
-//! done.
+//! These walks take the window through its main states and draw a picture of each, to be looked at.
+//! They fail where a control is gone or a state cannot be drawn; otherwise a reader judges.
+//! `KEEP_PICTURES=FOLDER cargo test --workspace --test ui walk -- --ignored`; without the variable
+//! the pictures are in the temporary folder of the tests.
 
 use std::path::PathBuf;
 
@@ -24,9 +24,10 @@ struct Walk {
 }
 
 impl Walk {
-    /// None where no pictures are wanted.
-    fn open(scene: Scene, [width, height]: [f32; 2]) -> Option<Self> {
-        let folder = PathBuf::from(std::env::var_os("KEEP_PICTURES")?);
+    /// Opens a window on the scene.
+    fn open(scene: Scene, [width, height]: [f32; 2]) -> Self {
+        let folder =
+            std::env::var_os("KEEP_PICTURES").map_or_else(|| env!("CARGO_TARGET_TMPDIR").into(), PathBuf::from);
         let harness = Harness::builder()
             .with_size(Vec2::new(width, height))
             .with_step_dt(1.0 / 60.0)
@@ -36,7 +37,7 @@ impl Walk {
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
         let mut walk = Self { harness, folder };
         walk.harness.run_steps(6);
-        Some(walk)
+        walk
     }
 
     fn look(&mut self, name: &str) {
@@ -84,8 +85,9 @@ impl Walk {
 const WINDOW: [f32; 2] = [1280.0, 800.0];
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_a_span() {
-    let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::hanging_span(), WINDOW);
     walk.look("a01-start-dark");
     walk.light();
     walk.look("a02-start-light");
@@ -132,8 +134,9 @@ fn walk_a_span() {
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_b_faults_and_loads() {
-    let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::hanging_span(), WINDOW);
     let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m = 7.0;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable.clone()) }));
@@ -141,31 +144,32 @@ fn walk_b_faults_and_loads() {
     cable.length_m = 10.02;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("b02-taut");
-    let Some(mut walk) = Walk::open(catalog::loads_wind_heat(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::loads_wind_heat(), WINDOW);
     walk.view(ViewCommand::Select(Some(Item::Load(0))));
     walk.look("b03-loads");
     walk.light();
     walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));
     walk.look("b04-loads-us");
-    let Some(mut walk) = Walk::open(catalog::pile(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::pile(), WINDOW);
     walk.look("b05-pile");
-    let Some(mut walk) = Walk::open(catalog::plan_posts(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::plan_posts(), WINDOW);
     walk.look("b06-plan");
-    let Some(mut walk) = Walk::open(catalog::pulley_waypoints(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::pulley_waypoints(), WINDOW);
     walk.view(ViewCommand::Select(Some(Item::Support { cable: 0, support: 1 })));
     walk.look("b07-waypoints");
     let mut scene = catalog::hanging_span();
     scene.cables[0].breaking_tension_n = 90.0;
     scene.cables[0].service_tension_n = 60.0;
-    let Some(mut walk) = Walk::open(scene, WINDOW) else { return };
+    let mut walk = Walk::open(scene, WINDOW);
     walk.look("b08-over-breaking-at-rest");
     walk.plays(30);
     walk.look("b09-broken");
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_c_tank() {
-    let Some(mut walk) = Walk::open(catalog::tank(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::tank(), WINDOW);
     walk.look("c01-tank");
     walk.plays(240);
     walk.look("c02-tank-4s");
@@ -178,8 +182,9 @@ fn walk_c_tank() {
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_d_robot() {
-    let Some(mut walk) = Walk::open(catalog::robot_drive(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::robot_drive(), WINDOW);
     walk.look("d01-robot");
     walk.holds(Key::D, 120);
     walk.look("d02-driven");
@@ -193,6 +198,7 @@ fn walk_d_robot() {
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_e_sizes() {
     for (k, (size, scale)) in [
         ([1280.0, 800.0], 0.5),
@@ -205,7 +211,7 @@ fn walk_e_sizes() {
     .into_iter()
     .enumerate()
     {
-        let Some(mut walk) = Walk::open(catalog::robot_drive(), size) else { return };
+        let mut walk = Walk::open(catalog::robot_drive(), size);
         walk.harness.ctx.set_zoom_factor(scale);
         walk.harness.run_steps(4);
         walk.view(ViewCommand::Fit);
@@ -218,13 +224,14 @@ fn walk_e_sizes() {
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_g_small_dialogs() {
-    let Some(mut walk) = Walk::open(catalog::hanging_span(), [640.0, 400.0]) else { return };
+    let mut walk = Walk::open(catalog::hanging_span(), [640.0, 400.0]);
     for (name, dialog) in [("about", Dialog::About), ("help", Dialog::Help)] {
         walk.dialog(dialog);
         walk.look(&format!("g-{name}-640x400"));
     }
-    let Some(mut walk) = Walk::open(catalog::hanging_span(), WINDOW) else { return };
+    let mut walk = Walk::open(catalog::hanging_span(), WINDOW);
     walk.plays(90);
     walk.harness.get_by_label("Along the cable").focus();
     walk.harness.run_steps(2);
@@ -240,9 +247,10 @@ fn walk_g_small_dialogs() {
 }
 
 #[test]
+#[ignore = "pictures to look at, half a minute"]
 fn walk_f_tall_panels() {
     for (name, scene) in [("robot", catalog::robot_drive()), ("tank", catalog::tank())] {
-        let Some(mut walk) = Walk::open(scene, [1280.0, 2400.0]) else { return };
+        let mut walk = Walk::open(scene, [1280.0, 2400.0]);
         walk.view(ViewCommand::AddReference);
         walk.look(&format!("f-tall-{name}-dark"));
         walk.light();

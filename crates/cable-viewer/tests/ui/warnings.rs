@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open};
 
-/// What has several warnings at rest, one of them with a long name.
+/// Warnings of a scene that has several at rest, one of them with a long name.
 const TOLD: [&str; 2] = ["Kinked at", "Depends on how it was laid"];
 
 #[test]

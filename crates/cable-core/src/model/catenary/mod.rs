@@ -73,7 +73,7 @@ pub struct CatenaryModel {
 /// The material at pulleys from which a balance is sought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum InitialMaterial {
-    /// That of the present balance.
+    /// The material of the present balance.
     AsBefore,
     /// Spread evenly.
     EvenSpread,

@@ -19,7 +19,7 @@ pub enum WarningCause {
     },
     /// Tension above the breaking tension for an instant too short to break the cable.
     BrieflyAboveBreaking {
-        /// When, s.
+        /// Time, s.
         time_s: f64,
         /// Breaking tension, N.
         breaking_n: f64,
@@ -35,7 +35,7 @@ pub enum WarningCause {
     },
     /// The cable broke.
     Broke {
-        /// When, s.
+        /// Time, s.
         time_s: f64,
         /// Time over which the mean tension reached its strength, s; 0 = it is an instant's.
         over_s: f64,
@@ -70,7 +70,7 @@ pub enum WarningCause {
     },
     /// A long part has less tension than a limit.
     LowTension {
-        /// That tension, N.
+        /// That limit, N.
         below_n: f64,
     },
     /// The cable crosses itself.

@@ -90,7 +90,7 @@ pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// What stands beside the words of a step.
+/// The mark or button beside the words of a step.
 #[derive(Clone, Copy)]
 enum Part {
     Done,

@@ -20,7 +20,7 @@ pub struct Tutorial {
 pub struct Step {
     /// In words.
     pub text: &'static str,
-    /// Whether it was done; None: it is only to be read.
+    /// True once the step is done; None: the step is only read.
     pub done: Option<fn(&AppState) -> bool>,
     /// Name of the control or of the thing on the canvas that it speaks of.
     pub points_at: &'static str,

@@ -64,7 +64,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         && let Some(n) =
             solution.cables.get(state.current_cable()).and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= s))
     {
-        // Where the pointer is in the graph along the cable.
+        // This marks the place under the pointer in the graph along the cable.
         view.painter.circle_stroke(view.at([n.x_m, n.y_m]), 7.0, Stroke::new(2.0, view.palette.accent));
     }
     if state.view.layers.nodes {

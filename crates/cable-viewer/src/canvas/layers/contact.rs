@@ -10,7 +10,7 @@ use crate::canvas::layers::surface_offset::{self, MIN_WIDTH};
 use crate::render::theme::Palette;
 use crate::state::AppState;
 
-/// How much wider than the cable the band is, points.
+/// Width of the band beyond that of the cable, points.
 const BAND: f32 = 6.0;
 /// Width of its edge where it is hollow, points.
 const EDGE: f32 = 2.8;

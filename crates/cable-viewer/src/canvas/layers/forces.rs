@@ -19,7 +19,7 @@ const LENGTH: [f64; 2] = [64.0, 9.0];
 /// All arrows; their figures go to `figures` for the labels to place.
 pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(solution) = &state.live.snapshot.solution else { return };
-    // What holds the cable now is known of answers only; loads are given.
+    // Forces of supports are known of answers only; loads are given.
     let current = state.is_current();
     let greatest = greatest(state);
     let scale = |f: Point| screen_vector(f, greatest);

@@ -18,7 +18,7 @@ use crate::render::theme::{self, Palette};
 use crate::state::AppState;
 use crate::units::labels;
 
-/// How much of the picture below shines through, of 1: the grid stays readable.
+/// Opacity of the map, of 1: the grid below stays readable.
 const FILL_OPACITY: f32 = 0.62;
 /// For lines, a place that the cable does not reach counts as this many times the breaking tension.
 const OUT_OF_REACH_FACTOR: f64 = 2.0;

@@ -284,7 +284,7 @@ fn change(ratio: f64) -> String {
     if ["+0.00 %", "−0.00 %"].contains(&text.as_str()) { "0.00 %".to_owned() } else { text }
 }
 
-/// What two scenes and models differ in.
+/// The differences between two scenes and models.
 #[derive(Clone)]
 struct Summary {
     held: Arc<Scene>,

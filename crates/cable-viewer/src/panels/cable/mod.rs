@@ -56,7 +56,7 @@ fn changed(index: usize, cable: &Cable, change: impl FnOnce(&mut Cable)) -> Comm
     Command::Scene(SceneCommand::SetCable { cable: index, value: Box::new(value) })
 }
 
-/// Which cable, where there are several, and its name.
+/// Chooses the cable where there are several, and edits its name.
 fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     if state.document.scene.cables.len() > 1 {

@@ -128,7 +128,7 @@ pub const PROPERTIES: [Property; 12] = [
     ),
 ];
 
-/// How segments are shown when the cable says how many.
+/// The field of segments when the cable sets their number.
 pub const SEGMENTS: Quantity = Quantity {
     name: "Segments",
     unit: Unit::COUNT,

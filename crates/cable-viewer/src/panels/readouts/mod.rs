@@ -98,7 +98,7 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// What stands below it.
+/// The readouts below the headline figures.
 pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
     let (Ok((scene, cable, solved)), Some(answer)) = (shown(state), state.live.snapshot.solution.as_deref()) else {
@@ -336,7 +336,7 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
     }
 }
 
-/// Whether bending stiffness was taken into account, and what it changes where it was not.
+/// Says if bending stiffness was taken into account, and what it changes where it was not.
 fn bending_stiffness(
     ui: &mut Ui,
     state: &AppState,

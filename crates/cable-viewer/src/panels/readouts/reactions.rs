@@ -45,7 +45,7 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
     }
 }
 
-/// What a hand that holds a support pulls with.
+/// The force with which a hand holds a support.
 fn hand(ui: &mut Ui, s: &SupportReaction) {
     let Some(hand) = &s.hand else { return };
     let ahead = (hand.x_m - s.x_m).hypot(hand.y_m - s.y_m);

@@ -75,7 +75,7 @@ pub fn chosen(state: &AppState, p: &RobotPreset) -> Command {
 /// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is
 /// spent before it pulls; less: rough waste has no place for it.
 const MAX_START_SLOPE: f64 = 0.2;
-/// How far apart the places that are tried are, m, and how many to each side: a tank's width.
+/// Distance of the places that are tried, m, and their number to each side: a tank's width.
 const PLACEMENT_TRIALS: (f64, u32) = (0.25, 100);
 
 /// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it

@@ -16,7 +16,7 @@ pub const NUMBER_WIDTH: f32 = 47.0;
 /// Between a line and the canvas, points: a text that is cut may be a little wider than it is
 /// given.
 const RIGHT_MARGIN: f32 = 6.0;
-/// What a field has beside its text, points.
+/// Width of a field beyond its text, points.
 const FIELD_MARGIN: f32 = 8.0;
 
 /// Least and greatest width of the name of two numbers, points.

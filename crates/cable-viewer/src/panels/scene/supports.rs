@@ -112,7 +112,8 @@ fn head(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     });
 }
 
-/// Where it is now, if its cable is torn or the scene moves it away from where it begins.
+/// Shows the present place of a support whose cable is torn, or that the scene moves away from
+/// where it begins.
 fn place_apart(ui: &mut Ui, state: &AppState, row: &Row<'_>) {
     let Some(begins) = row.value.at_m else { return };
     if !is_broken(state, row.cable) && row.value.motion.is_none() {

@@ -138,7 +138,7 @@ fn seeking(ui: &mut Ui) {
         .on_hover_text("The figures hold for the shape shown; friction may allow others, which are being sought");
 }
 
-/// How many there are, as a row that leads to the worst.
+/// The number of warnings, as a row that leads to the worst.
 pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
     let Some(worst) = entries.first() else { return };
@@ -186,7 +186,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
         let (title, fixes) = if cancelled { ("Not solved", vec![solve]) } else { ("No answer", Vec::new()) };
         list.push(Entry { title: title.to_owned(), fixes, ..entry(Severity::Stop, text) });
     }
-    // What a draft or the answer to another scene warns of says nothing of this one.
+    // Warnings of a draft or of another scene's answer say nothing of this one.
     if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
         list.extend(quality::problems(state, answer).into_iter().map(of_problem));

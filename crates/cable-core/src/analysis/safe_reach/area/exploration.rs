@@ -443,6 +443,6 @@ impl Exploration<'_> {
 enum Start {
     /// The state before it.
     AsItIs,
-    /// That state with the cable at rest, laid anew.
+    /// The state before, with the cable brought to rest anew.
     LaidAnew,
 }

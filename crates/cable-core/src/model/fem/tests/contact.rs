@@ -182,7 +182,7 @@ fn an_end_thrown_ten_metres_in_a_frame_does_not_pass_a_beam() {
     assert!(held);
 }
 
-/// Which steps are hard changes with the last digit of the start, so that several starts are asked.
+/// The steps that are hard change with the last digit of the start, so several starts are tried.
 #[test]
 fn a_cable_dropped_on_rubble_loses_hardly_a_step_and_never_penetrates() {
     const STARTS: usize = 8;
