@@ -1,6 +1,6 @@
-//! A pivoting band matrix is solved by the LU factorisation with partial pivoting of a matrix with
-//! a narrow band: G. H. Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed.
-//! 2013, §4.3. It is for Jacobians that are neither symmetric nor definite.
+//! A pivoting band matrix is solved by LU factorisation with partial pivoting within its band: G.
+//! H. Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. It is for
+//! Jacobians that are neither symmetric nor definite.
 
 /// A band matrix that is factorised in place: `HALF` entries on either side of the diagonal, and
 /// `WIDTH` = 3 `HALF` + 1 in a stored row, as pivoting fills as many again on the right.

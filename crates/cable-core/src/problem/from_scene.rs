@@ -100,38 +100,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         View::Elevation => (Vec2::new(0.0, -weight_per_m), None),
         View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m))),
     };
-    let last = cable.supports.len().saturating_sub(1);
-    let supports: Vec<SupportPoint> = cable
-        .supports
-        .iter()
-        .enumerate()
-        .map(|(k, s)| SupportPoint {
-            name: s.name.clone(),
-            kind: s.kind,
-            arc_length: match (k, s.kind) {
-                (0, _) => Some(0.0),
-                (k, _) if k == last => Some(cable.length_m),
-                (_, SupportKind::Pulley) => None,
-                _ => s.arc_length_m,
-            },
-            at: match s.kind {
-                SupportKind::Load | SupportKind::Free => None,
-                SupportKind::Robot => scene.hitch_m().map(vec2),
-                _ => s.at_m.map(vec2),
-            },
-            motion: s.motion.clone(),
-            angle: s.angle_deg.map(f64::to_radians),
-            wheel_radius: match s.radius_m {
-                Some(r) if r > 0.0 => r + radius,
-                _ => 0.0,
-            },
-            side: s.side.unwrap_or_default(),
-            friction: s.friction.unwrap_or(0.0),
-            force: force_series(s.force_n, &s.times_s, &s.forces_n),
-            mass: s.mass_kg.unwrap_or(0.0),
-            release: s.release_s,
-        })
-        .collect();
+    let supports: Vec<SupportPoint> = (0..cable.supports.len()).map(|k| support_point(scene, cable, k)).collect();
     let mut loads: Vec<PointLoad> = scene
         .loads
         .iter()
@@ -172,6 +141,37 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         standing_wheels: None,
         cable,
     })
+}
+
+/// Support `k` of a cable as the models have it.
+fn support_point(scene: &Scene, cable: &Cable, k: usize) -> SupportPoint {
+    let (s, radius, last) = (&cable.supports[k], cable.diameter_m / 2.0, cable.supports.len().saturating_sub(1));
+    SupportPoint {
+        name: s.name.clone(),
+        kind: s.kind,
+        arc_length: match (k, s.kind) {
+            (0, _) => Some(0.0),
+            (k, _) if k == last => Some(cable.length_m),
+            (_, SupportKind::Pulley) => None,
+            _ => s.arc_length_m,
+        },
+        at: match s.kind {
+            SupportKind::Load | SupportKind::Free => None,
+            SupportKind::Robot => scene.hitch_m().map(vec2),
+            _ => s.at_m.map(vec2),
+        },
+        motion: s.motion.clone(),
+        angle: s.angle_deg.map(f64::to_radians),
+        wheel_radius: match s.radius_m {
+            Some(r) if r > 0.0 => r + radius,
+            _ => 0.0,
+        },
+        side: s.side.unwrap_or_default(),
+        friction: s.friction.unwrap_or(0.0),
+        force: force_series(s.force_n, &s.times_s, &s.forces_n),
+        mass: s.mass_kg.unwrap_or(0.0),
+        release: s.release_s,
+    }
 }
 
 fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> Series {

@@ -32,7 +32,7 @@ pub fn tools(state: &AppState) -> [Tool; 8] {
             "Find safe reach",
             "How far an end or the robot can be taken, and back, below the service tension",
             ToolSection::SafeReach,
-            Some(ViewCommand::SearchSafeReach(true)),
+            Some(ViewCommand::SearchSafeReach),
         ),
         tool(
             "Mark the largest tension",
@@ -50,19 +50,19 @@ pub fn tools(state: &AppState) -> [Tool; 8] {
             "Compare all models",
             "Answers the scene at rest with each model and pins the answers",
             ToolSection::Compare,
-            Some(ViewCommand::CompareModels(true)),
+            Some(ViewCommand::CompareModels),
         ),
         tool(
             "Find the friction range",
             "The same question with less and with more friction, as a ribbon in the graphs",
             ToolSection::FrictionRange,
-            of_answer(ViewCommand::SetFrictionRange(true, state.analysis.friction_range.factors)),
+            of_answer(ViewCommand::SetFrictionRange { shown: true, factors: state.analysis.friction_range.factors }),
         ),
         tool(
             "Chart error over cost of every model",
             "Solves the scene at rest by every model and mesh, and draws error over time",
             ToolSection::Solver,
-            of_answer(ViewCommand::ChartWorkPrecision(true)),
+            of_answer(ViewCommand::ChartWorkPrecision),
         ),
         tool(
             "Compare with the likely bending stiffness",

@@ -194,6 +194,7 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[St
     ui.add_space(10.0);
     ui.horizontal(|ui| {
         let ready = !path.trim().is_empty() || !text.trim().is_empty();
+        let [adds, replaces] = [false, true];
         let mut import = |ui: &mut Ui, name: &str, help: &str, replaces_ground: bool| {
             let button = ui.add_enabled(ready && unit.is_some(), Button::new(name)).on_hover_text(help);
             if let (true, Some(unit_m)) = (button.clicked(), unit) {
@@ -203,12 +204,12 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[St
             }
         };
         if grounds.is_empty() {
-            import(ui, "Import", "Adds it to the scene", false);
+            import(ui, "Import", "Adds it to the scene", adds);
         } else {
             // Two grounds at once are hardly ever meant.
             let help = format!("Takes out {} for the ground that is read; beams and posts stay", grounds.join(", "));
-            import(ui, "Replace the ground", &help, true);
-            import(ui, "Add to the scene", "Keeps the ground that is there, and adds to it", false);
+            import(ui, "Replace the ground", &help, replaces);
+            import(ui, "Add to the scene", "Keeps the ground that is there, and adds to it", adds);
         }
         if ui.button("Cancel").clicked() {
             commands.push(close());

@@ -150,7 +150,7 @@ fn safe_reach(app: &mut ViewerApp, ctx: &Context) {
     let camera = &mut app.state.view.camera;
     (camera.centre_m, camera.points_per_m, camera.fit_wanted) = ([5.0, 4.0], 46.0, false);
     app.state.view.visible_m = [[-3.0, -1.0], [13.0, 9.0]];
-    view(app, ctx, ViewCommand::SearchSafeReach(true));
+    view(app, ctx, ViewCommand::SearchSafeReach);
 }
 
 fn compare(app: &mut ViewerApp, ctx: &Context) {

@@ -93,13 +93,15 @@ impl ViewerApp {
     /// Opens a scene with a solver thread.
     #[must_use]
     pub fn new(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
-        Self::start(ctx, scene, path, true)
+        let threaded = true;
+        Self::start(ctx, scene, path, threaded)
     }
 
     /// Opens a scene that is solved within each frame, for tests and still pictures.
     #[must_use]
     pub fn inline(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
-        Self::start(ctx, scene, path, false)
+        let threaded = false;
+        Self::start(ctx, scene, path, threaded)
     }
 
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {

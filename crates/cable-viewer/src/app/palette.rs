@@ -90,7 +90,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Edit the cable", select(Item::Cable(0))),
         ("Edit the environment", select(Item::Environment)),
         ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
-        ("Cancel or clear the safe reach", Command::View(ViewCommand::SearchSafeReach(false))),
+        ("Cancel or clear the safe reach", Command::View(ViewCommand::EndSafeReach)),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
         ("Match system theme", theme(egui::ThemePreference::System)),

@@ -136,10 +136,13 @@ fn analyses(state: &AppState) -> Vec<Entry> {
     let friction = &state.analysis.friction_range;
     let both_ways = crate::jobs::safe_reach::SafeReachOptions { round_trip: !reach.round_trip, ..reach };
     let mut all = vec![
-        view("Cancel comparison", ViewCommand::CompareModels(false)),
-        view("Cancel chart", ViewCommand::ChartWorkPrecision(false)),
+        view("Cancel comparison", ViewCommand::EndModelComparison),
+        view("Cancel chart", ViewCommand::EndWorkPrecision),
         view("Safe reach: there and back, or there only", ViewCommand::SetSafeReachOptions(both_ways)),
-        view("Show less and more friction", ViewCommand::SetFrictionRange(!friction.on, friction.factors)),
+        view(
+            "Show less and more friction",
+            ViewCommand::SetFrictionRange { shown: !friction.on, factors: friction.factors },
+        ),
         view("Unmark the place on the cable", ViewCommand::SetTensionMarker(None)),
     ];
     all.extend(

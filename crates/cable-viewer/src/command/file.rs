@@ -157,14 +157,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
         FileCommand::ExportPicture(path) => effects.picture = Some(path),
         FileCommand::ImportMap { path, text, unit_m, replaces_ground } => {
             let read = import::Map { path: path.as_deref(), text: &text, unit_m, replaces_ground };
-            match import::add(&state.document.scene, &read) {
-                Ok((scene, report)) => {
-                    scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
-                    state.view.camera.fit_wanted = true;
-                    state.ui.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
-                }
-                Err(text) => show_error(state, "The map was not imported", text),
-            }
+            import_map(state, &read, effects);
         }
         FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, &feedback_context(state)) {
             Ok(()) => state.ui.dialog = None,
@@ -187,18 +180,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             Ok(opened) => hold(state, &path, opened),
             Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::SetDialog(dialog) => {
-            if dialog.is_some() {
-                (state.ui.written, state.ui.graph_to_export) = (None, None);
-            }
-            let message = matches!(state.ui.dialog, Some(Dialog::Message { .. }));
-            let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
-            state.ui.dialog = dialog.or(then);
-            if state.ui.dialog.is_none() {
-                // An action that was to follow a save that was called off follows no later one.
-                state.ui.after_save = None;
-            }
-        }
+        FileCommand::SetDialog(dialog) => set_dialog(state, dialog),
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
             state.document.recovered = true;
@@ -219,6 +201,32 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             state.ui.closing = true;
             effects.quit = true;
         }
+    }
+}
+
+/// Adds the obstacles of a map to the scene and reports what was added.
+fn import_map(state: &mut AppState, read: &import::Map<'_>, effects: &mut Effects) {
+    match import::add(&state.document.scene, read) {
+        Ok((scene, report)) => {
+            scene::apply(state, SceneCommand::SetScene(Box::new(scene)), effects);
+            state.view.camera.fit_wanted = true;
+            state.ui.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
+        }
+        Err(text) => show_error(state, "The map was not imported", text),
+    }
+}
+
+/// Opens a dialog, or closes it: then the one that waited behind a message opens again.
+fn set_dialog(state: &mut AppState, dialog: Option<Dialog>) {
+    if dialog.is_some() {
+        (state.ui.written, state.ui.graph_to_export) = (None, None);
+    }
+    let message = matches!(state.ui.dialog, Some(Dialog::Message { .. }));
+    let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
+    state.ui.dialog = dialog.or(then);
+    if state.ui.dialog.is_none() {
+        // An action that was to follow a save that was called off follows no later one.
+        state.ui.after_save = None;
     }
 }
 

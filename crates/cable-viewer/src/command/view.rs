@@ -65,14 +65,19 @@ pub enum ViewCommand {
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
-    /// Looks for where the robot or an end can be taken, or ends that and keeps what was found, or
-    /// forgets it.
-    SearchSafeReach(bool),
+    /// Begins the search for places to which the robot or an end can be taken.
+    SearchSafeReach,
+    /// Ends that search and keeps its map; once it has ended, the map is dropped.
+    EndSafeReach,
     /// The part of it that is asked and shown.
     SetSafeReachOptions(safe_reach::SafeReachOptions),
-    /// Shows what less and more friction does, or not any more; least and greatest friction over
-    /// that of the scene.
-    SetFrictionRange(bool, [f64; 2]),
+    /// Shows or hides the effect of less and of more friction.
+    SetFrictionRange {
+        /// True if the effect is shown.
+        shown: bool,
+        /// Least and greatest friction over that of the scene.
+        factors: [f64; 2],
+    },
     /// Ask what neglecting bending stiffness changes.
     AskBending,
     /// Does not show the hints of the first minute again.
@@ -83,11 +88,14 @@ pub enum ViewCommand {
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
     AddReference,
-    /// Asks every model about the scene at rest and holds what they answer, or ends that.
-    CompareModels(bool),
-    /// Solves the scene at rest by every model and mesh and charts their error over their cost, or
-    /// ends that.
-    ChartWorkPrecision(bool),
+    /// Asks every model about the scene at rest, and pins their answers.
+    CompareModels,
+    /// Ends that comparison.
+    EndModelComparison,
+    /// Solves the scene at rest by every model and mesh, and charts their error over their cost.
+    ChartWorkPrecision,
+    /// Ends that, and keeps the results found until then.
+    EndWorkPrecision,
     /// Lets one go, or all.
     RemoveReferences(Option<usize>),
 }
@@ -139,17 +147,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 state.view.camera.centre_on(p);
             }
         }
-        ViewCommand::ZoomOn(p) => {
-            if p.iter().all(|v| v.is_finite()) {
-                let [low, high] = crate::geometry::bounds::scene(state);
-                let [left, right] = state.view.visible_m;
-                let (part, shown) = (PLACE_FRACTION * (high[0] - low[0]).max(high[1] - low[1]), right[0] - left[0]);
-                state.view.camera.centre_on(p);
-                if part > 0.0 && shown > part {
-                    state.view.camera.zoom(p, shown / part);
-                }
-            }
-        }
+        ViewCommand::ZoomOn(p) => zoom_on(state, p),
         ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
         ViewCommand::UseTool(section, command) => {
             apply(state, *command, effects);
@@ -170,35 +168,14 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetColour(colour) => state.view.colour = colour,
         ViewCommand::SetLayers(layers) => state.view.layers = layers,
         ViewCommand::SetTheme(theme) => state.view.theme = theme,
-        ViewCommand::SearchSafeReach(false) => {
+        ViewCommand::EndSafeReach => {
             state.analysis.safe_reach.stop_or_clear();
             effects.reach = Some(None);
         }
-        ViewCommand::SearchSafeReach(true) => {
-            let Some(moved) = reach_target(state) else {
-                state.analysis.safe_reach.progress =
-                    Progress::Failed("nothing here has a place to be taken from".to_owned());
-                return;
-            };
-            state.analysis.safe_reach.progress = Progress::Running(0.0, None);
-            (state.analysis.safe_reach.began, state.analysis.safe_reach.stopped) = (Some(Instant::now()), None);
-            let corners_m = match moved {
-                ReachSubject::Robot => crate::geometry::terrain_extent::ground(state).map(|x| [x, 0.0]),
-                ReachSubject::Support { cable, support } => {
-                    let at = crate::geometry::supports::support_position(state, cable, support);
-                    crate::geometry::terrain_extent::within_terrain(state, at, state.view.visible_m)
-                }
-            };
-            let (scene, settings, across) =
-                (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
-            // From where the cable is on screen, once time has run: a hand or the robot may have
-            // taken it elsewhere.
-            let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
-            effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
-        }
+        ViewCommand::SearchSafeReach => search_safe_reach(state, effects),
         ViewCommand::SetSafeReachOptions(choice) => state.analysis.safe_reach.choice = choice,
-        ViewCommand::SetFrictionRange(on, [low, high]) => {
-            state.analysis.friction_range.on = on;
+        ViewCommand::SetFrictionRange { shown, factors: [low, high] } => {
+            state.analysis.friction_range.on = shown;
             if low >= 0.0 && high.is_finite() {
                 // The scene's own friction lies in between.
                 state.analysis.friction_range.factors = [low.min(1.0), high.max(1.0)];
@@ -213,37 +190,19 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::HideFirstSteps => state.ui.first_steps.hide(),
         ViewCommand::SetTutorialPlace(place) => state.ui.tutorial = place,
         ViewCommand::SetUnits(units) => state.view.units = units,
-        ViewCommand::AddReference => {
-            if let (Some(solution), Some(scene)) =
-                (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
-                && state.analysis.references.len() < Reference::MAX_COUNT
-            {
-                let recording = &state.live.recording;
-                let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
-                let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
-                let changes = state.analysis.changes_to(&scene, &state.document.saved);
-                state.analysis.references.push(Reference { scene, changes, folder: None, solution, wall_s, run });
-            }
-        }
-        ViewCommand::CompareModels(true) => {
+        ViewCommand::AddReference => add_reference(state),
+        ViewCommand::CompareModels => {
             state.analysis.models = model_comparison::Progress::Running(0.0, None);
             effects.models = Some(Some(Box::new(state.document.scene.clone())));
         }
-        ViewCommand::CompareModels(false) => {
+        ViewCommand::EndModelComparison => {
             (state.analysis.models, effects.models) = (model_comparison::Progress::None, Some(None))
         }
-        ViewCommand::ChartWorkPrecision(true) => {
+        ViewCommand::ChartWorkPrecision => {
             state.analysis.work_precision = work_precision::Progress::Running(0.0, None);
             effects.work_precision = Some(Some(Box::new(state.document.scene.clone())));
         }
-        ViewCommand::ChartWorkPrecision(false) => {
-            // The results found until then stay.
-            let before = std::mem::take(&mut state.analysis.work_precision);
-            if let work_precision::Progress::Running(_, Some(found)) = before {
-                state.analysis.work_precision = work_precision::Progress::Done(found);
-            }
-            effects.work_precision = Some(None);
-        }
+        ViewCommand::EndWorkPrecision => stop_work_precision(state, effects),
         ViewCommand::RemoveReferences(None) => state.analysis.references.clear(),
         ViewCommand::RemoveReferences(Some(k)) => {
             if k < state.analysis.references.len() {
@@ -251,6 +210,64 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
     }
+}
+
+/// Centres the view on a place and shows a small part of the scene round it.
+fn zoom_on(state: &mut AppState, p: Point) {
+    if p.iter().all(|v| v.is_finite()) {
+        let [low, high] = crate::geometry::bounds::scene(state);
+        let [left, right] = state.view.visible_m;
+        let (part, shown) = (PLACE_FRACTION * (high[0] - low[0]).max(high[1] - low[1]), right[0] - left[0]);
+        state.view.camera.centre_on(p);
+        if part > 0.0 && shown > part {
+            state.view.camera.zoom(p, shown / part);
+        }
+    }
+}
+
+/// Starts the search for the places that a support or the robot can safely reach.
+fn search_safe_reach(state: &mut AppState, effects: &mut Effects) {
+    let Some(moved) = reach_target(state) else {
+        state.analysis.safe_reach.progress = Progress::Failed("nothing here has a place to be taken from".to_owned());
+        return;
+    };
+    state.analysis.safe_reach.progress = Progress::Running(0.0, None);
+    (state.analysis.safe_reach.began, state.analysis.safe_reach.stopped) = (Some(Instant::now()), None);
+    let corners_m = match moved {
+        ReachSubject::Robot => crate::geometry::terrain_extent::ground(state).map(|x| [x, 0.0]),
+        ReachSubject::Support { cable, support } => {
+            let at = crate::geometry::supports::support_position(state, cable, support);
+            crate::geometry::terrain_extent::within_terrain(state, at, state.view.visible_m)
+        }
+    };
+    let (scene, settings, across) =
+        (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
+    // From where the cable is on screen, once time has run: a hand or the robot may have
+    // taken it elsewhere.
+    let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
+    effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
+}
+
+/// Pins the present answer with the run that was recorded.
+fn add_reference(state: &mut AppState) {
+    if let (Some(solution), Some(scene)) = (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
+        && state.analysis.references.len() < Reference::MAX_COUNT
+    {
+        let recording = &state.live.recording;
+        let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
+        let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
+        let changes = state.analysis.changes_to(&scene, &state.document.saved);
+        state.analysis.references.push(Reference { scene, changes, folder: None, solution, wall_s, run });
+    }
+}
+
+/// Ends the comparison of models and meshes; the results found until then stay.
+fn stop_work_precision(state: &mut AppState, effects: &mut Effects) {
+    let before = std::mem::take(&mut state.analysis.work_precision);
+    if let work_precision::Progress::Running(_, Some(found)) = before {
+        state.analysis.work_precision = work_precision::Progress::Done(found);
+    }
+    effects.work_precision = Some(None);
 }
 
 fn select_all(state: &mut AppState, items: Vec<Item>) {

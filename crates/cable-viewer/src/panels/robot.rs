@@ -257,7 +257,7 @@ fn leg(ui: &mut Ui, robot: &Robot, k: usize, faults: &mut Vec<String>, commands:
                 wait.response.on_hover_text("How long it stands");
             }
         }
-        let remove = icon::plain_button(ui, Icon::Remove, true);
+        let remove = icon::plain_button(ui, Icon::Remove);
         field::name(&remove, &format!("Remove leg {number}"));
         if remove.on_hover_text("Removes this leg").clicked() {
             put(None, commands);

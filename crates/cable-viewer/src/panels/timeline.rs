@@ -31,58 +31,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let span = state.live.recording.span_s();
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
+    replay_controls(ui, state, commands);
+    restart_control(ui, state, commands);
     let mut push = |command| commands.push(Command::Playback(command));
-    ui.add_enabled_ui(span.is_some(), |ui| {
-        let back = icon::plain_button(ui, Icon::StepBack, span.is_some());
-        field::name(&back, "Step back");
-        let back =
-            back.on_hover_text("The frame before this one (arrow left)").on_disabled_hover_text(NO_RECORDING_HINT);
-        if back.clicked() {
-            push(PlaybackCommand::StepBack);
-        }
-        let mut looped = state.live.recording.looped;
-        let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
-        if checkbox(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NO_RECORDING_HINT).changed() {
-            push(PlaybackCommand::SetLoop(looped));
-            // A loop of what is not shown begins at its start.
-            if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
-                push(PlaybackCommand::ShowTime(Some(first)));
-            }
-        }
-        let shown = state.live.recording.shown_s.is_some();
-        let help = "Returns to the latest frame";
-        let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
-        highlight::register(&present, "Latest");
-        if present.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
-            push(PlaybackCommand::ShowTime(None));
-        }
-        let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
-        let on = ui.add_enabled(shown, egui::Button::new("Resume")).on_hover_text(help);
-        field::name(&on, "Resume from here");
-        if on.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
-            push(PlaybackCommand::ResumeFromShown);
-        }
-    });
-    if let Some(run) = &state.live.earlier_run {
-        let is_later = is_later_run(state);
-        let help = match &run.cause {
-            RestartCause::Reset(_) if state.live.reset_is_last => {
-                "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
-            }
-            RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
-            RestartCause::Edit(_) if is_later => {
-                "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
-                 in its place (Ctrl+Shift+Z)"
-            }
-            RestartCause::Edit(_) => {
-                "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
-                 kept in its place (Ctrl+Z)"
-            }
-        };
-        if ui.button(restart_button(state)).on_hover_text(help).clicked() {
-            push(PlaybackCommand::UndoRestart);
-        }
-    }
     let [first, last] = span.unwrap_or([0.0, 1.0]);
     let text = match state.live.recording.shown_s {
         _ if span.is_none() => "Press play to record".to_owned(),
@@ -117,6 +68,68 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add(Label::new(text).truncate()).on_hover_text(count.as_str());
     if counted {
         ui.weak(count);
+    }
+}
+
+/// Draws the controls that replay the recording: step back, loop, to the latest, resume.
+fn replay_controls(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let span = state.live.recording.span_s();
+    let mut push = |command| commands.push(Command::Playback(command));
+    ui.add_enabled_ui(span.is_some(), |ui| {
+        let back = icon::plain_button_if(span.is_some(), ui, Icon::StepBack);
+        field::name(&back, "Step back");
+        let back =
+            back.on_hover_text("The frame before this one (arrow left)").on_disabled_hover_text(NO_RECORDING_HINT);
+        if back.clicked() {
+            push(PlaybackCommand::StepBack);
+        }
+        let mut looped = state.live.recording.looped;
+        let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
+        if checkbox(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NO_RECORDING_HINT).changed() {
+            push(PlaybackCommand::SetLoop(looped));
+            // A loop of what is not shown begins at its start.
+            if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
+                push(PlaybackCommand::ShowTime(Some(first)));
+            }
+        }
+        let shown = state.live.recording.shown_s.is_some();
+        let help = "Returns to the latest frame";
+        let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
+        highlight::register(&present, "Latest");
+        if present.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
+            push(PlaybackCommand::ShowTime(None));
+        }
+        let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
+        let on = ui.add_enabled(shown, egui::Button::new("Resume")).on_hover_text(help);
+        field::name(&on, "Resume from here");
+        if on.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
+            push(PlaybackCommand::ResumeFromShown);
+        }
+    });
+}
+
+/// Draws the button that goes on with the run before an edit or a reset, where there is one.
+fn restart_control(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut push = |command| commands.push(Command::Playback(command));
+    if let Some(run) = &state.live.earlier_run {
+        let is_later = is_later_run(state);
+        let help = match &run.cause {
+            RestartCause::Reset(_) if state.live.reset_is_last => {
+                "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
+            }
+            RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
+            RestartCause::Edit(_) if is_later => {
+                "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
+                 in its place (Ctrl+Shift+Z)"
+            }
+            RestartCause::Edit(_) => {
+                "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
+                 kept in its place (Ctrl+Z)"
+            }
+        };
+        if ui.button(restart_button(state)).on_hover_text(help).clicked() {
+            push(PlaybackCommand::UndoRestart);
+        }
     }
 }
 

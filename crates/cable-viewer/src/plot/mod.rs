@@ -144,8 +144,7 @@ pub struct GraphResponse {
 pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
     let (symbol, si) = graph.measure.unit(high);
-    let (across, unit) = graph.across;
-    let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.display(), unit.symbol);
+    let Unit { symbol: across_symbol, si: x_si, .. } = graph.across.1.display();
     let read = |x: f64| values_at(lines, x, [(across_symbol, x_si), (symbol, si)]);
     let follow = graph.follow;
     let top = ui.cursor().top();
@@ -233,7 +232,24 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
     let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol, si, cursors: cursor_text };
     set_accessible_text(&figure, &spoken);
-    let sheet = || GraphInView {
+    // A graph that follows is not moved by hand: a drag in it moves the playhead.
+    let dragged = follow && graph.group == TIME && figure.dragged_by(egui::PointerButton::Primary);
+    let at = figure.interact_pointer_pos().filter(|_| dragged);
+    let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
+    GraphResponse {
+        zoomed: asked.zoomed,
+        scrubbed_s,
+        export: (export || graph.export).then(|| Box::new(graph_in_view(graph, lines, high, bounds))),
+    }
+}
+
+/// The part of a graph that is in view, with its lines, as it is exported; `high` is the greatest
+/// value of its range.
+fn graph_in_view(graph: &Graph<'_>, lines: &[Series], high: f64, bounds: &PlotBounds) -> GraphInView {
+    let (across, unit) = graph.across;
+    let (Unit { symbol: across_symbol, si: x_si, .. }, column) = (unit.display(), unit.symbol);
+    let (symbol, si) = graph.measure.unit(high);
+    GraphInView {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
         up: [format!("{}, {symbol}", graph.measure.name()), graph.measure.suffix().to_owned()],
@@ -242,12 +258,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         lines: lines.to_vec(),
         ribbon: graph.ribbon.clone(),
         limits: graph.limits,
-    };
-    // A graph that follows is not moved by hand: a drag in it moves the playhead.
-    let dragged = follow && graph.group == TIME && figure.dragged_by(egui::PointerButton::Primary);
-    let at = figure.interact_pointer_pos().filter(|_| dragged);
-    let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
-    GraphResponse { zoomed: asked.zoomed, scrubbed_s, export: (export || graph.export).then(|| Box::new(sheet())) }
+    }
 }
 
 /// The values of all lines at `x` as text; `units` are symbol and SI value of the unit across and

@@ -44,7 +44,12 @@ pub fn sign(ui: &mut Ui, icon: Icon, colour: Color32) {
 }
 
 /// A button with only a sign on it, without a frame; the caller names it.
-pub fn plain_button(ui: &mut Ui, icon: Icon, enabled: bool) -> Response {
+pub fn plain_button(ui: &mut Ui, icon: Icon) -> Response {
+    plain_button_if(true, ui, icon)
+}
+
+/// Such a button that can be pressed only if `enabled`.
+pub fn plain_button_if(enabled: bool, ui: &mut Ui, icon: Icon) -> Response {
     ui.add_enabled_ui(enabled, |ui| {
         let (rect, response) = ui.allocate_exact_size(Vec2::splat(SIDE + 4.0), Sense::click());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, enabled, format!("{icon:?}")));

@@ -125,7 +125,7 @@ fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Prop
 
 fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool) -> bool {
     let differs = known.origin.as_ref().is_some_and(|(v, _)| *v != known.value) || typed_wrong;
-    let response = icon::plain_button(ui, Icon::Reset, differs);
+    let response = icon::plain_button_if(differs, ui, Icon::Reset);
     field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
     let text = known.origin.as_ref().map_or_else(
         || "No default to go back to".to_owned(),

@@ -142,7 +142,7 @@ fn row(
     let add = ui.add(Button::new("+").frame(false));
     field::name(&add, &of("Add a time after"));
     let add = add.on_hover_text("Adds a time halfway to the next").clicked();
-    let remove = icon::plain_button(ui, Icon::Remove, true);
+    let remove = icon::plain_button(ui, Icon::Remove);
     field::name(&remove, &of("Remove time"));
     RowButtons { add, remove: remove.on_hover_text("Removes this row").clicked() }
 }

@@ -83,7 +83,7 @@ fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
     let mut value = state(&harness).document.scene.cables[0].clone();
     value.length_m = 7.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
-    apply(&mut harness, Command::View(ViewCommand::SetFrictionRange(true, [0.5, 1.5])));
+    apply(&mut harness, Command::View(ViewCommand::SetFrictionRange { shown: true, factors: [0.5, 1.5] }));
     let from = cable_core::analysis::tension_budget::StartEnd::Start;
     let probe = cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 4.0, from };
     apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(probe))));

@@ -148,7 +148,7 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     // A job that was ended leaves no result, however soon one comes.
     apply(&mut harness, Command::View(ViewCommand::RemoveReferences(None)));
     let ctx = harness.ctx.clone();
-    let commands = [true, false].map(|on| Command::View(ViewCommand::CompareModels(on)));
+    let commands = [ViewCommand::CompareModels, ViewCommand::EndModelComparison].map(Command::View);
     harness.state_mut().apply(&ctx, commands.into());
     std::thread::sleep(std::time::Duration::from_millis(300));
     harness.run_steps(3);

@@ -78,7 +78,7 @@ fn a_chart_that_is_cancelled_keeps_its_part() {
     let mut harness = open(catalog::tank());
     select(&mut harness, Item::Solver);
     harness.set_size(egui::Vec2::new(1280.0, 1800.0));
-    apply(&mut harness, Command::View(ViewCommand::ChartWorkPrecision(true)));
+    apply(&mut harness, Command::View(ViewCommand::ChartWorkPrecision));
     let began = Instant::now();
     let part = |h: &Harness<'_, ViewerApp>| match &state(h).analysis.work_precision {
         Progress::Running(_, Some(found)) | Progress::Done(found) => found.entries.len(),

@@ -296,7 +296,7 @@ fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     let mut harness = open(catalog::tank_robot());
     harness.hover_at(harness.get_by_label("Canvas").rect().center());
     harness.run_steps(2);
-    apply(&mut harness, Command::View(ViewCommand::SearchSafeReach(true)));
+    apply(&mut harness, Command::View(ViewCommand::SearchSafeReach));
     patiently("the first places", || {
         harness.run_steps(2);
         reach(&harness).found().is_some()
@@ -317,5 +317,5 @@ fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     harness.run_steps(3);
     let canvas = harness.get_by_label("Canvas").rect();
     assert!(legend(&harness).max.y < canvas.min.y, "{canvas:?} {:?}", legend(&harness));
-    apply(&mut harness, Command::View(ViewCommand::SearchSafeReach(false)));
+    apply(&mut harness, Command::View(ViewCommand::EndSafeReach));
 }

@@ -240,7 +240,10 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     }
     harness.get_by_label(&cable_viewer::units::format::force(high));
     // It follows what is edited, and goes.
-    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::SetFrictionRange(true, [1.0, 1.0])));
+    apply(
+        &mut harness,
+        Command::View(cable_viewer::command::ViewCommand::SetFrictionRange { shown: true, factors: [1.0, 1.0] }),
+    );
     let found = ribbon(&mut harness);
     assert!((found.most_n[0] / found.most_n[2] - 1.0).abs() < 1e-12, "{:?}", found.most_n);
     click(&mut harness, "Show less and more friction");

@@ -53,7 +53,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
                 if ui.button("Start here…").on_hover_text(help).clicked() {
                     commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::StartHere))));
                 }
-                let hide = icon::plain_button(ui, Icon::Remove, true);
+                let hide = icon::plain_button(ui, Icon::Remove);
                 field::name(&hide, "Hide these hints");
                 if hide.on_hover_text("Hides these hints for good").clicked() {
                     commands.push(Command::View(ViewCommand::HideFirstSteps));

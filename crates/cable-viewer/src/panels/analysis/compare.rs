@@ -85,7 +85,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 name_above(ui, k, &name.full);
                 ui.end_row();
                 ui.horizontal(|ui| {
-                    let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
+                    let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove);
                     field::name(&away, &format!("Unpin {}", name.full));
                     if away.on_hover_text("Unpins this result").clicked() {
                         commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
@@ -137,7 +137,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let bar = progress::bar(ui, share);
         field::name(&bar, "Progress of the comparison");
         if ui.button("Cancel comparison").on_hover_text("Stops it; nothing is pinned").clicked() {
-            commands.push(Command::View(ViewCommand::CompareModels(false)));
+            commands.push(Command::View(ViewCommand::EndModelComparison));
         }
         return;
     }
@@ -146,7 +146,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let can = state.document.fault.is_none();
     let button = ui.add_enabled(can, egui::Button::new("Compare all models")).on_hover_text(help);
     if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
-        commands.push(Command::View(ViewCommand::CompareModels(true)));
+        commands.push(Command::View(ViewCommand::CompareModels));
     }
     match &state.analysis.models {
         Progress::Failed(why) => field::fault(ui, why),

@@ -36,7 +36,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
                 window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
     if checkbox(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
-        commands.push(Command::View(ViewCommand::SetFrictionRange(on, view.factors)));
+        commands.push(Command::View(ViewCommand::SetFrictionRange { shown: on, factors: view.factors }));
     }
     if !on {
         return;
@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if let Some(value) = change.value {
             let mut factors = view.factors;
             factors[k] = value;
-            commands.push(Command::View(ViewCommand::SetFrictionRange(true, factors)));
+            commands.push(Command::View(ViewCommand::SetFrictionRange { shown: true, factors }));
         }
     }
     match &view.progress {

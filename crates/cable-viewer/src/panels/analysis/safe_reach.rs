@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             let help = "Stops the search; what was found stays";
             if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
-                commands.push(Command::View(ViewCommand::SearchSafeReach(false)));
+                commands.push(Command::View(ViewCommand::EndSafeReach));
             }
             if let Some(left_s) = view.remaining_s() {
                 ui.weak(time_left(left_s)).on_hover_text("Estimated from the part that is done");
@@ -58,7 +58,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let find = ui.button("Find safe reach").on_hover_text(help);
             highlight::register(&find, "Find safe reach");
             if find.clicked() {
-                commands.push(Command::View(ViewCommand::SearchSafeReach(true)));
+                commands.push(Command::View(ViewCommand::SearchSafeReach));
             }
             let shown = !matches!(view.progress, Progress::None);
             if ui
@@ -67,7 +67,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .on_disabled_hover_text("There is no map yet")
                 .clicked()
             {
-                commands.push(Command::View(ViewCommand::SearchSafeReach(false)));
+                commands.push(Command::View(ViewCommand::EndSafeReach));
             }
         });
     }

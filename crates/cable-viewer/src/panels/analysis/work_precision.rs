@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let bar = progress::bar(ui, *share);
         field::name(&bar, "Progress of the chart");
         if ui.button("Cancel chart").on_hover_text("Stops it after the model that is being asked").clicked() {
-            commands.push(Command::View(ViewCommand::ChartWorkPrecision(false)));
+            commands.push(Command::View(ViewCommand::EndWorkPrecision));
         }
     } else {
         let help = "Solves the scene at rest by every model, on meshes of 25 to 400 elements, in the background, and charts \
@@ -42,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let can = state.document.fault.is_none();
         let button = ui.add_enabled(can, egui::Button::new("Chart error over cost")).on_hover_text(help);
         if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
-            commands.push(Command::View(ViewCommand::ChartWorkPrecision(true)));
+            commands.push(Command::View(ViewCommand::ChartWorkPrecision));
         }
     }
     match progress {

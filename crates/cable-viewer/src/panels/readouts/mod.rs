@@ -172,7 +172,7 @@ fn along(node: &Node) -> String {
 /// A button that shows where a node is.
 pub fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     let at_m = [node.x_m, node.y_m];
-    let button = icon::plain_button(ui, Icon::Locate, true);
+    let button = icon::plain_button(ui, Icon::Locate);
     field::name(&button, label);
     let text = format!("At {} along the cable, {}; click to centre on it", along(node), format::position(at_m));
     if button.on_hover_text(text).clicked() {

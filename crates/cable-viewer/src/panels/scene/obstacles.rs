@@ -168,7 +168,7 @@ fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<St
                     if add.on_hover_text("Adds a corner halfway to the next").clicked() {
                         doubled = Some(i);
                     }
-                    let remove = icon::plain_button(ui, Icon::Remove, true);
+                    let remove = icon::plain_button(ui, Icon::Remove);
                     field::name(&remove, &format!("Remove {name}"));
                     if remove.on_hover_text("Removes this corner").clicked() {
                         gone = Some(i);

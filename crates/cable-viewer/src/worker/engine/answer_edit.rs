@@ -158,7 +158,7 @@ impl Engine {
     /// Lays the scene on screen once more and asks what other histories would have left. The rest
     /// is a function of the scene alone, so no figure changes.
     pub(super) fn seek_histories(&mut self) {
-        self.refinement.put_off(false);
+        self.refinement.drop_histories();
         let sought = self.edit.as_ref().and_then(|e| laid(&e.scene, e.model, e.settings).ok());
         if let (Some(sought), Some(run)) = (sought, &mut self.run) {
             run.replace(sought);

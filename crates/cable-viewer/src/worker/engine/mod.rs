@@ -123,11 +123,17 @@ impl Refinement {
         self == Self::Later { histories_due: true }
     }
 
-    /// Other histories are to be asked for later, or are not, where nothing is done later.
-    fn put_off(&mut self, histories: bool) {
+    /// Sets if other histories are to be asked for later, where something is done later.
+    fn put_off(&mut self, histories_due: bool) {
         if self.is_later() {
-            *self = Self::Later { histories_due: histories };
+            *self = Self::Later { histories_due };
         }
+    }
+
+    /// No other histories are to be asked for.
+    fn drop_histories(&mut self) {
+        let histories_due = false;
+        self.put_off(histories_due);
     }
 }
 
@@ -247,7 +253,7 @@ impl Engine {
         if dragging && self.playing() {
             // The next frame shows it, not this report.
             self.steering.drag_number = self.steering.drag_number.max(request.number);
-            return self.report(held_back);
+            return Report { paused_itself: held_back, ..self.report() };
         }
         let snapshot = &mut self.outbox.snapshot;
         snapshot.edit = request.number.max(self.steering.drag_number).max(snapshot.edit);
@@ -263,7 +269,7 @@ impl Engine {
                 self.outbox.show_recorded(answer);
             }
         }
-        self.report(held_back)
+        Report { paused_itself: held_back, ..self.report() }
     }
 
     /// Returns whether a draft is shown that still moves.
@@ -281,7 +287,7 @@ impl Engine {
         }
         self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(Ok(()));
-        self.report(false)
+        self.report()
     }
 
     /// An answer at rest is shown whose other histories have not been sought yet.
@@ -296,13 +302,13 @@ impl Engine {
     pub fn refine(&mut self) -> Report {
         if self.seeks_histories() {
             self.seek_histories();
-            return self.report(false);
+            return self.report();
         }
         let began = Instant::now();
         let result = self.solve_draft();
         self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(result);
-        self.report(false)
+        self.report()
     }
 
     /// The solver panicked: what it held cannot be trusted any more.
@@ -314,7 +320,7 @@ impl Engine {
         self.playback.paused = true;
         self.outbox.snapshot.error = Some(NoAnswer::Panicked { message: message.to_owned() });
         self.outbox.snapshot.stale = true;
-        self.report(true)
+        Report { paused_itself: true, ..self.report() }
     }
 
     /// The scene stays without an answer.
@@ -334,7 +340,7 @@ impl Engine {
         then.resume(&answer)?;
         self.run = Some(Run::new(then, RunStart::Lost));
         self.ended_run = None;
-        self.refinement.put_off(false);
+        self.refinement.drop_histories();
         self.edit = Some(edit);
         self.phase = Phase::Answer;
         self.steering.hand = None;

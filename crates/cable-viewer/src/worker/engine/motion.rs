@@ -48,7 +48,7 @@ impl Engine {
         }
         self.show(result);
         self.outbox.show_between_steps(between);
-        self.report(failed)
+        Report { paused_itself: failed, ..self.report() }
     }
 
     pub(super) fn drag(&mut self, drag: Drag) {

@@ -103,13 +103,13 @@ impl Outbox {
     }
 
     /// Hands out what waits.
-    pub fn report(&mut self, paused_itself: bool) -> Report {
+    pub fn report(&mut self) -> Report {
         Report {
             snapshot: self.snapshot.clone(),
             history_restarts: std::mem::take(&mut self.history_restarts),
             answers: std::mem::take(&mut self.answers),
             routes: self.routes.clone(),
-            paused_itself,
+            paused_itself: false,
         }
     }
 

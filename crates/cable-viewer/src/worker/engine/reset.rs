@@ -26,7 +26,7 @@ impl Engine {
         let of = |e: &Edit| (e.scene.clone(), e.model, e.settings);
         let is_same = before.as_ref().is_some_and(|before| of(before) == of(&edit));
         (self.run, self.edit, self.phase) = (Some(run), before, phase);
-        self.refinement.put_off(false);
+        self.refinement.drop_histories();
         self.playback.paused = true;
         self.outbox.answers.clear();
         self.outbox.snapshot = Snapshot { real_speed: None, ..snapshot };

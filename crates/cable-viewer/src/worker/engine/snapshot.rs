@@ -73,7 +73,7 @@ impl Engine {
         }
     }
 
-    pub(super) fn report(&mut self, paused_itself: bool) -> Report {
-        self.outbox.report(paused_itself)
+    pub(super) fn report(&mut self) -> Report {
+        self.outbox.report()
     }
 }

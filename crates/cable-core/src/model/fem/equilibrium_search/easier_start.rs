@@ -85,7 +85,8 @@ impl FemModel {
         easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
         easier.stepper.solver.work_left = *work;
-        let found = easier.settle_mesh(false);
+        let has_equilibrium = false;
+        let found = easier.settle_mesh(has_equilibrium);
         *work = easier.stepper.solver.work_left;
         if found.is_err() {
             return;

@@ -360,7 +360,7 @@ impl Statics {
     /// The nodes of each equilibrium of a compressed stiff cable: the one that was found and those
     /// bowed to another side. Empty for any other cable.
     pub fn buckled_shapes(&self) -> Vec<Vec<Node>> {
-        let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
+        let nodes = |b: &Beam| b.drawn_points().iter().map(|p| p.node(&self.problem)).collect();
         self.beam
             .as_ref()
             .map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_buckled_shapes()).map(nodes).collect())

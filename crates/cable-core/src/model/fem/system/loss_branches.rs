@@ -91,9 +91,10 @@ impl Loss {
             return Self::default();
         }
         let even = if ratio > CONSTANT_LOSS_RATIO_LIMIT { CONSTANT_LOSS_RATIO_LIMIT } else { ratio };
+        let rubs = false;
         Self {
             branches: fit(2.0 * even, [lowest, highest]),
-            viscous: damping_time(problem, false) * (1.0 - even / ratio),
+            viscous: damping_time(problem, rubs) * (1.0 - even / ratio),
         }
     }
 }

@@ -36,8 +36,8 @@ impl Beam {
         let mut found: Vec<Self> = Vec::new();
         for part in alone.chain([None]) {
             let Some(other) = self.bowed(part) else { continue };
-            let points = other.points(false);
-            let same = |b: &Self| !(apart(&b.points(false), &points) > SAME_SHAPE_FRACTION * self.layout.length);
+            let points = other.node_points();
+            let same = |b: &Self| !(apart(&b.node_points(), &points) > SAME_SHAPE_FRACTION * self.layout.length);
             if !same(self) && !found.iter().any(same) {
                 found.push(other);
             }

@@ -53,11 +53,24 @@ impl Beam {
     /// The greatest tension, at nodes or between them, N.
     #[must_use]
     pub fn greatest_tension(&self) -> f64 {
-        self.points(true).iter().map(|p| p.tension).reduce(larger).unwrap_or(0.0)
+        self.drawn_points().iter().map(|p| p.tension).reduce(larger).unwrap_or(0.0)
     }
 
-    /// All nodes; if `smooth`, with as many points between them as straight lines need to draw the
-    /// cable.
+    /// All nodes.
+    #[must_use]
+    pub fn node_points(&self) -> Vec<Point> {
+        let smooth = false;
+        self.points(smooth)
+    }
+
+    /// All nodes, with as many points between them as straight lines need to draw the cable.
+    #[must_use]
+    pub fn drawn_points(&self) -> Vec<Point> {
+        let smooth = true;
+        self.points(smooth)
+    }
+
+    /// The points to draw if `smooth`, else all nodes.
     #[must_use]
     pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
