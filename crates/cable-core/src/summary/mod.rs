@@ -8,12 +8,14 @@
 //! | `places.rs` | tensions, depths and touchdowns with their places |
 //! | `shape.rs` | sag, heights, lengths, touchdowns |
 //! | `balance.rs` | the sum of all forces on a cable |
+//! | `friction_use.rs` | the share of its friction that each contact uses |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command
 //! line, JSON and window only write it down. Accuracy is that of the answer's nodes: of a free span
 //! they leave its line by 1e-5 of its length at most.
 
 mod balance;
+mod friction_use;
 mod places;
 mod shape;
 #[cfg(test)]
@@ -26,6 +28,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::ForceBalance;
+pub use friction_use::FrictionUse;
 pub use places::{CablePlace, Sag, TensionAt, TouchKind, Touchdown};
 pub use shape::{sag, stretched_length_m};
 
@@ -106,21 +109,6 @@ pub struct Utilisation {
     pub sidewall_pressure_ratio: Option<f64>,
 }
 
-/// Friction of the contacts with obstacles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrictionUse {
-    /// Sum of the sizes of their friction forces, N.
-    pub used_n: f64,
-    /// Sum of μ times their normal forces, N.
-    pub available_n: f64,
-    /// The greatest share that one contact uses of its own: 1 = it is about to slide or slides.
-    pub greatest_ratio: f64,
-    /// Name of the obstacle.
-    pub obstacle: String,
-    /// Its middle, m.
-    pub arc_length_m: f64,
-}
-
 /// The figures of all cables of a scene.
 #[must_use]
 pub fn summaries(scene: &Scene, solution: &Solution) -> Vec<CableSummary> {
@@ -167,7 +155,7 @@ pub fn summary(scene: &Scene, cable: &Cable, answer: &CableSolution, time_s: f64
                 .sidewall_limit_n_per_m
                 .map(|most| answer.sidewall_pressure.map_or(0.0, |p| p.pressure_n_per_m / most)),
         },
-        friction: friction(scene, cable, answer),
+        friction: friction_use::friction_use(scene, cable, answer),
         balance: balance::balance(scene, cable, answer, time_s),
     }
 }
@@ -221,39 +209,4 @@ fn leaves([end, next]: [&Node; 2]) -> Option<Vec2> {
     let ds = next.arc_length_m - end.arc_length_m;
     let (sin, cos) = (-ds * (end.curvature_per_m / 3.0 + next.curvature_per_m / 6.0)).sin_cos();
     Some(Vec2::new(cos * chord.x - sin * chord.y, sin * chord.x + cos * chord.y))
-}
-
-/// Contacts whose normal force is below this part of the greatest are not asked how much of their
-/// friction they use: both are rounding. Larger: light contacts that slide are not seen. Smaller:
-/// nothing divided by nothing is the greatest share.
-const MIN_NORMAL_FRACTION: f64 = 1e-6;
-
-fn friction(scene: &Scene, cable: &Cable, answer: &CableSolution) -> Option<FrictionUse> {
-    let coefficient = |name: &str| {
-        let obstacle = scene.obstacles.iter().find(|o| o.name == name);
-        obstacle.and_then(|o| o.friction).unwrap_or(cable.friction)
-    };
-    let pressed = answer.contacts.iter().map(|c| c.normal_n).fold(0.0, f64::max);
-    let mut out: Option<FrictionUse> = None;
-    for c in answer.contacts.iter().filter(|c| c.normal_n > MIN_NORMAL_FRACTION * pressed) {
-        let (used, available) = (c.friction_n.abs(), coefficient(&c.obstacle) * c.normal_n);
-        if !(available > 0.0) {
-            continue;
-        }
-        let one = FrictionUse {
-            used_n: used,
-            available_n: available,
-            greatest_ratio: used / available,
-            obstacle: c.obstacle.clone(),
-            arc_length_m: c.arc_length_m,
-        };
-        out = Some(match out {
-            None => one,
-            Some(all) => {
-                let (used_n, available_n) = (all.used_n + used, all.available_n + available);
-                FrictionUse { used_n, available_n, ..if one.greatest_ratio > all.greatest_ratio { one } else { all } }
-            }
-        });
-    }
-    out
 }

@@ -7,6 +7,7 @@
 //! - `solver_thread`: the loop of the thread
 //! - `slots`: the request, the answer and the solve that window and thread share
 //! - `superseded_solve`: the solve that nobody waits for any more, and its abandoned thread
+//! - `shape_as_route`: the shape of a cable as a route of the scene
 //! - `winding_number`: whether a cable passed an obstacle
 //! - `request`: what the window asks
 //! - `draft`: coarse answers that follow the hand
@@ -15,6 +16,7 @@
 pub mod draft;
 pub mod engine;
 pub mod request;
+mod shape_as_route;
 mod slots;
 mod solver_thread;
 mod superseded_solve;

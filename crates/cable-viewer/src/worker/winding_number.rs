@@ -5,15 +5,8 @@
 //! leading through it.
 
 use cable_core::Simulation;
-use cable_core::contact::World;
 use cable_core::math::{Point, Vec2};
 use cable_core::scene::{Obstacle, Shape};
-
-/// Nearest points of a way, as a part of the cable's length. Nearer: the way is as long as the
-/// mesh; farther: it leads through what the cable was led round.
-const MIN_POINT_SPACING_FRACTION: f64 = 0.01;
-/// Radius round a point within which obstacles are sought, m.
-const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// The cables (by number) that would have to pass an obstacle to get from one shape to another.
 #[must_use]
@@ -59,31 +52,6 @@ fn winding(line: &[Vec2], about: Vec2) -> i32 {
         }
     });
     crossings.sum()
-}
-
-/// The way a cable takes, as a scene states it: points far enough apart, none inside an obstacle.
-/// None where that leaves no way.
-#[must_use]
-pub fn cable_route(old: &Simulation, cable: usize) -> Option<Vec<Point>> {
-    let of = old.scene().cables.get(cable)?;
-    let states = old.states();
-    let points = &states.get(cable)?.position_m;
-    let radius = 0.5 * of.diameter_m;
-    let world = World::new(&old.scene().obstacles, of.friction, radius);
-    let clear = |p: Vec2| match world.signed_gap(p, SEARCH_RADIUS_M) {
-        Some(gap) if gap.gap_m < 0.0 => p - gap.normal * gap.gap_m,
-        _ => p,
-    };
-    let spacing = MIN_POINT_SPACING_FRACTION * of.length_m;
-    let last = points.len().saturating_sub(1);
-    let mut way: Vec<Vec2> = Vec::new();
-    for (k, p) in points.iter().enumerate() {
-        let far = way.last().is_none_or(|before| (p - before).norm() >= spacing);
-        if far || (k == last && way.last().is_some_and(|before| (p - before).norm() > 1e-6)) {
-            way.push(clear(*p));
-        }
-    }
-    (way.len() >= 2).then(|| way.into_iter().map(|p| [p.x, p.y]).collect())
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use crate::state::NoAnswer;
 use crate::worker::draft;
 use crate::worker::request::{Edit, EditStart};
 use crate::worker::timing::{DRAFT_AFTER_S, DRAFT_FIRST_S};
-use crate::worker::winding_number;
+use crate::worker::{shape_as_route, winding_number};
 
 impl Engine {
     /// Shows an edit with few segments, if answering it in full would take long; whether it did. A
@@ -114,7 +114,7 @@ impl Engine {
         }
         let mut scene = edit.scene.clone();
         let routes: Vec<(usize, Vec<Point>)> =
-            tunnelled_cables.iter().filter_map(|&k| Some((k, winding_number::cable_route(old, k)?))).collect();
+            tunnelled_cables.iter().filter_map(|&k| Some((k, shape_as_route::cable_route(old, k)?))).collect();
         for (k, way) in &routes {
             if let Some(cable) = scene.cables.get_mut(*k) {
                 cable.route_m.clone_from(way);
