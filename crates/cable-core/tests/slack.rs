@@ -248,7 +248,7 @@ fn issue_016_a_loose_cable_pulls_the_harder_the_farther_it_is_drawn() {
     let (friction, [top, end, along], length) = (0.5, [4.0, 0.4, 7.0], 16.0);
     let (radius, w) = (0.5 * 0.028, GRAVITY);
     let ratio = (length - (top - radius) - (end - radius)) / along;
-    // How far the end is drawn with a pull H: material of the floor's folds is straightened.
+    // The displacement of the end at a pull H: loose cable of the floor is straightened.
     let drawn = |h: f64| {
         let up = end - radius;
         let arc = (up * (up + 2.0 * h / w)).sqrt();

@@ -8,10 +8,10 @@ use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
-/// The most work of one of its steps, in iterations times elements: a step of a thousand bars that
-/// slide takes a tenth of it. A cable that is let go on a slope slides for ever without inertia.
-/// Less: runs that would have an answer are given up; more: a run waits longer for one that has
-/// none.
+/// Bound of the work of each of its steps, in iterations times elements: a step of a thousand bars
+/// that slide takes a tenth of it. A cable that is let go on a slope slides for ever without
+/// inertia. Less: runs that would have an answer are given up; more: a run waits longer for one
+/// that has none.
 const MAX_WORK: usize = 1_000_000;
 
 /// The run without inertia beside one that has it.
