@@ -21,8 +21,8 @@ const TOP_CLEARANCE_M: f64 = 2e-3;
 /// as for the clearance.
 const CIRCLE_POLYGON: f64 = 1.02;
 
-/// Returns the bodies of a world that are in the way from `a` to `b` (m), in order. If no route
-/// over them is found, all bodies count as in the way.
+/// Returns the bodies of a world that are in the way from `a` to `b` (m), in order. The route over
+/// them may still meet one of them, if an end is below its overhang.
 pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
     let geometry = world.geometry();
     let count = geometry.bodies().len();
@@ -30,10 +30,6 @@ pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
     let mut way = vec![a, b];
     for _ in 0..=count {
         let met: Vec<usize> = way.windows(2).flat_map(|leg| geometry.bodies_between(leg[0], leg[1])).collect();
-        if met.is_empty() {
-            found.sort_unstable();
-            return found;
-        }
         let before = found.len();
         for body in met {
             if !found.contains(&body) {
@@ -45,7 +41,8 @@ pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
         }
         way = hull_over(world, &found, a, b);
     }
-    (0..count).collect()
+    found.sort_unstable();
+    found
 }
 
 /// Returns the upper convex hull of `a`, `b` (m) and the tops of `bodies` between them, from `a` to
