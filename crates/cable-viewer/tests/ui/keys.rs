@@ -142,7 +142,7 @@ fn issue_020_tab_leads_to_every_control_and_the_focus_is_seen() {
     }
 }
 
-/// The keys do all that the pointer does with a menu: open, choose, and leave.
+/// Keys do with a menu as the pointer does: open, choose, and leave.
 #[test]
 fn issue_020_a_menu_is_used_by_keys() {
     let mut harness = open(catalog::tank_robot());
