@@ -1,4 +1,4 @@
-//! Steps of `mass-spring` up to and beyond the stability limit of explicit ones.
+//! This module takes explicit steps of `mass-spring` up to their stability limit and beyond.
 //!
 //! A bar of equal springs between two walls swings along itself at ω = 2√(EA/ρ)/l₀ at most, l₀ the
 //! length of a spring, and ζ is the damping ratio at that frequency. A leapfrog whose damping is

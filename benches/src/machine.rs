@@ -1,4 +1,4 @@
-//! The day, the machine and the clock of a measurement.
+//! This module names the day, the machine and the clock of a measurement.
 
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 

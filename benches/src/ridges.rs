@@ -1,4 +1,5 @@
-//! A taut cable over so many ridges, with as many corners in the ground as is wished.
+//! This scene leads a taut cable over so many ridges, with as many corners in the ground as is
+//! wished.
 
 use cable_core::Scene;
 use cable_core::scene::{Obstacle, Shape, Support, catalog};

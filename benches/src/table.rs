@@ -1,4 +1,5 @@
-//! `scenes.csv`, one line an answer: written by the measurement, and read again to draw it.
+//! The table `scenes.csv`, one line an answer, is written by the measurement and read again to draw
+//! it.
 
 use std::error::Error;
 use std::path::Path;

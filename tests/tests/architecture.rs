@@ -1,5 +1,5 @@
-//! The documents and the source against the tree: every path they name must exist, and imports go
-//! one way.
+//! These tests compare documents and sources with the tree: every path that they name must exist,
+//! and imports go one way.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

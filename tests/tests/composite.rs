@@ -1,7 +1,7 @@
-//! Whole scenes of `data/composite.json` that the models without a mesh answer, at rest and in slow
-//! motion: `spans` floors and corners, beams, posts, pulleys, stick bands, reversals, drags, loads
-//! and wind; `catenary` pulleys, loads and wind. The same checks as the program's acceptance run,
-//! through the library, held to a part of the stated tolerance.
+//! These tests compare the answers of models without a mesh with whole scenes of
+//! `data/composite.json`, at rest and in slow motion: `spans` floors and corners, beams, posts,
+//! pulleys, stick bands, reversals, drags, loads and wind; `catenary` pulleys, loads and wind. They
+//! are held to a part of the tolerance that the program's acceptance run states.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! Dead loads and free ends that come down onto obstacles, are dragged over them and lift off
-//! again: `spans` beside `fem`, and beside what statics asks of it.
+//! These tests are of dead loads and free ends that come down onto obstacles, are dragged over them
+//! and lift off again: `spans` beside `fem`, and beside what statics asks of it.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! The free-span families of `data/statics.json` (catenary, degenerate, point loads, thermal, wind)
-//! against the core, each with an identity that does not use the solver.
+//! These tests compare the free-span families of `data/statics.json` (catenary, degenerate, point
+//! loads, thermal, wind) with the core, each with an identity that does not use the solver.
 //!
 //! Tolerance: 1e-9 of the case's largest force or length; 1e-8 for stiff spans within 0.1 % of
 //! taut, whose digits double precision loses to L − chord: 4 to 5 of them.

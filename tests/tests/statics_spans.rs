@@ -1,6 +1,6 @@
-//! `data/statics.json` through the whole of `spans`: free spans, pegs, cable on flat and sloping
-//! ground, capstans light and heavy, cables draped over posts, beams and pegs. Each is a scene that
-//! is settled or moved, never the formula alone.
+//! These tests take `data/statics.json` through the whole of `spans`: free spans, pegs, cable on
+//! flat and sloping ground, capstans light and heavy, cables draped over posts, beams and pegs.
+//! Each is a scene that is settled or moved, never the formula alone.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,4 +1,5 @@
-//! Halves and doubles each tuned constant of a model, one at a time, and prints which answers move.
+//! This program halves and doubles each tuned constant of a model, one at a time, and prints which
+//! answers move.
 //!
 //! Run from the root of the repository:
 //! `cargo run --release -p cable-benches --bin tuned-settings -- spans 50 newton/max drag`

@@ -1,5 +1,5 @@
-//! Two independent solvers of the same question: FEM statics against the elastic catenary, on
-//! random supports, pulleys, wheels, friction, loads, wind and temperature.
+//! These tests compare two independent solvers of the same question: FEM statics against the
+//! elastic catenary, on random supports, pulleys, wheels, friction, loads, wind and temperature.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

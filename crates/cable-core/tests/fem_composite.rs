@@ -1,5 +1,5 @@
-//! Whole scenes without obstacles against reference answers (`tests/data/composite.json`): pulleys,
-//! point loads, wind, temperature, clamps.
+//! These tests compare whole scenes without obstacles with reference answers
+//! (`tests/data/composite.json`): pulleys, point loads, wind, temperature, clamps.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,4 +1,4 @@
-//! A cable that lies on a floor, is drawn at one end, let back and drawn again, beside the closed
+//! These tests draw a cable on a floor at one end, let it back and draw it again, beside the closed
 //! form: however stiff it is, and however little the hand moves for that, what holding ground gives
 //! way by must be less.
 

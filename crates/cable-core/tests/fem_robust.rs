@@ -1,5 +1,6 @@
-//! Whatever a hand does: ends thrown about over rough ground, beams and posts. Nothing may cross,
-//! nothing may be anything but a number, and hardly a step may have to be halved.
+//! These tests let a hand do whatever it likes: ends thrown about over rough ground, beams and
+//! posts. Nothing may cross, nothing may be anything but a number, and hardly a step may have to be
+//! halved.
 
 #![allow(clippy::unwrap_used)]
 

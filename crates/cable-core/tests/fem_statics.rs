@@ -1,5 +1,5 @@
-//! FEM statics of cables that touch nothing but their supports: accuracy ladders against closed
-//! forms, every start, equilibrium, symmetry.
+//! These tests are of FEM statics of cables that touch nothing but their supports: accuracy ladders
+//! against closed forms, every start, equilibrium, symmetry.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

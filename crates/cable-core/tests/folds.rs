@@ -1,7 +1,7 @@
-//! Random scenes of cables with more length than they need, over posts, boxes and rough ground:
-//! what hangs down from a contact lies in folds below it. What is found is looked at with what is
-//! written here alone: contacts and supports carry the weight, nothing pushes, nothing is inside
-//! anything, and what lies in folds has no tension.
+//! These tests ask random scenes of cables with more length than they need, over posts, boxes and
+//! rough ground: what hangs down from a contact lies in folds below it. What is found is looked at
+//! with what is written here alone: contacts and supports carry the weight, nothing pushes, nothing
+//! is inside anything, and what lies in folds has no tension.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! Mass-spring: every scene of the catalogue, pulleys against the catenary, stiffness, closed forms
-//! in time.
+//! These tests solve every scene of the catalogue by `mass-spring`, and compare it with the
+//! catenary over pulleys and with closed forms of stiffness and motion.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,4 +1,5 @@
-//! Previews of stiff cables against closed forms, and that nothing is held back in silence.
+//! These tests compare previews of stiff cables with closed forms, and ask that nothing is held
+//! back in silence.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! Random scenes in plan view: posts and corners that rub, pressed on hard from both sides, on a
-//! floor that rubs or does not.
+//! These tests draw random scenes in plan view: posts and corners that rub, pressed on hard from
+//! both sides, on a floor that rubs or does not.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! Robots driven at random over every bundled map, with slack cables and their outlines as
-//! obstacles: hardly a step fails, nothing gets into anything, and the same log gives the same
+//! These tests drive robots at random over every bundled map, with slack cables and their outlines
+//! as obstacles: hardly a step fails, nothing gets into anything, and the same log gives the same
 //! bits. Looked at by polygons alone, not by what the solver uses.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic

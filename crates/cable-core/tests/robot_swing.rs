@@ -1,5 +1,5 @@
-//! A robot that has run its cable taut: the tension swings on because the cable does, as a string
-//! in its first mode, and not because vehicle and cable feel each other with a delay.
+//! These tests let a robot run its cable taut: the tension swings on because the cable does, as a
+//! string in its first mode, and not because vehicle and cable feel each other with a delay.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! A cable that is an obstacle to itself: piles, legs that meet, and what must not change where
-//! nothing touches.
+//! These tests make a cable an obstacle to itself: piles, legs that meet, and scenes that must not
+//! change because nothing touches.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,5 @@
-//! The object users hold, over several cables; and what Newton needs on the scenes everybody uses.
+//! These tests use the object that users hold, over several cables, and pin the Newton iterations
+//! of the scenes that everybody uses.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

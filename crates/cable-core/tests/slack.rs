@@ -1,7 +1,7 @@
-//! Random scenes of slack cables: on floors, in pits, over crests, up slopes, seen from above, ends
-//! near the ground, above each other and in one place. Each has a resting place; what is found is
-//! looked at with what is written here alone: contacts and supports carry the weight, nothing
-//! pushes, no support is pushed, and no bar is longer than its material.
+//! These tests draw random scenes of slack cables: on floors, in pits, over crests, up slopes, seen
+//! from above, ends near the ground, above each other and in one place. Each has a resting place;
+//! what is found is looked at with what is written here alone: contacts and supports carry the
+//! weight, nothing pushes, no support is pushed, and no bar is longer than its material.
 
 use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, SupportKind, View, catalog};
 use cable_core::{Model, Simulation};

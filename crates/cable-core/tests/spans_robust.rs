@@ -1,6 +1,6 @@
-//! Whatever a hand does to a cable over rough ground, beams and posts: every step that `spans`
-//! takes is sound, every step it does not take is refused with a typed reason, and nothing is ever
-//! inside an obstacle.
+//! These tests let a hand do whatever it likes to a cable over rough ground, beams and posts: every
+//! step that `spans` takes is sound, every step it does not take is refused with a typed reason,
+//! and nothing is ever inside an obstacle.
 //!
 //! The whole family, scene by number: ground of 5 to 200 corners, 0 to 8 beams and posts that the
 //! cable goes over or under, friction 0 to 1, EA 1e4 to 1e8 N, a length of 1.0001 to 2 times the

@@ -1,6 +1,6 @@
-//! Stiff cables on posts, corners and floors against the elastica by multiple shooting, which
-//! shares nothing with the program: its own Runge–Kutta steps, its own geometry, dense Newton with
-//! differences. Scenes are drawn at random.
+//! These tests compare stiff cables on posts, corners and floors with the elastica by multiple
+//! shooting, which shares nothing with the program: its own Runge–Kutta steps, its own geometry,
+//! dense Newton with differences. Scenes are drawn at random.
 //!
 //! A guess is read off the answer, and with it which contacts are a point; the shooting then finds
 //! the root of its own equations near it, and it is asked that its contacts push. That the root is

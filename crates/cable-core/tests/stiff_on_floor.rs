@@ -1,5 +1,5 @@
-//! Stiff cables between ends that stand on a floor: slack ones bow, clamps hold their angle, and
-//! one that is laid straight lies there.
+//! These tests lay stiff cables between ends that stand on a floor: slack ones bow, clamps hold
+//! their angle, and one that is laid straight lies there.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

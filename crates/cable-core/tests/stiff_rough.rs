@@ -1,4 +1,4 @@
-//! Stiff cables at rest on rough ground, with boxes, posts, friction and slack, drawn at random:
+//! These tests draw stiff cables at rest on rough ground, with boxes, posts, friction and slack:
 //! every scene has an answer that is sound.
 //!
 //! The checker judges every answer before it is handed out; these tests require that there is an

@@ -1,5 +1,5 @@
-//! Stiff cables that rub on posts, boxes and floors, seen in a mirror, counted from their other
-//! end, or both: the same rest each time.
+//! These tests show stiff cables that rub on posts, boxes and floors in a mirror, counted from
+//! their other end, or both: the same rest each time.
 //!
 //! A mirror changes nothing, so what two readings differ by is an error, and each says how large
 //! its own may be. Counting from the other end changes nothing that a resting place is asked for

@@ -1,7 +1,8 @@
-//! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an
-//! end, and torn. Which laws are broken is counted in every output step. Asked: no figure that is
-//! no number, nothing inside anything, no friction beyond its cone, no energy said to come from
-//! nowhere, and less than one step in a thousand that stops. Torn cables are counted by themselves.
+//! These tests are of violent motion: cables thrown about over random ground, beams and posts,
+//! dropped, let go at an end, and torn. Which laws are broken is counted in every output step.
+//! Asked: no figure that is no number, nothing inside anything, no friction beyond its cone, no
+//! energy said to come from nowhere, and less than one step in a thousand that stops. Torn cables
+//! are counted by themselves.
 //!
 //! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture`
 //! (five minutes); `FROM=100 TO=200` takes some of them, `TELL=friction NODES=1` tells what was

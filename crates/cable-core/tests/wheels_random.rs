@@ -1,5 +1,5 @@
-//! Cables over wheels that rub, moved slowly to and fro: the friction of `fem` beside that of
-//! `spans`, which has no mesh.
+//! These tests move cables slowly to and fro over wheels that rub: the friction of `fem` beside
+//! that of `spans`, which has no mesh.
 //!
 //! One to four pulleys, most of them wheels, friction 0 to 1, EA 3e3 to 1e8 N, ends held or drawn
 //! by a dead load, supports and loads that go and come back, taut to a tenth longer than the taut

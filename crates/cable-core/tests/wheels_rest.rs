@@ -1,5 +1,5 @@
-//! Random cables over wheels and eyes at rest: each has a resting place, most must be found, and
-//! what is found does not depend on which way the scene is seen or the cable counted.
+//! These tests lay random cables over wheels and eyes: each has a resting place, most must be
+//! found, and what is found does not depend on which way the scene is seen or the cable counted.
 //!
 //! One to four pulleys of radius 0 to 0.5 m on either side of the cable, friction 0 to 1; ends
 //! held, drawn by a dead load or hanging with a weight; ground below or none; strained by 0.3 % to

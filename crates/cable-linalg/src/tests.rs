@@ -1,3 +1,5 @@
+//! These tests compare the solvers with dense ones, on random matrices.
+
 use super::*;
 use proptest::prelude::*;
 

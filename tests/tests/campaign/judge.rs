@@ -1,5 +1,5 @@
-//! Laws that an answer at rest must obey, asked with what is written here alone: brute force over
-//! all obstacles, no code of the library's checker or of its contact geometry.
+//! This judge checks the laws that an answer at rest must obey with what is written here alone:
+//! brute force over all obstacles, no code of the library's checker or of its contact geometry.
 
 use cable_core::Model;
 use cable_core::scene::{Cable, Scene, Shape, SupportKind, View};

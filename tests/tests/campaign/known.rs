@@ -1,4 +1,5 @@
-//! Open faults: the least that is known to go wrong, so that nothing more does.
+//! This list of open faults is the least that goes wrong, so that a test fails if anything more
+//! does.
 
 /// Of the scenes of a family how many are known to be wrong, refused, and outside of what they say,
 /// and why.

@@ -1,4 +1,5 @@
-//! Random scenes of every kind of rest, against laws that are written here alone.
+//! The campaign checks random scenes of every kind of rest against laws that are written here
+//! alone.
 //!
 //! `CAMPAIGN_SEED=7 CAMPAIGN_CASES=200 cargo test --release -p cable-tests
 //! --test campaign -- --include-ignored --nocapture`

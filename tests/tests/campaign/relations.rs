@@ -1,4 +1,5 @@
-//! Scenes that must give the same answer as another one, and how.
+//! A relation leads from a scene to another one that must have the same answer, or one that follows
+//! from it.
 
 use super::case::Point;
 use cable_core::Solution;

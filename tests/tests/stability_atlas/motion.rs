@@ -1,4 +1,4 @@
-//! Motion that makes integrators blow up, gain energy or pass through walls.
+//! These cells are motions that make integrators blow up, gain energy or pass through walls.
 
 use cable_core::scene::{Motion, Obstacle, Shape, Support, SupportKind};
 use cable_core::{Model, Simulation, SolveError, Vec2};

@@ -1,6 +1,6 @@
-//! Spans at rest that solvers are known to miss. The answer is judged by Irvine's formula alone:
-//! the force a model gives at the start, integrated along the unstretched length, must end at the
-//! other support (H. M. Irvine, "Cable structures", 1981).
+//! These cells are spans at rest that solvers are known to miss. The answer is judged by Irvine's
+//! formula alone: the force a model gives at the start, integrated along the unstretched length,
+//! must end at the other support (H. M. Irvine, "Cable structures", 1981).
 
 use cable_core::scene::Support;
 use cable_core::{Model, SolveError};

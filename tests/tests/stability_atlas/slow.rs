@@ -1,4 +1,5 @@
-//! Slow motions with friction: lagged and penalty methods lose tension, creep away or lock.
+//! These cells are slow motions with friction: lagged and penalty methods lose tension, creep away
+//! or lock.
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support};
 use cable_core::{Model, SolveError};

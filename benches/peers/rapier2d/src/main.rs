@@ -1,4 +1,4 @@
-//! A chain of rods that falls from rest, by rapier2d:
+//! This program lets a chain of rods fall from rest, by rapier2d:
 //! `peer-rapier2d JOINT N STEP_S ITERATIONS END_S X Y [X Y …]` with `JOINT` multibody or impulse,
 //! N + 1 places of the nodes, the first of them held.
 //!

@@ -1,3 +1,6 @@
+//! These tests compare spans and chains of the elastic catenary with its equations, over wide
+//! ranges of slack and stiffness.
+
 use super::closed_form::ChainPiece;
 use super::*;
 use crate::math::Vec2;

@@ -44,7 +44,7 @@ pub enum LeftOut {
 /// already.
 ///
 /// # Errors
-/// Where one is not such a table.
+/// If one of them is not such a table.
 pub(crate) fn read_run(history: impl Read, nodes: impl Read, events: impl Read) -> Result<RunTables, ReadError> {
     let mut left_out = Vec::new();
     let mut history = WholeRecords::new(history);

@@ -149,7 +149,7 @@ fn expect_columns<R: Read>(
 /// ([`super::NodeChoice`]) are NaN.
 ///
 /// # Errors
-/// Where it is not such a table.
+/// If it is not such a table.
 pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
     let mut from = reader(from);
     let mut out = Vec::new();
@@ -182,7 +182,7 @@ pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
 /// Reads `events.csv` up to its last whole row.
 ///
 /// # Errors
-/// Where it is not such a table.
+/// If it is not such a table.
 pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
     let mut from = reader(from);
     let mut out = Vec::new();
@@ -214,7 +214,7 @@ pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
 /// Reads `history.csv` up to its last whole row.
 ///
 /// # Errors
-/// Where it is not such a table.
+/// If it is not such a table.
 pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     let mut from = reader(from);
     let mut table = HistoryTable::default();

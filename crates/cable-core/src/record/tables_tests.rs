@@ -1,3 +1,5 @@
+//! These tests write the tables of a run and read them back.
+
 use std::io::Write;
 
 use super::node_choice::node_values;

@@ -1,4 +1,4 @@
-//! The vehicle against its balance of forces by hand.
+//! These tests compare the vehicle with its balance of forces by hand.
 
 use super::*;
 use crate::scene::{Obstacle, Shape, catalog};

@@ -1,3 +1,5 @@
+//! These tests advance single cables, whole and in pieces.
+
 use crate::math::{Point, Vec2};
 use crate::model::{Inertia, Model};
 use crate::scene::{Motion, Scene, Support, SupportKind, catalog};

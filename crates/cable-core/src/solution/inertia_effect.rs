@@ -1,4 +1,5 @@
-//! The effect of inertia on a motion: how fast it is, and what it would be without.
+//! These types state the effect of inertia on a motion: its speed, and the error of leaving inertia
+//! out.
 
 use super::NextCheaper;
 

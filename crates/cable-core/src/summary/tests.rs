@@ -1,3 +1,5 @@
+//! These tests compare the figures of a summary with closed forms.
+
 use super::*;
 use crate::analysis::{Bending, end_stiffness, neglected_bending, settle_with_bending};
 use crate::model::{Model, Settings};

@@ -1,4 +1,5 @@
-//! Warnings persist: since when each stands, and so that none flickers.
+//! The warning monitor keeps each warning for a while after its last cause, with the time at which
+//! it began, so that none flickers.
 
 use super::energy_growth::EnergyGrowth;
 use super::snag::SnagDetector;

@@ -1,3 +1,5 @@
+//! These tests give the warning monitor answers whose warnings are known.
+
 use super::Bends;
 use super::monitor::HOLD_TIME_S;
 use super::{Observed, WarningMonitor};

@@ -1,10 +1,8 @@
-//! Two weights over a frictionless pulley (G. Atwood, 1784), the rope's own weight with it: with
-//! l₁, l₂ the hanging lengths and x what has run over, M ẍ = (m₂ − m₁ + ρ(l₂ − l₁)) g, l₂ − l₁ =
-//! d + 2x, M = m₁ + m₂ + ρL, so
-//! ```text
-//! x = c (cosh kt − 1),   c = (m₂ − m₁ + ρd)/2ρ,   k² = 2ρg/M
-//! ```
-//! A wheel has no mass of its own: with a radius it is the same.
+//! These tests let two weights run over a frictionless pulley (G. Atwood, 1784), the rope's own
+//! weight with it: with l₁, l₂ the hanging lengths and x what has run over, M ẍ = (m₂ − m₁ + ρ(l₂ −
+//! l₁)) g, l₂ − l₁ = d + 2x, M = m₁ + m₂ + ρL, so
+//! ```text x = c (cosh kt − 1),   c = (m₂ − m₁ + ρd)/2ρ,   k² = 2ρg/M ``` A wheel has no mass of
+//! its own: with a radius it is the same.
 
 use cable_core::Model;
 use cable_core::scene::{Scene, Support};

@@ -1,5 +1,5 @@
-//! A chain of 10 m let go from the horizontal, against rigid links with their masses in their
-//! joints, so many that what they leave out is no more than 2e-6 m.
+//! This test compares a chain of 10 m that is let go from the horizontal with rigid links with
+//! their masses in their joints, so many that what they leave out is no more than 2e-6 m.
 
 use cable_core::Vec2;
 use cable_core::scene::{Support, SupportKind};

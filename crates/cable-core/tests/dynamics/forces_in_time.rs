@@ -1,6 +1,6 @@
-//! Forces that change: wind and pulls on a free cable move the middle of its mass by F/m integrated
-//! twice; a ramp pulls a weight on a soft cable by F/k·(t − sin ωt/ω)/T. Temperature is constant in
-//! a scene.
+//! These tests apply forces that change: wind and pulls on a free cable move the middle of its mass
+//! by F/m integrated twice; a ramp pulls a weight on a soft cable by F/k·(t − sin ωt/ω)/T.
+//! Temperature is constant in a scene.
 
 use cable_core::scene::Support;
 use cable_core::{Load, Model, Simulation, Vec2};

@@ -1,5 +1,5 @@
-//! An independent chain: rigid massless links with the mass in their joints, angles as unknowns,
-//! Runge–Kutta 4.
+//! This is an independent chain: rigid massless links with the mass in their joints, angles as
+//! unknowns, Runge–Kutta 4.
 //!
 //! With link length a, t_j = (cos θ_j, sin θ_j), T_j the tension of link j, m_j the mass of the
 //! joint after it:

@@ -1,6 +1,6 @@
-//! Motion against closed forms: every reference is a ladder in the number of bars or in the time
-//! step, with the error at each rung, the observed order, and an identity that does not use the
-//! reference.
+//! These tests compare motion with closed forms: every reference is a ladder in the number of bars
+//! or in the time step, with the error at each rung, the observed order, and an identity that does
+//! not use the reference.
 //!
 //! The error in time is known from theory: a step h of BDF2 with a part β of BDF3 turns λ into
 //! λ(1 + (1 − β)(λh)²/3 − (1 − 2β)(λh)³/4 + …), so it swings (1 − β)(ωh)²/3 too slowly and damps by

@@ -1,4 +1,4 @@
-//! The same references for `mass-spring`, stepped explicitly.
+//! The same references are asked of `mass-spring`, stepped explicitly.
 //!
 //! In space a chain of springs swings at the frequencies of as many linear bars: second order. In
 //! time the leapfrog is symplectic: at sub-step h it swings (ωh)²/24 too fast and damps nothing, so

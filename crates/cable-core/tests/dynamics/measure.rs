@@ -1,4 +1,5 @@
-//! Scenes of one cable, starts away from rest, and what is read off a motion.
+//! These functions make scenes of one cable and starts away from rest, and read figures off a
+//! motion.
 
 use cable_core::scene::{Scene, Support, SupportKind, catalog};
 use cable_core::state::State;

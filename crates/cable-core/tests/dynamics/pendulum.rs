@@ -1,5 +1,5 @@
-//! Pendulums: a mass on a light stiff cable at large amplitude, a mass on a heavy cable at small
-//! ones.
+//! These tests swing pendulums: a mass on a light stiff cable at large amplitude, a mass on a heavy
+//! cable at small ones.
 
 use cable_core::Vec2;
 use cable_core::scene::Support;

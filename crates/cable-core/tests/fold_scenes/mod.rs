@@ -1,5 +1,5 @@
-//! Random scenes of cables with more length than they need, for the campaign of folds and the
-//! example that prints one.
+//! These functions draw random scenes of cables with more length than they need, for the campaign
+//! of folds and the example that prints one.
 
 use cable_core::scene::{Obstacle, Scene, Shape, Support, View, catalog};
 

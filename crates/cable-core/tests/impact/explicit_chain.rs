@@ -1,5 +1,5 @@
-//! A chain of point masses stepped explicitly: it shares no line with the models it is compared
-//! with.
+//! This is a chain of point masses stepped explicitly: it shares no line with the models it is
+//! compared with.
 //!
 //! Bars pull as Kelvin-Voigt bars do, T = EA (ε + τ dε/dt) where they are stretched and T > 0, and
 //! never push. The ground is a penalty spring with a loss of its own under each node, and under

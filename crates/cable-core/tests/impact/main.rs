@@ -1,4 +1,5 @@
-//! Cables that fall on rough ground and slip over pipes, against an independent explicit chain.
+//! These tests compare cables that fall on rough ground and slip over pipes with an independent
+//! explicit chain.
 //!
 //! The whole table of the drop, medians over 16 starts, is
 //! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour);

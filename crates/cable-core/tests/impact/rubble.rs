@@ -1,4 +1,4 @@
-//! A cable that falls 2 m on rough ground.
+//! This scene lets a cable fall 2 m on rough ground.
 
 use cable_core::scene::Shape;
 use cable_core::scene::{Scene, catalog};

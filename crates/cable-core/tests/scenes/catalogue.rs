@@ -1,4 +1,4 @@
-//! The bundled scenes: readable, valid by the schema, and laid clear of what stands in their way.
+//! The bundled scenes are readable, valid by the schema, and laid clear of obstacles.
 
 use cable_core::scene::{Robot, Shape, SupportKind, catalog, preset};
 use cable_core::solution::WarningKind;

@@ -1,4 +1,5 @@
-//! Files: limits before reading, saves that leave the old file or the new one.
+//! These tests ask that files are limited before they are read, and that a save leaves the old file
+//! or the new one.
 
 use std::fs;
 use std::io::{self, BufRead};

@@ -1,4 +1,4 @@
-//! Crossings of segments, found by nothing that the models use.
+//! These functions find crossings of segments without code of the models.
 
 use cable_core::Vec2;
 

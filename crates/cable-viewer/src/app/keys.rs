@@ -1,4 +1,4 @@
-//! The keyboard. Single keys are left to a text field that has the focus.
+//! The keyboard gives commands. Single keys are left to a text field that has the focus.
 
 use egui::{Context, Event, Key, KeyboardShortcut, Modifiers};
 

@@ -25,7 +25,7 @@ pub struct Map<'a> {
 /// The scene with what was read added to it, and what was done, in words.
 ///
 /// # Errors
-/// What cannot be read, or why the scene would not hold it, in words.
+/// The place that cannot be read, or the reason why the scene would be refused with it, in words.
 pub fn add(scene: &Scene, map: &Map<'_>) -> Result<(Scene, String), String> {
     let from_file;
     let text = match map.path {

@@ -1,4 +1,4 @@
-//! The pieces of a cable that broke.
+//! These functions find the pieces of a cable that broke.
 
 use cable_core::math::Point;
 

@@ -1,5 +1,6 @@
-//! Triangles of a simple polygon by ear clipping (G. H. Meisters, "Polygons have ears", American
-//! Mathematical Monthly 82, 1975). A polygon that crosses itself gives what was found so far.
+//! A simple polygon is divided into triangles by ear clipping (G. H. Meisters, "Polygons have
+//! ears", American Mathematical Monthly 82, 1975). A polygon that crosses itself gives what was
+//! found so far.
 
 use cable_core::math::Point;
 

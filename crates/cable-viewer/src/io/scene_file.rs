@@ -7,7 +7,7 @@ use cable_core::{Scene, files};
 /// Reads a scene.
 ///
 /// # Errors
-/// What is wrong and where, in words.
+/// The fault and its place, in words.
 pub fn load(path: &Path) -> Result<Scene, String> {
     files::load_scene(path).map_err(|e| e.to_string())
 }

@@ -9,7 +9,7 @@ impl Unit {
     /// system.
     ///
     /// # Errors
-    /// What is wrong with the text and what would be right.
+    /// The fault of the text, and an example that would be right.
     pub fn parse(self, text: &str) -> Result<f64, String> {
         let Self { symbol, si, others, .. } = self.display();
         let plain = text.trim().replace('−', "-").replace(' ', "");

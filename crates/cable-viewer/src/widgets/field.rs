@@ -1,4 +1,4 @@
-//! Number and text fields. What is typed is kept until it can be read: a slip is shown, never lost.
+//! Number and text fields keep the typed text until it can be read: a slip is shown, never lost.
 
 use egui::text::{CCursor, CCursorRange};
 use egui::{Align2, Id, Key, Margin, Response, TextEdit, Ui};

@@ -1,4 +1,5 @@
-//! A fixed answer and a window with one panel in it. Nothing here is solved: figures never change.
+//! The tests of panels share a fixed answer and a window with one panel in it. Nothing here is
+//! solved: figures never change.
 
 use std::sync::Arc;
 

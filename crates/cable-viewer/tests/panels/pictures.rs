@@ -1,5 +1,6 @@
-//! A picture of each panel at the width it has in the window. They need a graphics adapter
-//! (software will do): without one they are skipped with a notice, where CI=true they fail.
+//! These tests compare a picture of each panel, at the width that it has in the window. They need a
+//! graphics adapter (software will do): without one they are skipped with a notice, where CI=true
+//! they fail.
 
 use cable_core::SolveError;
 use cable_core::error::Unsupported;

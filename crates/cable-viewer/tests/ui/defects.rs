@@ -1,5 +1,6 @@
-//! Defects that a first user met in motion, behind slow solves and with long cables: D2, D3, D5a
-//! and D7. The tests of D2 and D3 also show that they see the defect where there is one.
+//! These tests are of defects that a first user met in motion, behind slow solves and with long
+//! cables: D2, D3, D5a and D7. The tests of D2 and D3 also show that they see the defect where
+//! there is one.
 
 use std::time::{Duration, Instant};
 

@@ -1,5 +1,5 @@
-//! Editing on the canvas and by keys: several things at once, copies, cables, the robot's path,
-//! forces by their arrows.
+//! These tests edit on the canvas and by keys: several things at once, copies, cables, the robot's
+//! path, forces by their arrows.
 
 use cable_core::scene::{RobotTask, Shape, SupportKind, catalog};
 use cable_core::{Load, Obstacle};

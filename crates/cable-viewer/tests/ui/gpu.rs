@@ -1,5 +1,5 @@
-//! A renderer on whatever graphics adapter there is, for pictures and measurements of what the
-//! window draws.
+//! This file makes a renderer on whatever graphics adapter there is, for pictures and measurements
+//! of what the window draws.
 
 use std::future::Future;
 use std::pin::pin;

@@ -1,5 +1,5 @@
-//! Rows of the users' list done by hand, as they are written: with the widgets of the window, or
-//! with keys alone.
+//! These tests do rows of the users' list by hand, as they are written: with the widgets of the
+//! window, or with keys alone.
 
 use cable_core::math::Point;
 use cable_core::scene::catalog;

@@ -1,5 +1,5 @@
-//! A tank job set up from the first scene by someone who knows nothing of it: map, robot, opening;
-//! every model asked about it.
+//! These tests set up a tank job from the first scene as someone does who knows nothing of it: map,
+//! robot, opening; every model asked about it.
 
 use cable_core::scene::{Ground, SupportKind, catalog, preset};
 use cable_core::{Model, Scene};

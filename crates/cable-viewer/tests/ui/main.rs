@@ -1,5 +1,5 @@
-//! The window driven as a user would, without a display. The worker runs inline: one frame, one
-//! answer.
+//! These tests drive the window as a user would, without a display. The worker runs inline: one
+//! frame, one answer.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! The chart of error over cost: every model and mesh, on demand, with progress and an end on
-//! request.
+//! These tests draw the chart of error over cost: every model and mesh, on demand, with progress
+//! and an end on request.
 
 use std::time::{Duration, Instant};
 

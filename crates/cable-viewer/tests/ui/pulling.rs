@@ -1,5 +1,5 @@
-//! D10.9: dragging an end past the length while time runs. Refused unless the user wants it to
-//! pull.
+//! These tests drag an end past the length while time runs (D10.9). It is
+//! refused unless the user wants the end to pull.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Stories of the users that no other file tells: each test is named after its row.
+//! These tests are stories of the users that no other file tells: each test is named after its row.
 
 use cable_core::scene::preset::robot_presets;
 use cable_core::scene::{Pose, Shape, Support, catalog};

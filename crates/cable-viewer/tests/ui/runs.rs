@@ -1,4 +1,5 @@
-//! Whole runs: kept, read again, overlaid, compared; long ones at the speed of the screen.
+//! These tests take whole runs: kept, read again, overlaid, compared; long ones at the speed of the
+//! screen.
 
 use std::sync::Arc;
 use std::time::Instant;

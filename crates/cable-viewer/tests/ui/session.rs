@@ -1,5 +1,5 @@
-//! A working session from start to end, as a user does it: open, drag, drive, break, compare,
-//! export.
+//! This test is a working session from start to end, as a user does it: open, drag, drive, break,
+//! compare, export.
 
 use cable_core::record::read_history;
 use cable_core::scene::catalog;

@@ -1,6 +1,6 @@
-//! One truth on the screen: figures, warnings and verdicts belong to the scene as it is, and the
-//! same scene has the same answer however it was come by. D1 to D10 are defects that a first user
-//! found by hand.
+//! These tests ask for one truth on the screen: figures, warnings and verdicts belong to the scene
+//! as it is, and the same scene has the same answer however it was come by. D1 to D10 are defects
+//! that a first user found by hand.
 
 use std::time::{Duration, Instant};
 

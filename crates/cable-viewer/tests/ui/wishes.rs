@@ -1,4 +1,5 @@
-//! Wishes and test cases of the users that no other file tells: each test is named after its row.
+//! These tests are wishes and test cases of the users that no other file tells: each test is named
+//! after its row.
 
 use cable_core::Model;
 use cable_core::scene::catalog;

@@ -1,4 +1,4 @@
-//! Cables that lie on ground.
+//! The cables of this family lie on ground.
 
 use crate::case::{Case, Expect, Point, apart, cable, fixed, flat, load, load_end, put, terrain, way};
 use crate::chance::Chance;

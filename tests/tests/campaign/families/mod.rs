@@ -1,4 +1,4 @@
-//! The families: each draws a case from chance.
+//! These are the families: each draws a case from chance.
 
 mod air;
 mod ground;

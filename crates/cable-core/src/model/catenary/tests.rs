@@ -1,3 +1,5 @@
+//! These tests ask the model `catenary` for scenes with known answers.
+
 use super::*;
 use crate::problem::problems;
 use crate::scene::{PulleySide, Scene, Support, SupportKind, catalog};

@@ -1,6 +1,6 @@
-//! The tuned constants of the model in contact and in motion. [`Tuning::default`] has the values
-//! that the program uses; a measurement (`cargo run --release -p cable-benches --bin
-//! tuned-settings`) tries others.
+//! These settings are the tuned constants of the model in contact and in motion.
+//! [`Tuning::default`] has the values that the program uses; a measurement
+//! (`cargo run --release -p cable-benches --bin tuned-settings`) tries others.
 //!
 //! Constants that round-off or an error bound fixes are defined beside their code, and so are those
 //! of the equilibria without contact (`free`) and of the elastica, whose iterations end at

@@ -1,5 +1,6 @@
-//! The tuned constants of the model. [`Tuning::default`] has the values that the program uses; a
-//! measurement (`cargo run --release -p cable-benches --bin tuned-settings`) tries others.
+//! These settings are the tuned constants of the model. [`Tuning::default`] has the values that the
+//! program uses; a measurement (`cargo run --release -p cable-benches --bin tuned-settings`) tries
+//! others.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,3 +1,5 @@
+//! These tests compare `mass-spring` with closed forms, and ask for its warnings and refusals.
+
 use crate::model::Stepping;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::{Inertia, Mechanics, Model, Settings};

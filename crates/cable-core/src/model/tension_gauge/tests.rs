@@ -1,3 +1,5 @@
+//! These tests feed the tension gauge with known histories of tension.
+
 use super::*;
 
 const OVER_S: f64 = 4e-3;

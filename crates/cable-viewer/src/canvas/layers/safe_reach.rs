@@ -1,7 +1,8 @@
-//! The safe reach over the map, in the colour of what it costs the cable as a share of its service
-//! tension. Of an end: the plane, with the lines of service and breaking tension; of a robot: what
-//! it passes over above the ground. What the cable may not bear is hatched, so that its colour is
-//! not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
+//! This layer draws the safe reach over the map, in the colour of the tension as a share of the
+//! service tension. Of an end: the plane, with the lines of service and breaking tension; of a
+//! robot: what it passes over above the ground. What the cable may not bear is hatched, so that its
+//! colour is not all that tells it; where nothing is known, and where it does not reach, nothing is
+//! drawn.
 
 use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace, Trip};

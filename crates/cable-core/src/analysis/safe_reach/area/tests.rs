@@ -1,3 +1,5 @@
+//! These tests search small maps of safe reach.
+
 use super::*;
 use crate::math::Point;
 use crate::scene::catalog;

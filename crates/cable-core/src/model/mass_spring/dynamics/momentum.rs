@@ -1,6 +1,6 @@
-//! The account of a cable's momentum in a step: the impulse of each kind of force, summed over the
-//! sub-steps. There is none of previews, and of cables over pulleys, whose material takes its
-//! momentum along.
+//! This account sums the impulse of each kind of force on a cable over the sub-steps of a step.
+//! Previews have none, and neither have cables over pulleys, whose material takes its momentum
+//! along.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::mesh::Mesh;

@@ -1,4 +1,4 @@
-//! The energies of springs, loads and bending, with their gradients and Hessians.
+//! This module sums the energies of springs, loads and bending, with their gradients and Hessians.
 //!
 //! Derivatives of a spring beside a pulley, t its direction, L its length, λ the thermal stretch:
 //! ```text

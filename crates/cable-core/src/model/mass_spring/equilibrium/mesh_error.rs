@@ -1,5 +1,5 @@
-//! The errors of the figures of a cable at rest: by comparison with `spans`, which has no mesh,
-//! where that finds the equilibrium; with `fem` where that knows a stiff cable better than was
+//! The errors of the figures of a cable at rest are estimated by comparison with `spans`, which has
+//! no mesh, if that finds the equilibrium; with `fem`, if that knows a stiff cable better than was
 //! asked for; else with meshes of elements twice and four times as long.
 //!
 //! Masses and springs are of the second order in the air and of the first at corners and where the

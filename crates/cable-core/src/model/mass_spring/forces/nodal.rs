@@ -1,4 +1,4 @@
-//! The forces on the nodes of a mesh.
+//! This module sums the forces on the nodes of a mesh.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::forces::{bending, pulley};

@@ -1,4 +1,4 @@
-//! The tensions beside pulleys and the force that slides material over them (see
+//! This module gives the tensions beside pulleys and the force that slides material over them (see
 //! [`crate::model::mass_spring::mesh::pulley`]).
 
 use crate::math::{Vec2, cross, perp};

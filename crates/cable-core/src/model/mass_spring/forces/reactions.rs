@@ -1,4 +1,5 @@
-//! The forces of the cable on supports, and of the ground under a supported end.
+//! This module reports the forces of the cable on supports, and of the ground under a supported
+//! end.
 
 use crate::contact::Gap;
 use crate::math::Vec2;

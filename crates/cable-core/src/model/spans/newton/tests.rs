@@ -1,3 +1,5 @@
+//! These tests solve spans and contacts by Newton's method and compare them with closed forms.
+
 use crate::model::spans::newton::*;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Connection};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout};

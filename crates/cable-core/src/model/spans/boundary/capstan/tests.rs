@@ -1,3 +1,5 @@
+//! These tests compare the capstan law along boundaries with closed forms.
+
 use crate::contact::World;
 use crate::model::spans::boundary::capstan::*;
 use crate::scene::obstacle::{Obstacle, Shape};
