@@ -117,12 +117,12 @@ struct SolidBody {
     name: String,
     /// Its own friction coefficient, where it has one.
     friction: Option<f64>,
-    kind: Kind,
+    kind: FeatureKind,
 }
 
 /// The solid side of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum FeatureKind {
     /// Below a line that runs from left to right.
     Below,
     /// Inside a closed line.
@@ -160,7 +160,11 @@ impl Obstacles {
             scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
         // A cable's own friction coefficient holds on the outline.
         let outline = robot_outline(scene, 0.0);
-        bodies.extend(outline.as_ref().map(|o| SolidBody { name: o.name.clone(), friction: None, kind: Kind::Inside }));
+        bodies.extend(outline.as_ref().map(|o| SolidBody {
+            name: o.name.clone(),
+            friction: None,
+            kind: FeatureKind::Inside,
+        }));
         Self { bodies, edges: Edges::new(edges), outline }
     }
 
@@ -242,7 +246,7 @@ impl Surroundings<'_> {
         let mut counts: Vec<(usize, i32)> = Vec::new();
         // Those that are nowhere above it do not count.
         for e in self.edges_in_box(p, Vec2::new(p.x, f64::INFINITY)) {
-            if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
+            if self.bodies.get(e.body).is_none_or(|b| b.kind == FeatureKind::Line) {
                 continue;
             }
             let to_right = e.from.x <= p.x && p.x < e.to.x;
@@ -268,8 +272,8 @@ impl Surroundings<'_> {
             }
         }
         let solid = |&(body, sum): &(usize, i32)| match self.bodies.get(body).map(|b| b.kind) {
-            Some(Kind::Below) => sum > 0,
-            Some(Kind::Inside) => sum != 0,
+            Some(FeatureKind::Below) => sum > 0,
+            Some(FeatureKind::Inside) => sum != 0,
             _ => false,
         };
         let (body, _) = all.into_iter().find(solid)?;
@@ -300,19 +304,19 @@ fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
     let kind = match &o.shape {
         Shape::Terrain { points_m } => {
             line(points_m, LineEnds::Open, 0.0);
-            Kind::Below
+            FeatureKind::Below
         }
         Shape::Polygon { points_m } => {
             line(points_m, LineEnds::Joined, 0.0);
-            Kind::Inside
+            FeatureKind::Inside
         }
         Shape::Polyline { points_m, thickness_m } => {
             line(points_m, LineEnds::Open, 0.5 * thickness_m);
-            Kind::Line
+            FeatureKind::Line
         }
         Shape::Circle { center_m, radius_m } => {
             edges.push(SolidEdge::new(vec2(*center_m), vec2(*center_m), *radius_m, index));
-            Kind::Line
+            FeatureKind::Line
         }
     };
     SolidBody { name: o.name.clone(), friction: o.friction, kind }

@@ -77,7 +77,7 @@ pub(super) struct TrackGrip {
 
 /// The side from which a speed is approached where forces jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Limit {
+enum SpeedLimit {
     Below,
     Above,
 }
@@ -100,10 +100,10 @@ impl TrackGrip {
         let edges = if self.asked < 0.0 { [self.asked, 0.0] } else { [0.0, self.asked] };
         let middle = 0.5 * (edges[0] + edges[1]);
         for (edge, before) in edges.into_iter().zip([edges[0] - 1.0, middle]) {
-            if step.needed(edge) > self.total(edge, Limit::Below) {
+            if step.needed(edge) > self.total(edge, SpeedLimit::Below) {
                 return (before, None);
             }
-            if step.needed(edge) >= self.total(edge, Limit::Above) {
+            if step.needed(edge) >= self.total(edge, SpeedLimit::Above) {
                 return (edge, Some(edge));
             }
         }
@@ -122,30 +122,30 @@ impl TrackGrip {
     /// The balance in the range of a speed, where no force jumps.
     fn balance_beside(&self, step: StepForces, near: f64) -> (SpeedBalance, Traction) {
         let StepForces { mass, step_s: h, speed: v, force: pull } = step;
-        let rolling = self.rolls(near, Limit::Above);
+        let rolling = self.rolls(near, SpeedLimit::Above);
         let reached = |force: f64, falls: f64| (mass * v / h + pull + rolling + force) / (mass / h + falls);
-        let slipping = if self.tracks(near, Limit::Above) < 0.0 { -self.hold } else { self.hold };
+        let slipping = if self.tracks(near, SpeedLimit::Above) < 0.0 { -self.hold } else { self.hold };
         let slid = reached(slipping, 0.0);
         let driven = reached(self.drive, self.falls);
         let rolls = SpeedBalance { rolling, ..SpeedBalance::default() };
-        if self.is_driven(near, Limit::Above) && driven <= slid {
-            (SpeedBalance { speed: driven, tracks: self.tracks(driven, Limit::Above), ..rolls }, Traction::Holds)
+        if self.is_driven(near, SpeedLimit::Above) && driven <= slid {
+            (SpeedBalance { speed: driven, tracks: self.tracks(driven, SpeedLimit::Above), ..rolls }, Traction::Holds)
         } else {
             (SpeedBalance { speed: slid, tracks: slipping, ..rolls }, Traction::Slips)
         }
     }
 
     /// Returns whether a speed is beyond an edge, in the limit from below or above.
-    fn is_beyond(q: f64, edge: f64, limit: Limit) -> bool {
-        q > edge || (q == edge && limit == Limit::Above)
+    fn is_beyond(q: f64, edge: f64, limit: SpeedLimit) -> bool {
+        q > edge || (q == edge && limit == SpeedLimit::Above)
     }
 
-    fn is_driven(&self, q: f64, limit: Limit) -> bool {
+    fn is_driven(&self, q: f64, limit: SpeedLimit) -> bool {
         self.drives && Self::is_beyond(q, 0.0, limit) && !Self::is_beyond(q, self.asked, limit)
     }
 
     /// Force of the tracks, N.
-    fn tracks(&self, q: f64, limit: Limit) -> f64 {
+    fn tracks(&self, q: f64, limit: SpeedLimit) -> f64 {
         if Self::is_beyond(q, self.asked, limit) {
             -self.hold
         } else if self.is_driven(q, limit) {
@@ -156,19 +156,19 @@ impl TrackGrip {
     }
 
     /// Rolling resistance, N.
-    fn rolls(&self, q: f64, limit: Limit) -> f64 {
+    fn rolls(&self, q: f64, limit: SpeedLimit) -> f64 {
         if Self::is_beyond(q, 0.0, limit) { -self.rolling } else { self.rolling }
     }
 
-    fn total(&self, q: f64, limit: Limit) -> f64 {
+    fn total(&self, q: f64, limit: SpeedLimit) -> f64 {
         self.tracks(q, limit) + self.rolls(q, limit)
     }
 
     /// Returns what the tracks give of a `total` (N) at a speed where forces jump: rolling
     /// resistance is against the drive.
     fn share(&self, q: f64, total: f64) -> f64 {
-        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, Limit::Above) };
-        bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))
+        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, SpeedLimit::Above) };
+        bounded(own, self.tracks(q, SpeedLimit::Above), self.tracks(q, SpeedLimit::Below))
     }
 
     /// Returns what a vehicle does that comes from one speed to another (m/s), and why it goes no

@@ -45,7 +45,7 @@ const RECENT_INSTANTS: usize = 3;
 /// Energy that one cable had, and that it has been given since.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EnergyGrowth {
-    before: Option<Snapshot>,
+    before: Option<EnergySnapshot>,
     /// Work done since the motion began at most, J.
     work_j: f64,
     /// Recent times, s, each with energy less work, J.
@@ -94,7 +94,7 @@ impl SupportState {
 
 /// Observation of a cable at an instant.
 #[derive(Clone, Debug)]
-struct Snapshot {
+struct EnergySnapshot {
     time_s: f64,
     energy_j: f64,
     breaks: usize,
@@ -113,12 +113,12 @@ struct Snapshot {
 impl EnergyGrowth {
     /// Follows the energy, and appends a warning where it has grown from nowhere.
     pub(crate) fn update(&mut self, observed: &Observed<'_>, time_s: f64, out: &mut Vec<Warning>) {
-        let (now, forms) = Snapshot::of(observed, time_s);
+        let (now, forms) = EnergySnapshot::of(observed, time_s);
         let before = self.before.replace(now);
         let Some(now) = &self.before else { return };
         // Without inertia, and where a support let go or the cable broke, it begins anew.
-        let goes_on = |b: &Snapshot| {
-            let holds = |m: &Snapshot| m.supports.iter().filter(|s| s.holds()).count();
+        let goes_on = |b: &EnergySnapshot| {
+            let holds = |m: &EnergySnapshot| m.supports.iter().filter(|s| s.holds()).count();
             observed.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
         };
         match before.filter(goes_on) {
@@ -167,7 +167,7 @@ impl EnergyGrowth {
     }
 }
 
-impl Snapshot {
+impl EnergySnapshot {
     /// Of an answer, with the forms of its energy (J): of motion first.
     fn of(observed: &Observed<'_>, time_s: f64) -> (Self, [f64; 4]) {
         let Observed { problem, answer, energy, breaks, .. } = *observed;
@@ -228,7 +228,7 @@ fn along(answer: &CableSolution, s: f64) -> (Vec2, Vec2) {
 }
 
 /// Returns what was done between two instants at most, J.
-fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
+fn work(observed: &Observed<'_>, before: &EnergySnapshot, now: &EnergySnapshot) -> f64 {
     let Observed { problem, answer, .. } = *observed;
     let (from, to) = (before.time_s, now.time_s);
     let dt = to - from;

@@ -88,7 +88,7 @@ enum Mark {
 
 /// Side of its place on which a word stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Anchor {
+enum TextAnchor {
     Start,
     Middle,
     End,
@@ -98,7 +98,7 @@ enum Anchor {
 #[derive(Debug)]
 struct TextLabel {
     at: [f64; 2],
-    anchor: Anchor,
+    anchor: TextAnchor,
     colour: [u8; 3],
     text: String,
     /// They read upwards.
@@ -108,7 +108,7 @@ struct TextLabel {
 }
 
 impl TextLabel {
-    fn new(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Self {
+    fn new(at: [f64; 2], anchor: TextAnchor, text: impl Into<String>) -> Self {
         Self { at, anchor, colour: TEXT_COLOUR, text: text.into(), upwards: false, title: false }
     }
 }
@@ -142,18 +142,18 @@ impl Drawing {
             if let Some((name, at, row)) = entries.last() {
                 let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
                 marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], (colour, 8.0, None)));
-                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
+                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
             }
         }
         for v in ticks(left, right) {
             marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
             let at = [x(v), frame[3] + 16.0];
-            marks.push(Mark::Text(TextLabel::new(at, Anchor::Middle, tick_text(v, [left, right]))));
+            marks.push(Mark::Text(TextLabel::new(at, TextAnchor::Middle, tick_text(v, [left, right]))));
         }
         for v in ticks(bottom, top) {
             marks.push(Mark::Line([[frame[0], y(v)], [frame[2], y(v)]], (GRID, 1.0, None)));
             let text = tick_text(v, [bottom, top]);
-            marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, text)));
+            marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y(v) + 4.0], TextAnchor::End, text)));
         }
         for (k, line) in graph.lines.iter().enumerate() {
             let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
@@ -164,7 +164,7 @@ impl Drawing {
             if let Some((name, at, row)) = entries.get(k) {
                 let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
                 marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen(2.5)));
-                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
+                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
             }
         }
         for (limit, name, colour) in limits(graph) {
@@ -175,16 +175,16 @@ impl Drawing {
             let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
             let unit = graph.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
             let text = format!("{name} {} {unit}", significant(limit, 4));
-            let words = TextLabel::new([frame[2] - 6.0, low], Anchor::End, text.trim_end());
+            let words = TextLabel::new([frame[2] - 6.0, low], TextAnchor::End, text.trim_end());
             marks.push(Mark::Text(TextLabel { colour, ..words }));
         }
         let middle = [(frame[0] + frame[2]) / 2.0, (frame[1] + frame[3]) / 2.0];
-        marks.push(Mark::Text(TextLabel::new([middle[0], size[1] - 14.0], Anchor::Middle, &graph.across[0])));
-        let up = TextLabel::new([16.0, middle[1]], Anchor::Middle, &graph.up[0]);
+        marks.push(Mark::Text(TextLabel::new([middle[0], size[1] - 14.0], TextAnchor::Middle, &graph.across[0])));
+        let up = TextLabel::new([16.0, middle[1]], TextAnchor::Middle, &graph.up[0]);
         marks.push(Mark::Text(TextLabel { upwards: true, ..up }));
         marks.push(Mark::Text(TextLabel {
             title: true,
-            ..TextLabel::new([MARGINS[0], 18.0], Anchor::Start, &graph.title)
+            ..TextLabel::new([MARGINS[0], 18.0], TextAnchor::Start, &graph.title)
         }));
         Self { size, frame, marks }
     }
@@ -230,9 +230,9 @@ pub fn svg(graph: &GraphInView) -> String {
             Mark::Text(words) => {
                 let [x, y] = words.at;
                 let anchor = match words.anchor {
-                    Anchor::Start => "start",
-                    Anchor::Middle => "middle",
-                    Anchor::End => "end",
+                    TextAnchor::Start => "start",
+                    TextAnchor::Middle => "middle",
+                    TextAnchor::End => "end",
                 };
                 let turn = if words.upwards { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
                 let weight = if words.title { " font-weight=\"bold\"" } else { "" };
@@ -314,9 +314,9 @@ fn write(painter: &egui::Painter, words: &TextLabel) -> egui::Rect {
     // Words of SVG stand on their base line: that is where the first row has it.
     let ascent = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |g| g.pos.y);
     let shift = match words.anchor {
-        Anchor::Start => 0.0,
-        Anchor::Middle => 0.5,
-        Anchor::End => 1.0,
+        TextAnchor::Start => 0.0,
+        TextAnchor::Middle => 0.5,
+        TextAnchor::End => 1.0,
     } * galley.size().x;
     let at = Pos2::new(words.at[0] as f32, words.at[1] as f32);
     let (corner, angle) = if words.upwards {

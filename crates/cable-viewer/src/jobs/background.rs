@@ -25,16 +25,16 @@ pub type Listener<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
 /// It, while it is computed. Dropped, it ends at its next word.
 #[derive(Debug)]
 pub struct Job<T> {
-    shared: Arc<Shared<T>>,
+    shared: Arc<SharedProgress<T>>,
 }
 
 #[derive(Debug)]
-struct Shared<T> {
+struct SharedProgress<T> {
     progress: Mutex<Progress<T>>,
     cancelled: AtomicBool,
 }
 
-impl<T> Shared<T> {
+impl<T> SharedProgress<T> {
     fn set(&self, progress: Progress<T>) {
         *self.progress.lock().unwrap_or_else(PoisonError::into_inner) = progress;
     }
@@ -50,7 +50,7 @@ impl<T: Clone + Send + 'static> Job<T> {
         shown: impl Fn() + Send + 'static,
     ) -> Self {
         let (progress, cancelled) = (Mutex::new(Progress::Running(0.0, None)), AtomicBool::new(false));
-        let shared = Arc::new(Shared { progress, cancelled });
+        let shared = Arc::new(SharedProgress { progress, cancelled });
         let theirs = Arc::clone(&shared);
         let job = move || {
             let mut listen = |share: f64, so_far: Option<T>| {

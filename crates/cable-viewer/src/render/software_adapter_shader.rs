@@ -9,15 +9,15 @@ use egui::{Context, FullOutput, Pos2, Rect, Stroke, TextureId};
 
 /// Colour times font.
 const SHADER: &str = "
-struct Corner { @builtin(position) at: vec4f, @location(0) uv: vec2f, @location(1) colour: vec4f };
+struct VertexCorner { @builtin(position) at: vec4f, @location(0) uv: vec2f, @location(1) colour: vec4f };
 @group(0) @binding(0) var<uniform> screen: vec4f;
 @group(0) @binding(1) var font: texture_2d<f32>;
 @group(0) @binding(2) var font_sampler: sampler;
-@vertex fn corner(@location(0) p: vec2f, @location(1) uv: vec2f, @location(2) colour: vec4f) -> Corner {
-    return Corner(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), uv, colour);
+@vertex fn corner(@location(0) p: vec2f, @location(1) uv: vec2f, @location(2) colour: vec4f) -> VertexCorner {
+    return VertexCorner(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), uv, colour);
 }
-@fragment fn pixel(c: Corner) -> @location(0) vec4f { return c.colour * textureSample(font, font_sampler, c.uv); }
-@fragment fn plain(c: Corner) -> @location(0) vec4f { return c.colour; }
+@fragment fn pixel(c: VertexCorner) -> @location(0) vec4f { return c.colour * textureSample(font, font_sampler, c.uv); }
+@fragment fn plain(c: VertexCorner) -> @location(0) vec4f { return c.colour; }
 struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) colour: vec4f };
 @vertex fn solid_corner(@location(0) p: vec2f, @location(2) colour: vec4f) -> Solid {
     return Solid(vec4f(2.0 * p.x / screen.x - 1.0, 1.0 - 2.0 * p.y / screen.y, 0.0, 1.0), colour);

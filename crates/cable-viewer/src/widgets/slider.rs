@@ -53,7 +53,7 @@ pub fn drag_help(logarithmic: bool) -> String {
 
 /// The place from which a drag is counted.
 #[derive(Clone, Copy, Debug, Default)]
-struct Anchor {
+struct DragAnchor {
     value: f64,
     /// Place of the pointer then, points.
     pointer_x: f32,
@@ -110,7 +110,7 @@ pub fn ui(ui: &mut Ui, value: f64, rail: SliderRange) -> SliderOutput {
     let value = if response.interact_pointer_pos().is_some() {
         dragged(ui, &response, value, rail, asked)
     } else {
-        ui.data_mut(|d| d.remove_temp::<Anchor>(response.id));
+        ui.data_mut(|d| d.remove_temp::<DragAnchor>(response.id));
         asked
     };
     SliderOutput { value, done: response.drag_stopped() || response.lost_focus(), response }
@@ -120,7 +120,7 @@ pub fn ui(ui: &mut Ui, value: f64, rail: SliderRange) -> SliderOutput {
 fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: Option<f64>) -> Option<f64> {
     let x = response.interact_pointer_pos()?.x;
     let (now_s, fine, pressed) = ui.input(|i| (i.time, i.modifiers.shift, i.pointer.press_origin()));
-    let known = ui.data(|d| d.get_temp::<Anchor>(response.id)).filter(|_| !response.drag_started());
+    let known = ui.data(|d| d.get_temp::<DragAnchor>(response.id)).filter(|_| !response.drag_started());
     let mut anchor = if let Some(anchor) = known {
         anchor
     } else {
@@ -131,14 +131,14 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: O
         let from = pressed.map_or(x, |p| p.x);
         if (from - knob).abs() > radius {
             let value = asked.unwrap_or(value);
-            ui.data_mut(|d| d.insert_temp(response.id, Anchor { value, pointer_x: x, fine, last: (x, now_s) }));
+            ui.data_mut(|d| d.insert_temp(response.id, DragAnchor { value, pointer_x: x, fine, last: (x, now_s) }));
             return asked;
         }
-        Anchor { value, pointer_x: from, fine, last: (from, now_s) }
+        DragAnchor { value, pointer_x: from, fine, last: (from, now_s) }
     };
     let (last_x, moved_s) = anchor.last;
     if fine != anchor.fine || (x != last_x && now_s - moved_s > POINTER_REST_S) {
-        anchor = Anchor { value, pointer_x: last_x, fine, ..anchor };
+        anchor = DragAnchor { value, pointer_x: last_x, fine, ..anchor };
     }
     let points = f64::from(x - anchor.pointer_x) * if fine { SHIFT } else { 1.0 };
     let half = 0.5 * if fine { SHIFT } else { 1.0 };

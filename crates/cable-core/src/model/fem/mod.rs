@@ -59,7 +59,7 @@ pub use crate::model::fem::settings::Tuning;
 
 /// The part that holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+enum PresentPart {
     Statics,
     Stepper,
 }
@@ -72,7 +72,7 @@ pub struct FemModel {
     dragged: Vec<Option<Vec2>>,
     statics: free::Statics,
     stepper: stepper::Stepper,
-    present: Part,
+    present: PresentPart,
     /// True if the search for a first equilibrium in contact starts from that of `spans`.
     starts_from_spans: bool,
     settings: Settings,
@@ -102,7 +102,7 @@ impl FemModel {
     pub fn with_tuning(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
         let statics = free::Statics::new(problem.clone(), settings)?;
         let stepper = stepper::Stepper::new(problem.clone(), settings, tuning)?;
-        let present = if touches_nothing(&problem) { Part::Statics } else { Part::Stepper };
+        let present = if touches_nothing(&problem) { PresentPart::Statics } else { PresentPart::Stepper };
         Ok(Self {
             dragged: vec![None; problem.supports.len()],
             statics,
@@ -136,7 +136,7 @@ impl FemModel {
     fn on_finer_mesh(&self) -> Option<Self> {
         let bars = 2 * self.stepper.cable.meshing.even_bars;
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        let by_mesh = self.present == Part::Stepper && self.elastica_answer.is_none() && self.time_s() <= 0.0;
+        let by_mesh = self.present == PresentPart::Stepper && self.elastica_answer.is_none() && self.time_s() <= 0.0;
         if given || !by_mesh || bars > self.tuning().start.max_refined_bars {
             return None;
         }
@@ -161,11 +161,11 @@ impl FemModel {
     }
 
     /// Makes `part` the part that holds the present state.
-    fn make_present(&mut self, part: Part) -> Result<(), SolveError> {
+    fn make_present(&mut self, part: PresentPart) -> Result<(), SolveError> {
         if self.present != part {
             match part {
-                Part::Statics => self.statics.set_state(&self.stepper.cable.state())?,
-                Part::Stepper => {
+                PresentPart::Statics => self.statics.set_state(&self.stepper.cable.state())?,
+                PresentPart::Stepper => {
                     self.stepper.set_state(&self.statics.state())?;
                     self.stepper.come_to_rest(&self.dragged);
                 }
@@ -197,10 +197,10 @@ impl Mechanics for FemModel {
             return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
         if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) && self.elastica_answer.is_none() {
-            self.make_present(Part::Statics)?;
+            self.make_present(PresentPart::Statics)?;
             self.statics.advance(dt_s, &self.dragged)
         } else {
-            self.make_present(Part::Stepper)?;
+            self.make_present(PresentPart::Stepper)?;
             self.bending_error = None;
             if let Some(answer) = self.elastica_answer.take() {
                 self.stepper.warm_start(&answer, self.stepper.cable.time(), &self.dragged)?;
@@ -222,8 +222,8 @@ impl Mechanics for FemModel {
             return State::of_nodes(&answer.nodes, self.stepper.cable.time());
         }
         match self.present {
-            Part::Statics => self.statics.state(),
-            Part::Stepper => self.stepper.cable.state(),
+            PresentPart::Statics => self.statics.state(),
+            PresentPart::Stepper => self.stepper.cable.state(),
         }
     }
 
@@ -232,14 +232,14 @@ impl Mechanics for FemModel {
         self.elastica_answer = None;
         self.bending_error = None;
         // Statics has no velocities, so a moving state needs the part that has them.
-        if self.present == Part::Statics && state.moves() {
+        if self.present == PresentPart::Statics && state.moves() {
             self.stepper.set_state(state)?;
-            self.present = Part::Stepper;
+            self.present = PresentPart::Stepper;
             return Ok(());
         }
         match self.present {
-            Part::Statics => self.statics.set_state(state),
-            Part::Stepper => self.stepper.set_state(state),
+            PresentPart::Statics => self.statics.set_state(state),
+            PresentPart::Stepper => self.stepper.set_state(state),
         }
     }
 
@@ -247,8 +247,8 @@ impl Mechanics for FemModel {
         self.elastica_answer = None;
         self.bending_error = None;
         match self.present {
-            Part::Statics => self.set_state(&State::of_nodes(&answer.nodes, time_s)),
-            Part::Stepper => {
+            PresentPart::Statics => self.set_state(&State::of_nodes(&answer.nodes, time_s)),
+            PresentPart::Stepper => {
                 self.meshes = TwoMeshes::default();
                 self.stepper.warm_start(answer, time_s, &self.dragged)
             }
@@ -306,8 +306,8 @@ impl Mechanics for FemModel {
             return answer.clone();
         }
         match self.present {
-            Part::Statics => self.statics.solution(),
-            Part::Stepper => {
+            PresentPart::Statics => self.statics.solution(),
+            PresentPart::Stepper => {
                 let answer = self.stepper.solution();
                 let meshes = self.meshes.errors;
                 let estimates = [self.bending_error, meshes.relative(&answer)].into_iter().flatten();

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// A dead load: its arc length and its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Load {
+struct SectionLoad {
     arc_length: f64,
     /// Index among the supports, else among the loads.
     support: Option<usize>,
@@ -41,7 +41,7 @@ pub(in crate::model::spans) struct SectionLayout {
     pub settings: Arc<SpansSettings>,
     /// The end of the scene's cable from which arc lengths are counted.
     pub counted_from: CableEnd,
-    loads: Vec<Load>,
+    loads: Vec<SectionLoad>,
     /// Corners that it must not pass, in order of x.
     pub corners: Arc<[ImpassableCorner]>,
     /// Sections: arc lengths of both ends (m) and the support at each end; None for a free end or a
@@ -108,7 +108,7 @@ impl SectionLayout {
         }
         let mut loads = Vec::new();
         for (load, l) in p.loads.iter().enumerate() {
-            loads.push(Load { arc_length: l.arc_length, support: None, load });
+            loads.push(SectionLoad { arc_length: l.arc_length, support: None, load });
         }
         let mut sections: Vec<SectionBounds> = Vec::new();
         let start = SectionBounds { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
@@ -119,7 +119,7 @@ impl SectionLayout {
             match s.kind {
                 SupportKind::Load | SupportKind::Free => {
                     let arc_length = s.arc_length.unwrap_or(0.0);
-                    loads.push(Load { arc_length, support: Some(k), load: k });
+                    loads.push(SectionLoad { arc_length, support: Some(k), load: k });
                 }
                 SupportKind::Pulley => {
                     part.pulleys.push(Pulley { support: k, curve: 2 * (bodies + wheels), facing: 0.0 });
@@ -194,7 +194,7 @@ impl SectionLayout {
             let own = s.position_at(time_s).map_or(Vec2::zeros(), |(at, _)| at);
             dragged.get(k).copied().flatten().unwrap_or(own)
         };
-        let force = |l: &Load| match l.support.and_then(|k| p.supports.get(k)) {
+        let force = |l: &SectionLoad| match l.support.and_then(|k| p.supports.get(k)) {
             Some(s) => s.force.at(time_s) + gravity * s.mass,
             None => p.loads.get(l.load).map_or(Vec2::zeros(), |l| l.force.at(time_s)),
         };

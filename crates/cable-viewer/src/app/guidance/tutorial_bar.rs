@@ -43,33 +43,33 @@ pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(go(at(place.step + 1)));
     }
     let title = format!("{}, step {} of {}", guide.title, place.step + 1, guide.steps.len());
-    let mut buttons = |ui: &mut Ui, which: Part| match which {
-        Part::Done if done => drop(ui.weak("Done")),
-        Part::Done => {}
-        Part::Back => {
+    let mut buttons = |ui: &mut Ui, which: BarPart| match which {
+        BarPart::Done if done => drop(ui.weak("Done")),
+        BarPart::Done => {}
+        BarPart::Back => {
             let back = ui.add_enabled(place.step > 0, egui::Button::new("Back"));
             if back.on_hover_text("The step before").clicked() {
                 commands.push(go(at(place.step.saturating_sub(1))));
             }
         }
-        Part::Next if last => {
+        BarPart::Next if last => {
             let next = (place.tutorial + 1) % TUTORIALS.len();
             if ui.button("Next scene").on_hover_text(TUTORIALS[next].title).clicked() {
                 commands.push(Command::File(tutorials::open(next)));
             }
         }
-        Part::Next => {
+        BarPart::Next => {
             if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
                 commands.push(go(at(place.step + 1)));
             }
         }
-        Part::End => {
+        BarPart::End => {
             if ui.button("End guide").on_hover_text("The scene stays open").clicked() {
                 commands.push(go(None));
             }
         }
     };
-    let parts = [Part::Done, Part::Back, Part::Next, Part::End];
+    let parts = [BarPart::Done, BarPart::Back, BarPart::Next, BarPart::End];
     if ui.available_width() < ONE_ROW {
         ui.horizontal_wrapped(|ui| {
             ui.strong(title);
@@ -92,7 +92,7 @@ pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// The mark or button beside the words of a step.
 #[derive(Clone, Copy)]
-enum Part {
+enum BarPart {
     Done,
     Back,
     Next,

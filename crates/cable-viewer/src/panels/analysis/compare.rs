@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     // An answer goes with the scene that it is of, which may not be the one being edited.
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let answer = state.live.snapshot.solution.as_deref();
-    let present = answer.map(|s| Figures::of(s, solved, state.live.snapshot.solve_wall_s));
+    let present = answer.map(|s| RunFigures::of(s, solved, state.live.snapshot.solve_wall_s));
     let compared = present.as_ref().filter(|_| state.is_current());
     readout::wide(ui, "compare", |ui| {
         let gap = if ui.available_width() < MIN_WIDE_TABLE { 4.0 } else { 14.0 };
@@ -91,7 +91,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                         commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
                     }
                 });
-                row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), compared);
+                row(ui, &RunFigures::of(&held.solution, &held.scene, held.wall_s), compared);
                 ui.end_row();
             }
         });
@@ -224,14 +224,14 @@ fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
 }
 
 /// The answers that are compared.
-struct Figures {
+struct RunFigures {
     tension_n: f64,
     sag_m: Option<f64>,
     energy_j: f64,
     wall_s: f64,
 }
 
-impl Figures {
+impl RunFigures {
     fn of(solution: &Solution, scene: &Scene, wall_s: f64) -> Self {
         let sags = scene
             .cables
@@ -248,7 +248,7 @@ impl Figures {
     }
 }
 
-fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
+fn row(ui: &mut Ui, f: &RunFigures, present: Option<&RunFigures>) {
     cell(ui, format::force(f.tension_n), Some(f.tension_n), present.map(|p| p.tension_n));
     let sag = f.sag_m.map_or_else(|| "–".to_owned(), format::length);
     cell(ui, sag, f.sag_m, present.and_then(|p| p.sag_m));
@@ -286,7 +286,7 @@ fn change(ratio: f64) -> String {
 
 /// The differences between two scenes and models.
 #[derive(Clone)]
-struct Summary {
+struct SceneDifferences {
     held: Arc<Scene>,
     present: Arc<Scene>,
     models: [Option<Model>; 2],
@@ -298,15 +298,16 @@ struct Summary {
 fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
     let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
-    let last = ui.data(|d| d.get_temp::<Summary>(id));
-    let fits =
-        |t: &Summary| Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene;
+    let last = ui.data(|d| d.get_temp::<SceneDifferences>(id));
+    let fits = |t: &SceneDifferences| {
+        Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene
+    };
     if let Some(told) = last.filter(fits) {
         return told.lines;
     }
     let lines = Arc::new(differences(held, state));
     let (present, held) = (Arc::new(state.document.scene.clone()), Arc::clone(&held.scene));
-    ui.data_mut(|d| d.insert_temp(id, Summary { held, present, models, lines: Arc::clone(&lines) }));
+    ui.data_mut(|d| d.insert_temp(id, SceneDifferences { held, present, models, lines: Arc::clone(&lines) }));
     lines
 }
 

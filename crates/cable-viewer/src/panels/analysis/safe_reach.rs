@@ -155,12 +155,12 @@ fn set(choice: SafeReachOptions) -> Command {
 
 /// A tension that a place is judged by; below that of service it is safe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Limit {
+enum ReachLimit {
     Service,
     Breaking,
 }
 
-impl Limit {
+impl ReachLimit {
     fn name(self) -> &'static str {
         match self {
             Self::Service => "service",
@@ -172,7 +172,7 @@ impl Limit {
 /// The map in words.
 #[must_use]
 pub fn describe(maps: &ReachMaps, back: bool) -> Vec<String> {
-    let limits = [Limit::Service, Limit::Breaking].into_iter().zip(maps.limits_n());
+    let limits = [ReachLimit::Service, ReachLimit::Breaking].into_iter().zip(maps.limits_n());
     limits
         .map(|(limit, tension_n)| match maps {
             ReachMaps::Line(map) => of_line(map, back, limit, tension_n),
@@ -187,7 +187,7 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
-fn of_line(map: &ReachMap, back: bool, limit: Limit, tension_n: f64) -> String {
+fn of_line(map: &ReachMap, back: bool, limit: ReachLimit, tension_n: f64) -> String {
     let name = limit.name();
     let Some([left, right]) = map.safe_m(tension_n, if back { Trip::ThereAndBack } else { Trip::There }) else {
         return format!("Above {name} tension ({}) at its present position", format::force(tension_n));
@@ -204,13 +204,13 @@ fn of_line(map: &ReachMap, back: bool, limit: Limit, tension_n: f64) -> String {
         }
     };
     let from = match limit {
-        Limit::Service => "Safe from",
-        Limit::Breaking => "No break from",
+        ReachLimit::Service => "Safe from",
+        ReachLimit::Breaking => "No break from",
     };
     format!("{from} x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
-fn of_area(area: &Area, limit: Limit, tension_n: f64) -> String {
+fn of_area(area: &Area, limit: ReachLimit, tension_n: f64) -> String {
     let name = limit.name();
     let force = format::force(tension_n);
     match area.below(tension_n) {

@@ -33,7 +33,7 @@ const MIN_KINETIC_SHARE: f64 = 1e-3;
 
 /// A reason not to rely on the figures.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct QualityProblem {
     /// The thing that is wrong.
     pub title: &'static str,
     /// Its figure.
@@ -44,7 +44,7 @@ pub struct Problem {
 
 /// All that there is to say against an answer, as the form of the solver marks it.
 #[must_use]
-pub fn problems(state: &AppState, answer: &Solution) -> Vec<Problem> {
+pub fn problems(state: &AppState, answer: &Solution) -> Vec<QualityProblem> {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let tolerance = state.solver.settings.tolerance;
     let (share, unbalanced) = unbalanced(tolerance, answer);
@@ -59,7 +59,7 @@ pub fn problems(state: &AppState, answer: &Solution) -> Vec<Problem> {
         ("Ill-conditioned equations", format!("{condition:.0e}"), ill),
         ("Kinetic energy grows", energy, grows_for_long(state, answer)),
     ];
-    found.into_iter().filter_map(|(title, figure, why)| Some(Problem { title, figure, why: why? })).collect()
+    found.into_iter().filter_map(|(title, figure, why)| Some(QualityProblem { title, figure, why: why? })).collect()
 }
 
 /// Draws it.

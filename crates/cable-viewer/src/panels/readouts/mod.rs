@@ -353,7 +353,7 @@ fn bending_stiffness(
     }
     let likely = unit::Unit::N_M2.text(likely);
     let help = format!("This answer is of a perfectly flexible cable; of its preset {likely} is likely");
-    if let Some(Compared { text, more, answered }) = compared(state, cable, solved) {
+    if let Some(ComparedReadout { text, more, answered }) = compared(state, cable, solved) {
         readout::row(ui, name, &text, &format!("{help}{more}"), |ui| {
             let Some((label, take)) = take_likely_bending(state).filter(|_| answered) else { return };
             let does = "Gives the cable that bending stiffness, as an edit of the scene";
@@ -389,7 +389,7 @@ pub fn take_likely_bending(state: &AppState) -> Option<(String, SceneCommand)> {
 }
 
 /// The outcome of comparing an answer with one that has the likely bending stiffness.
-struct Compared {
+struct ComparedReadout {
     /// In short.
     text: String,
     /// More in words, after a sentence on the stiffness.
@@ -400,11 +400,11 @@ struct Compared {
 
 /// Returns the result of the comparison of an answer with one that has the likely bending
 /// stiffness; `None` if it was not requested.
-fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<Compared> {
+fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<ComparedReadout> {
     if !bending_query_fits(state) {
         return None;
     }
-    let without = |text: &str, more| Some(Compared { text: text.to_owned(), more, answered: false });
+    let without = |text: &str, more| Some(ComparedReadout { text: text.to_owned(), more, answered: false });
     let found = match &state.analysis.neglected_bending.progress {
         Progress::None => return None,
         Progress::Running(..) => return without("ignored, being compared", String::new()),
@@ -426,7 +426,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<C
         part(found.changes.support_force_n, format::force),
         part(found.changes.position_m, format::length),
     );
-    Some(Compared { text: format!("ignored: {change}"), more, answered: true })
+    Some(ComparedReadout { text: format!("ignored: {change}"), more, answered: true })
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {

@@ -39,7 +39,7 @@ enum Severity {
 }
 
 /// One entry of the list.
-struct Entry {
+struct WarningRow {
     severity: Severity,
     /// It is about what the cable carries, which comes first among equals.
     of_tension: bool,
@@ -156,7 +156,7 @@ pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// “2 warnings, 1 note”: a note asks nothing of anyone.
-fn count(entries: &[Entry]) -> String {
+fn count(entries: &[WarningRow]) -> String {
     let notes = entries.iter().filter(|e| e.severity == Severity::Note).count();
     let counted = [(entries.len() - notes, "warning"), (notes, "note")];
     let named = counted.into_iter().filter(|(n, _)| *n > 0);
@@ -174,7 +174,7 @@ pub fn places(state: &AppState) -> Vec<(String, Command)> {
     named.collect()
 }
 
-fn entries(state: &AppState) -> Vec<Entry> {
+fn entries(state: &AppState) -> Vec<WarningRow> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
@@ -184,7 +184,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
         let (title, fixes) = if cancelled { ("Not solved", vec![solve]) } else { ("No answer", Vec::new()) };
-        list.push(Entry { title: title.to_owned(), fixes, ..entry(Severity::Stop, text) });
+        list.push(WarningRow { title: title.to_owned(), fixes, ..entry(Severity::Stop, text) });
     }
     // Warnings of a draft or of another scene's answer say nothing of this one.
     if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
@@ -196,8 +196,8 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list
 }
 
-fn entry(severity: Severity, text: String) -> Entry {
-    Entry {
+fn entry(severity: Severity, text: String) -> WarningRow {
+    WarningRow {
         severity,
         of_tension: false,
         kind: String::new(),
@@ -217,14 +217,14 @@ fn capital(text: &str) -> String {
     chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
-fn dead_worker(state: &AppState) -> Option<Entry> {
+fn dead_worker(state: &AppState) -> Option<WarningRow> {
     let WorkerStatus::Dead(words) = &state.solver.status else { return None };
     let fix = Fix { label: "Restart the solver".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
-    Some(Entry { title: "The solver stopped".to_owned(), fixes: vec![fix], ..entry(Severity::Stop, text) })
+    Some(WarningRow { title: "The solver stopped".to_owned(), fixes: vec![fix], ..entry(Severity::Stop, text) })
 }
 
-fn scene_fault(state: &AppState) -> Option<Entry> {
+fn scene_fault(state: &AppState) -> Option<WarningRow> {
     let found = scene_errors::summary(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
@@ -234,10 +234,10 @@ fn scene_fault(state: &AppState) -> Option<Entry> {
         command: Command::Playback(PlaybackCommand::PullPastLength(true)),
     });
     let fixes = scene_errors::fix(state).into_iter().chain(pull).collect();
-    Some(Entry { title, fixes, ..entry(Severity::Stop, text) })
+    Some(WarningRow { title, fixes, ..entry(Severity::Stop, text) })
 }
 
-fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
+fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> WarningRow {
     let (severity, title) = match warning.kind {
         WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
         WarningKind::Broken => (Severity::Stop, "Broken"),
@@ -279,7 +279,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let everywhere = warning.kind == WarningKind::NotUnique;
     let at = if everywhere { String::new() } else { format!(" at {along}") };
     let whole = format!("{title}{at}{of}{told}{since}");
-    Entry {
+    WarningRow {
         severity,
         of_tension: matches!(
             warning.kind,
@@ -304,9 +304,9 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
 }
 
 /// The entry of a reason to doubt the figures, of which the form of the solver shows more.
-fn of_problem(problem: quality::Problem) -> Entry {
-    let quality::Problem { title, figure, why } = problem;
-    Entry {
+fn of_problem(problem: quality::QualityProblem) -> WarningRow {
+    let quality::QualityProblem { title, figure, why } = problem;
+    WarningRow {
         kind: title.to_owned(),
         title: format!("{title}: {figure}"),
         parts: Some([title.to_owned(), figure, String::new()]),
@@ -374,7 +374,7 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
 /// One line: severity, what, value of limit, and the place at its end, which is never cut. A click
 /// on it shows the place; the text and the fix are behind the sign at its end, and the text is told
 /// on hover.
-fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+fn row(ui: &mut Ui, number: usize, entry: &WarningRow, commands: &mut Vec<Command>) {
     let (colour, sign) = look(ui, entry.severity);
     // Remembered by what it says: the next warning in its place is another one. Where there is no
     // answer at all, the words are open from the start.
@@ -422,7 +422,7 @@ fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
 }
 
 /// Returns the line of an entry: what gives way where there is no room is not the place.
-fn button<'a>(ui: &Ui, entry: &Entry) -> Button<'a> {
+fn button<'a>(ui: &Ui, entry: &WarningRow) -> Button<'a> {
     let place = entry.parts.as_ref().map_or("", |[.., place]| place);
     let button = if place.is_empty() {
         Button::new((line(ui, entry), Atom::grow()))
@@ -434,7 +434,7 @@ fn button<'a>(ui: &Ui, entry: &Entry) -> Button<'a> {
 }
 
 /// Returns what it is, and smaller its figures.
-fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
+fn line(ui: &Ui, entry: &WarningRow) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut push = |text: &str, style: TextStyle, colour: Color32| {
         let font = style.resolve(ui.style());
@@ -453,7 +453,7 @@ fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
 }
 
 /// Zooms on where it is and picks what it is about.
-fn show(entry: &Entry, commands: &mut Vec<Command>) {
+fn show(entry: &WarningRow, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         commands.push(Command::View(ViewCommand::ZoomOn(at_m)));
     }
@@ -463,7 +463,7 @@ fn show(entry: &Entry, commands: &mut Vec<Command>) {
     }
 }
 
-fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+fn actions(ui: &mut Ui, number: usize, entry: &WarningRow, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         let button = ui.button("Show").on_hover_text(format!("Zooms on {}", format::position(at_m)));
         field::name(&button, &format!("Show warning {}", number + 1));

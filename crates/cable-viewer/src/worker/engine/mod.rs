@@ -41,7 +41,7 @@ pub struct Engine {
     phase: Phase,
     playback: Playback,
     steering: Steering,
-    refinement: Refinement,
+    refinement: AnswerRefinement,
     wall_times: WallTimes,
     outbox: Outbox,
 }
@@ -102,7 +102,7 @@ struct Steering {
 
 /// The instant when an answer is what it comes to in the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Refinement {
+enum AnswerRefinement {
     /// At once: nobody would replace a draft.
     #[default]
     AtOnce,
@@ -114,7 +114,7 @@ enum Refinement {
     },
 }
 
-impl Refinement {
+impl AnswerRefinement {
     fn is_later(self) -> bool {
         self != Self::AtOnce
     }
@@ -161,7 +161,7 @@ impl Engine {
     /// One that answers an edit of a slow scene with a draft first; [`Self::refine`] is to follow.
     #[must_use]
     pub fn with_drafts() -> Self {
-        Self { refinement: Refinement::Later { histories_due: false }, ..Self::default() }
+        Self { refinement: AnswerRefinement::Later { histories_due: false }, ..Self::default() }
     }
 
     /// As it is now, to go on from where what follows is given up.

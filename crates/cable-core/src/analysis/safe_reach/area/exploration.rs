@@ -401,12 +401,14 @@ impl Exploration<'_> {
             n.is_some_and(|n| !simulation.model().capabilities().nodes_catch || !caught(n))
         };
         let mut found_n = self.step(simulation, ends, 1);
-        for (parts, start) in [(RETRY_PARTS, Start::AsItIs), (1, Start::LaidAnew), (RETRY_PARTS, Start::LaidAnew)] {
+        for (parts, start) in
+            [(RETRY_PARTS, RetryStart::AsItIs), (1, RetryStart::LaidAnew), (RETRY_PARTS, RetryStart::LaidAnew)]
+        {
             if good(simulation, found_n) {
                 break;
             }
             let mut other = before.clone();
-            if start == Start::LaidAnew && other.resume(&at_rest(&before.solution())).is_err() {
+            if start == RetryStart::LaidAnew && other.resume(&at_rest(&before.solution())).is_err() {
                 continue;
             }
             if let Some(n) = self.step(&mut other, ends, parts)
@@ -440,7 +442,7 @@ impl Exploration<'_> {
 
 /// The state from which a step is tried again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Start {
+enum RetryStart {
     /// The state before it.
     AsItIs,
     /// The state before, with the cable brought to rest anew.

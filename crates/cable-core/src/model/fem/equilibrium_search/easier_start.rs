@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::larger;
 use crate::model::fem::system::WorkBudget;
-use crate::model::fem::{FemModel, Part};
+use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
 use crate::model::{Mechanics, Settings};
 use crate::problem::Problem;
@@ -78,7 +78,7 @@ impl FemModel {
         let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
         let settings = Settings { segments, ..self.settings };
         let Ok(easier) = Self::with_tuning(Arc::new(problem), settings, tuning.clone()) else { return };
-        let mut easier = Self { dragged: self.dragged.clone(), present: Part::Stepper, ..easier };
+        let mut easier = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..easier };
         if let Some(to) = self.robot_pose {
             easier.set_robot_pose(to);
         }

@@ -8,7 +8,7 @@ use crate::model::fem::equilibrium_search::easier_start::SpansStart;
 use crate::model::fem::equilibrium_search::mesh_error::Refinement;
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
-use crate::model::fem::{FemModel, Part};
+use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
 use crate::solution::{Cost, Warning, WarningCause};
 use crate::state::State;
@@ -34,17 +34,17 @@ impl FemModel {
     /// cable ends where its shape snaps over, as when clamps turn upwards a cable that sags against
     /// them: a relaxed chain of bars follows the snap, as in contact.
     pub(in crate::model::fem) fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
-        self.make_present(Part::Statics)?;
+        self.make_present(PresentPart::Statics)?;
         self.elastica_answer = None;
         let found = self.statics.settle(&self.dragged);
         let Err(why) = found else { return found };
-        if !(self.problem.bending_stiffness > 0.0) || self.make_present(Part::Stepper).is_err() {
+        if !(self.problem.bending_stiffness > 0.0) || self.make_present(PresentPart::Stepper).is_err() {
             return Err(why);
         }
         match self.elastica_from_flexible() {
             Some(report) => Ok(report),
             None => {
-                self.make_present(Part::Statics)?;
+                self.make_present(PresentPart::Statics)?;
                 Err(why)
             }
         }

@@ -2,7 +2,7 @@
 //! cable or from the mesh. If there is none, it warns of the bending that the mesh neglects.
 
 use crate::model::fem::elastica::{self, Elastica};
-use crate::model::fem::{FemModel, Part, results};
+use crate::model::fem::{FemModel, PresentPart, results};
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Mechanics, StepReport};
 use crate::solution::{CableSolution, Cost, Node, ShownEquilibrium, Warning, WarningCause};
@@ -99,7 +99,7 @@ impl FemModel {
         }
         let free = || {
             let mut statics = self.statics.clone();
-            if self.present == Part::Stepper || self.elastica_answer.is_some() {
+            if self.present == PresentPart::Stepper || self.elastica_answer.is_some() {
                 // Without an answer it has no buckled shapes either.
                 let _ = statics.settle(&self.dragged);
             }

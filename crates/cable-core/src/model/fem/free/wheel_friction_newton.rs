@@ -54,7 +54,7 @@ const STEP_TOLERANCE: f64 = 1e-13;
 type ForceEntries = Vec<(usize, usize, Vec2)>;
 
 /// The equations of all pulleys at a state.
-struct Equations {
+struct FrictionEquations {
     residual: DVector<f64>,
     /// Derivatives by the unknowns, with the forces frozen.
     own: DMatrix<f64>,
@@ -114,10 +114,10 @@ impl PulleyNetwork {
         self.solve_spans()
     }
 
-    fn equations(&mut self, pulleys: &[usize]) -> Equations {
+    fn equations(&mut self, pulleys: &[usize]) -> FrictionEquations {
         let on = self.cable_properties();
         let count: usize = self.pulley_states.iter().map(|r| r.unknowns().len()).sum();
-        let mut e = Equations {
+        let mut e = FrictionEquations {
             residual: DVector::zeros(count),
             own: DMatrix::zeros(count, count),
             by_force: Vec::with_capacity(4 * count),
@@ -208,7 +208,7 @@ impl PulleyNetwork {
     }
 
     /// The total derivative of the equations, and the derivatives of the forces by each unknown.
-    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<ForceEntries>) {
+    fn tangent(&self, pulleys: &[usize], e: &FrictionEquations) -> (DMatrix<f64>, Vec<ForceEntries>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {

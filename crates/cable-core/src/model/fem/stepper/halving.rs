@@ -17,7 +17,7 @@ use crate::model::{Inertia, Model};
 const DONE_FRACTION: f64 = 1e-9;
 
 /// The progress of a step; times are in s.
-struct Progress {
+struct HalvingProgress {
     /// The whole step.
     whole: f64,
     left: f64,
@@ -29,7 +29,7 @@ struct Progress {
     began: Option<f64>,
 }
 
-impl Progress {
+impl HalvingProgress {
     /// Shortens the first piece of a motion without history.
     fn begin_motion(&mut self, first_fraction: f64) {
         if self.depth == 0 && self.left > first_fraction * self.whole {
@@ -65,7 +65,7 @@ impl Stepper {
         gauge: &mut TensionGauge,
     ) -> Result<Converged, SolveError> {
         let is_dynamic = request.inertia == Inertia::Dynamic;
-        let mut progress = Progress { whole: h, left: h, size: h, depth: 0, began: None };
+        let mut progress = HalvingProgress { whole: h, left: h, size: h, depth: 0, began: None };
         let mut total = Converged::default();
         loop {
             if self.cable.motion.step_before == 0.0 && is_dynamic && self.cable.meets_nothing() {
@@ -147,7 +147,7 @@ impl Stepper {
     }
 
     /// Removes the cause of a failure if that is possible without halving; returns whether it was.
-    fn recover(&mut self, failure: Failure, progress: &mut Progress, inertia: Inertia) -> bool {
+    fn recover(&mut self, failure: Failure, progress: &mut HalvingProgress, inertia: Inertia) -> bool {
         if failure.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, failure.node) {
             renew_input(&mut self.cable);
             return true;
@@ -169,7 +169,7 @@ impl Stepper {
     /// Halves the next piece, with a stiffer barrier.
     ///
     /// # Errors The failure, if the piece was halved often enough.
-    fn halve(&mut self, failure: Failure, progress: &mut Progress, inertia: Inertia) -> Result<(), SolveError> {
+    fn halve(&mut self, failure: Failure, progress: &mut HalvingProgress, inertia: Inertia) -> Result<(), SolveError> {
         // The barrier may be too soft for this step.
         self.cable.adapt_stiffness([2.0, 1.0], self.cable.mesh.tuning.contact.retry_stiffening);
         progress.depth += 1;

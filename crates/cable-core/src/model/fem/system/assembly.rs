@@ -18,7 +18,7 @@ fn bends(mesh: &Mesh, node: usize) -> bool {
 }
 
 /// A bend of a mesh and its nodes.
-enum Bend {
+enum NodeBend {
     /// The bend beside a clamp.
     Clamped(ClampBend, [usize; 2]),
     /// The bend between two bars.
@@ -28,7 +28,7 @@ enum Bend {
 /// Passes each bend of a mesh to `visit`, with this stiffness (N m²) and measured from the bends at
 /// `from` (m) if given.
 #[inline]
-fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: impl FnMut(Bend)) {
+fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: impl FnMut(NodeBend)) {
     let rest = &mesh.rest_length;
     let mut clamps = mesh.clamps.iter().peekable();
     for node in 0..mesh.nodes() {
@@ -37,12 +37,12 @@ fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: im
             for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
                 let direction = clamp.direction;
                 let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
-                visit(Bend::Clamped(ClampBend { stiffness, length: 0.5 * rest, direction, from }, [e, e + 1]));
+                visit(NodeBend::Clamped(ClampBend { stiffness, length: 0.5 * rest, direction, from }, [e, e + 1]));
             }
         } else if node > 0 && node < rest.len() && bends(mesh, node) {
             let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
             let bend = BendingEnergy { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
-            visit(Bend::Free(bend, [node - 1, node, node + 1]));
+            visit(NodeBend::Free(bend, [node - 1, node, node + 1]));
         }
     }
 }
@@ -52,8 +52,8 @@ pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
     visit_bends(mesh, mesh.bending_stiffness, None, |bend| {
         value += match bend {
-            Bend::Clamped(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
-            Bend::Free(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
+            NodeBend::Clamped(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
+            NodeBend::Free(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
         };
     });
     value
@@ -68,8 +68,8 @@ pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, x: &[Vec2
     let mut slope = 0.0;
     visit_bends(mesh, stiffness, from, |bend| {
         slope += match bend {
-            Bend::Clamped(bend, nodes) => along(&bend, nodes, x, ways),
-            Bend::Free(bend, nodes) => along(&bend, nodes, x, ways),
+            NodeBend::Clamped(bend, nodes) => along(&bend, nodes, x, ways),
+            NodeBend::Free(bend, nodes) => along(&bend, nodes, x, ways),
         };
     });
     slope
@@ -178,8 +178,8 @@ impl System {
         let mut value = 0.0;
         visit_bends(mesh, stiffness, from, |bend| {
             value += match bend {
-                Bend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
-                Bend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
+                NodeBend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
+                NodeBend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
             };
         });
         value

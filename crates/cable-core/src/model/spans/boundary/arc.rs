@@ -99,7 +99,7 @@ impl ArcPath {
     /// Handles a path of at most `SHORT_ARC`.
     fn hair(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
-        let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
+        let start = ArcPoint::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
         let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
         let step = rates.on(&SlideResult::none(t), h);
         let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
@@ -110,13 +110,13 @@ impl ArcPath {
     fn stretch(&self, law: &CableLaw, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (SlideResult, Rates) {
         let (c, h, [[bt, bn], [bt1, bn1]]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
-        let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
+        let start = ArcPoint::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
         let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);
         // This is T⁰ at the end.
         let divided = c * f / (1.0 + m * m);
         let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let tension = alpha * bt1 + beta * bn1 + (t - alpha * bt - beta * bn) * grown;
-        let mut end = Point::new(law, c, k, bt1 + m * bn1, m * bt1 - bn1, tension, m);
+        let mut end = ArcPoint::new(law, c, k, bt1 + m * bn1, m * bt1 - bn1, tension, m);
         // These are G and its derivatives at both ends.
         let (more, q1, r1) = (end.f[0] - f, end.q, end.r);
         let first = grown * q * f1;
@@ -144,7 +144,7 @@ impl ArcPath {
 }
 
 /// A point of the path.
-struct Point {
+struct ArcPoint {
     tension: f64,
     q: f64,
     r: f64,
@@ -154,7 +154,7 @@ struct Point {
     slopes: [f64; 3],
 }
 
-impl Point {
+impl ArcPoint {
     fn new(law: &CableLaw, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
         let stretch = law.stretch(tension);
         let f = 1.0 / stretch;

@@ -20,7 +20,7 @@ const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
 /// A point of the cable, with the tensions before and after it.
 #[derive(Clone, Copy, Debug)]
-struct Station {
+struct AnswerStation {
     arc_length: f64,
     at: Vec2,
     tension: [f64; 2],
@@ -29,7 +29,7 @@ struct Station {
     wheel: Option<usize>,
 }
 
-impl Station {
+impl AnswerStation {
     fn jumps(&self) -> bool {
         self.tension[0] != self.tension[1]
     }
@@ -58,13 +58,13 @@ pub(in crate::model::spans) fn sections_of(
 
 /// The nodes of a stretch of material; two nodes at one place give the tensions before and after
 /// it.
-fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
-    let mut out: Vec<Station> = Vec::with_capacity(nodes.len());
+fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<AnswerStation> {
+    let mut out: Vec<AnswerStation> = Vec::with_capacity(nodes.len());
     let rounding = 1e-9 * (to - from);
     for n in nodes.iter().filter(|n| n.arc_length_m >= from - rounding && n.arc_length_m <= to + rounding) {
         match out.last_mut() {
             Some(last) if n.arc_length_m <= last.arc_length + rounding => last.tension[1] = n.tension_n,
-            _ => out.push(Station {
+            _ => out.push(AnswerStation {
                 arc_length: n.arc_length_m,
                 at: n.at(),
                 tension: [n.tension_n; 2],
@@ -77,7 +77,7 @@ fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
 }
 
 /// Marks the station that each pulley holds, with the boundary of its wheel.
-fn pulleys(part: &SectionBounds, context: &SolveContext, instant: &BoundaryConditions, stations: &mut [Station]) {
+fn pulleys(part: &SectionBounds, context: &SolveContext, instant: &BoundaryConditions, stations: &mut [AnswerStation]) {
     for q in &part.pulleys {
         let center = instant.places[q.support];
         let far = |k: &usize| (stations[*k].at - center).norm();
@@ -96,7 +96,7 @@ fn pulleys(part: &SectionBounds, context: &SolveContext, instant: &BoundaryCondi
 }
 
 /// Finds the boundary that each station lies on.
-fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations: &mut [Station]) {
+fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations: &mut [AnswerStation]) {
     let near = layout.settings.initial.adopted_contact_distance_m;
     let world = &layout.problem.world;
     let n = stations.len();
@@ -130,7 +130,7 @@ fn laid(
     part: &SectionBounds,
     context: &SolveContext,
     instant: &BoundaryConditions,
-    stations: &[Station],
+    stations: &[AnswerStation],
     within: f64,
 ) -> Option<CableSection> {
     let [from, to] = part.material;
@@ -154,7 +154,7 @@ fn laid(
         {
             (k, reached) = (k + 1, p);
         }
-        let run = Run { curve: &context.curves[index], index, chain_range, first, last: k, within };
+        let run = TouchingRun { curve: &context.curves[index], index, chain_range, first, last: k, within };
         if let Some(c) = run.contact(&mut section, context, stations) {
             section.contacts.push(c);
         }
@@ -190,7 +190,7 @@ fn keep_apart(section: &mut CableSection) -> Option<()> {
 }
 
 /// Successive stations that lie on one chain.
-struct Run<'a> {
+struct TouchingRun<'a> {
     curve: &'a Curve,
     index: usize,
     chain_range: ChainRange,
@@ -200,9 +200,14 @@ struct Run<'a> {
     within: f64,
 }
 
-impl Run<'_> {
+impl TouchingRun<'_> {
     /// Makes the contact; the end conditions of the section on it become lying ends.
-    fn contact(&self, section: &mut CableSection, context: &SolveContext, stations: &[Station]) -> Option<Contact> {
+    fn contact(
+        &self,
+        section: &mut CableSection,
+        context: &SolveContext,
+        stations: &[AnswerStation],
+    ) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
             chain_range: self.chain_range,
@@ -285,7 +290,7 @@ impl Run<'_> {
         &self,
         section: &mut CableSection,
         context: &SolveContext,
-        stations: &[Station],
+        stations: &[AnswerStation],
         side: usize,
     ) -> Option<(f64, f64, f64)> {
         let k = if side == 0 { self.first } else { self.last };

@@ -15,7 +15,7 @@ use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// A body that the cable bends round.
 #[derive(Clone, Debug)]
-struct Wrap {
+struct RouteWrap {
     curve: usize,
     chain_range: ChainRange,
     /// First and last piece.
@@ -452,11 +452,11 @@ fn wraps(
     context: &SolveContext,
     instant: &BoundaryConditions,
     string: &TautString<'_>,
-) -> Option<Vec<Wrap>> {
+) -> Option<Vec<RouteWrap>> {
     let TautString { way, first, last, ring } = *string;
     let world = &layout.problem.world;
     let corners = shortest_path::corners(world, ring);
-    let mut out: Vec<Wrap> = Vec::new();
+    let mut out: Vec<RouteWrap> = Vec::new();
     let mut reached = way.along[first];
     let mut begin = (way.points[first], first);
     for k in 0..=part.pulleys.len() {
@@ -489,7 +489,7 @@ fn wraps(
             let radius = context.curves[curve].place(0.0, chain_range).stretch;
             let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
-            out.push(Wrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn: 0.0 });
+            out.push(RouteWrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn: 0.0 });
             (begin, reached) = ((stop, leg), w);
         }
     }
@@ -497,7 +497,7 @@ fn wraps(
 }
 
 /// Adds a bend to the last wrap if it continues that, else as a new wrap.
-fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
+fn push(out: &mut Vec<RouteWrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = context.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
@@ -511,7 +511,7 @@ fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, tur
         last.turn += turn;
         return Some(());
     }
-    out.push(Wrap { curve: curve_index, chain_range, pieces: [i, i], wheel: None, way: [w, w], turn });
+    out.push(RouteWrap { curve: curve_index, chain_range, pieces: [i, i], wheel: None, way: [w, w], turn });
     Some(())
 }
 
@@ -520,7 +520,7 @@ fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, tur
 ///
 /// A string without thickness just passes such a corner, whereas a cable with a radius bends round
 /// it: along the edge the direction is constant, so Newton's method cannot move an end across it.
-fn stretched(context: &SolveContext, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+fn stretched(context: &SolveContext, wraps: &mut [RouteWrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
     let mut found = rounds(context, wraps, ends[0], ends[1]);
     // The loop terminates: every pass but the last extends a wrap within its chain.
     loop {
@@ -551,7 +551,7 @@ fn stretched(context: &SolveContext, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec
 type Round = (Vec2, f64, f64);
 
 /// The circles on which the string arrives at each wrap and leaves it; points at both ends.
-fn rounds(context: &SolveContext, wraps: &[Wrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
+fn rounds(context: &SolveContext, wraps: &[RouteWrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
     let mut out = vec![[(start, 0.0, 1.0); 2]];
     for s in wraps {
         let curve = &context.curves[s.curve];

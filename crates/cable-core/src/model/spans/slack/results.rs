@@ -13,7 +13,7 @@ const NODES: usize = 8;
 
 /// Forces of one obstacle on a continuous run of lying cable.
 #[derive(Default)]
-struct Run {
+struct LooseRun {
     /// Index of the boundary.
     curve: usize,
     samples: Vec<ContactSample>,
@@ -34,7 +34,7 @@ impl LooseSection {
         nodes: &mut Nodes<'_>,
         cable_radius: f64,
     ) -> Vec<(usize, ContactReport)> {
-        let mut runs: Vec<Run> = Vec::new();
+        let mut runs: Vec<LooseRun> = Vec::new();
         let mut goes_on = false;
         for part in &self.parts {
             match &part.form {
@@ -45,7 +45,7 @@ impl LooseSection {
                 }
                 SlackForm::Lies(s) => {
                     if !goes_on || runs.last().is_none_or(|r| r.curve / 2 != s.curve / 2) {
-                        runs.push(Run::new(s.curve, part));
+                        runs.push(LooseRun::new(s.curve, part));
                     }
                     if let Some(run) = runs.last_mut() {
                         run.lie(context, part, s, nodes, cable_radius);
@@ -55,7 +55,7 @@ impl LooseSection {
                     for s in part.arc_lengths {
                         nodes.push(Point { arc_length: s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
                     }
-                    runs.extend(Run::of_heap(part, heap));
+                    runs.extend(LooseRun::of_heap(part, heap));
                 }
             }
             goes_on = matches!(part.form, SlackForm::Lies(_));
@@ -120,7 +120,7 @@ impl SlackForm {
     }
 }
 
-impl Run {
+impl LooseRun {
     fn new(curve: usize, part: &SlackPart) -> Self {
         Self { curve, ends: part.arc_lengths, tension: part.tension, ..Self::default() }
     }

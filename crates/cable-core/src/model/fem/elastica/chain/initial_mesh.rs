@@ -1,7 +1,7 @@
 //! This module lays a chain along a curve, with a node at each support and load.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
+use crate::model::fem::elastica::chain::{Chain, ChainClamp, ChainInput, ClampedSide};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
@@ -29,7 +29,7 @@ const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
 /// A point of the cable where a support or a load acts.
-struct Station {
+struct MeshStation {
     /// Arc length, m.
     arc: f64,
     /// The place where a support holds it, m.
@@ -41,7 +41,7 @@ struct Station {
 }
 
 /// All stations in order along the cable; None if one is a pulley.
-fn stations(chain_input: ChainInput<'_>) -> Option<Vec<Station>> {
+fn stations(chain_input: ChainInput<'_>) -> Option<Vec<MeshStation>> {
     let ChainInput { problem, time_s, dragged, .. } = chain_input;
     let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
     let last = problem.supports.len().checked_sub(1)?;
@@ -59,7 +59,7 @@ fn stations(chain_input: ChainInput<'_>) -> Option<Vec<Station>> {
         } else {
             s.arc_length?
         };
-        stations.push(Station {
+        stations.push(MeshStation {
             arc,
             position: at.filter(|_| !loaded),
             angle: s.angle.filter(|_| s.kind == SupportKind::Clamped && !loaded),
@@ -67,7 +67,7 @@ fn stations(chain_input: ChainInput<'_>) -> Option<Vec<Station>> {
         });
     }
     for l in &problem.loads {
-        stations.push(Station { arc: l.arc_length, position: None, angle: None, force: l.force.at(time_s) });
+        stations.push(MeshStation { arc: l.arc_length, position: None, angle: None, force: l.force.at(time_s) });
     }
     stations.sort_by(|a, b| a.arc.total_cmp(&b.arc));
     Some(stations)
@@ -121,7 +121,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Divides the cable between stations into even bars.
-    fn place_nodes(&mut self, stations: &[Station], curve: &ReferenceCurve<'_>) {
+    fn place_nodes(&mut self, stations: &[MeshStation], curve: &ReferenceCurve<'_>) {
         for pair in stations.windows(2) {
             let (from, to) = (pair[0].arc, pair[1].arc);
             if to - from > SAME_PLACE_FRACTION * self.chain_input.problem.length {
@@ -135,7 +135,7 @@ impl<'a> Chain<'a> {
         self.load = vec![Vec2::zeros(); n];
     }
 
-    fn apply_stations(&mut self, stations: Vec<Station>) {
+    fn apply_stations(&mut self, stations: Vec<MeshStation>) {
         let n = self.arc.len();
         for station in stations {
             let same = SAME_PLACE_FRACTION * self.chain_input.problem.length;
@@ -147,10 +147,10 @@ impl<'a> Chain<'a> {
             if let Some(angle) = station.angle {
                 let direction = Vec2::new(angle.cos(), angle.sin());
                 if k > 0 {
-                    self.clamps.push(Clamp { node: k, side: ClampedSide::Before, direction });
+                    self.clamps.push(ChainClamp { node: k, side: ClampedSide::Before, direction });
                 }
                 if k + 1 < n {
-                    self.clamps.push(Clamp { node: k, side: ClampedSide::After, direction });
+                    self.clamps.push(ChainClamp { node: k, side: ClampedSide::After, direction });
                 }
             }
             self.load[k] += station.force;

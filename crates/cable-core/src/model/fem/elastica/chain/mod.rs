@@ -66,7 +66,7 @@ pub(super) struct ChainInput<'a> {
 
 /// A node whose bar, before or after it, has a prescribed direction.
 #[derive(Clone, Copy, Debug)]
-struct Clamp {
+struct ChainClamp {
     node: usize,
     side: ClampedSide,
     direction: Vec2,
@@ -79,7 +79,7 @@ enum ClampedSide {
     After,
 }
 
-impl Clamp {
+impl ChainClamp {
     /// Index of the bar.
     fn bar(&self) -> usize {
         match self.side {
@@ -107,7 +107,7 @@ pub(super) struct Chain<'a> {
     tension: Vec<f64>,
     /// True for nodes that a support holds.
     held: Vec<bool>,
-    clamps: Vec<Clamp>,
+    clamps: Vec<ChainClamp>,
     /// Weight, wind and dead loads at each node, N.
     load: Vec<Vec2>,
     contacts: Vec<ChainContact>,
