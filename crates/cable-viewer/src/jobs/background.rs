@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Its progress.
+/// The progress of a job.
 #[derive(Clone, Debug, Default)]
 pub enum Progress<T> {
     /// Nothing was asked.
@@ -19,10 +19,11 @@ pub enum Progress<T> {
     Failed(String),
 }
 
-/// Hears the share done, 0 to 1, and what is known so far, and says whether to go on.
+/// A function that is told the share done, 0 to 1, and the results so far, and returns whether the
+/// job goes on.
 pub type Listener<'a, T> = &'a mut dyn FnMut(f64, Option<T>) -> ControlFlow<()>;
 
-/// It, while it is computed. Dropped, it ends at its next word.
+/// A running job. If it is dropped, the job ends at its next report of progress.
 #[derive(Debug)]
 pub struct Job<T> {
     shared: Arc<SharedProgress<T>>,
@@ -83,7 +84,7 @@ impl<T: Clone + Send + 'static> Job<T> {
 }
 
 impl<T> Drop for Job<T> {
-    /// Not joined: it ends at its next word.
+    /// The thread is not joined: it ends at its next report of progress.
     fn drop(&mut self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
     }

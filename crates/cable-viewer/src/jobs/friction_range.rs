@@ -14,11 +14,11 @@ pub type Outcome = (Arc<FrictionRange>, Arc<FrictionQuery>);
 /// Its progress.
 pub type Progress = background::Progress<Outcome>;
 
-/// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon;
-/// shorter: a drive is cut off.
+/// Longest run for which the ribbon is computed, s: that takes three runs. Longer: a ribbon takes
+/// both cores a minute; shorter: a drive is cut off.
 pub const MAX_RUN_S: f64 = 120.0;
 
-/// Friction that is asked about.
+/// The range of friction that the user asks about, and its result.
 #[derive(Clone, Debug)]
 pub struct FrictionRangeState {
     /// The ribbon is wanted.
@@ -30,7 +30,7 @@ pub struct FrictionRangeState {
 }
 
 impl Default for FrictionRangeState {
-    /// A third less and a third more: handbooks differ by that for rubber on concrete.
+    /// The default is a third less and a third more, as handbooks differ for rubber on concrete.
     fn default() -> Self {
         Self { on: false, factors: [0.67, 1.33], progress: Progress::None }
     }

@@ -1,4 +1,4 @@
-//! This wing computes what takes long beside the window, each job on a thread of its own.
+//! The jobs are long computations beside the window, each on a thread of its own.
 //!
 //! - `background`: a job, its progress, and how it is ended
 //! - `safe_reach`: the map of where the robot or an end can be taken

@@ -1,4 +1,4 @@
-//! A job says what neglecting the bending stiffness of cables changes, when it is asked for.
+//! A job computes on request how neglected bending stiffness changes an answer.
 
 use std::sync::Arc;
 
@@ -7,12 +7,12 @@ use cable_core::{Scene, Settings, Solution};
 
 use crate::jobs::background;
 
-/// One a cable that is likely to be stiff and was answered without it.
+/// One result for each cable that is likely to be stiff and was answered without bending stiffness.
 pub type Outcome = Arc<Vec<NeglectedBending>>;
 /// Its progress.
 pub type Progress = background::Progress<Outcome>;
 
-/// The question: of which answer.
+/// The answer that the question is about.
 #[derive(Clone, Debug)]
 pub struct Query {
     /// The scene of the answer.
@@ -32,7 +32,7 @@ pub struct NeglectedBendingState {
     pub progress: Progress,
 }
 
-/// It, while it is computed.
+/// A running job.
 #[derive(Debug)]
 pub struct Job {
     job: background::Job<Outcome>,
@@ -40,7 +40,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Starts it; `shown` is called when there is something new to show.
+    /// Starts the job; `shown` is called when there is something new to show.
     #[must_use]
     pub fn start(query: Query, shown: impl Fn() + Send + 'static) -> Self {
         let answer = Arc::clone(&query.answer);
@@ -50,7 +50,7 @@ impl Job {
         Self { job: background::Job::start("bending stiffness", work, shown), answer }
     }
 
-    /// Returns whether it is this question that it answers.
+    /// Returns true if the job answers this question.
     #[must_use]
     pub fn is_of(&self, query: &Query) -> bool {
         Arc::ptr_eq(&self.answer, &query.answer)

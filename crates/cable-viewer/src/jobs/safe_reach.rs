@@ -13,15 +13,15 @@ use cable_core::{Scene, Settings, Solution};
 use crate::jobs::background;
 use crate::units::sentence::sentence;
 
-/// Places of a robot that are looked at. More: finer and, with the way back from each, slower by
-/// the square; fewer: mounds fall between them.
+/// Number of places of a robot that are tried. More: the map is finer but, with the way back from
+/// each, slower by the square; fewer: mounds fall between them.
 pub const ROBOT_PLACES: usize = 41;
 
 /// Fewest and most places of an end side by side.
 pub const PLACES_ACROSS_RANGE: [usize; 2] = [8, 96];
 
-/// The ways back are followed from every so manieth place, both ways: as much work as the places
-/// themselves, not thirty times.
+/// The ways back are followed from one place in so many in both directions: that takes as much work
+/// as the places themselves, not thirty times as much.
 const RETURN_COARSENING: f64 = 2.0;
 
 /// Least progress, as a share, before the map is drawn again: if it were less, drawing would take
@@ -67,7 +67,7 @@ pub struct SafeReachState {
     pub choice: SafeReachOptions,
     /// Its progress.
     pub progress: Progress,
-    /// The time when the search began.
+    /// The time at which the search began.
     pub began: Option<Instant>,
     /// The share of a search that was stopped, 0 to 1: the map is what was found until then.
     pub stopped: Option<f64>,
@@ -77,8 +77,8 @@ pub struct SafeReachState {
 /// first places, which are solved without a neighbour, are not representative.
 const FIRST_ESTIMATE: f64 = 0.04;
 
-/// Returns how much longer a search takes that took some time for a share, s; None where that says
-/// too little.
+/// Returns the time that the rest of a search will take, s, from the time that a share of it took;
+/// None if the share is too small to tell.
 #[must_use]
 pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
     (FIRST_ESTIMATE..=1.0).contains(&share).then(|| elapsed_s * (1.0 - share) / share)
@@ -89,13 +89,13 @@ pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
 pub struct ReachQuery {
     /// The scene.
     pub scene: Scene,
-    /// The state where time has run: how its cables lie now.
+    /// The present state of the cables, if time has run.
     pub now: Option<Arc<Solution>>,
     /// Mesh and accuracy.
     pub settings: Settings,
     /// The thing that is taken somewhere.
     pub moved: ReachSubject,
-    /// Lower left and upper right corner of what is looked at, m.
+    /// Lower left and upper right corner of the region that is searched, m.
     pub corners_m: [Point; 2],
     /// Places of an end side by side.
     pub across: usize,
@@ -104,9 +104,9 @@ pub struct ReachQuery {
 /// The findings.
 #[derive(Clone, Debug)]
 pub enum ReachMaps {
-    /// Of a robot.
+    /// The map of a robot.
     Line(Arc<ReachMap>),
-    /// Of an end: the places, and the way there and back, once it is begun.
+    /// The map of an end: its places, and those of the way there and back, once that is begun.
     Area(Arc<Area>, Option<Arc<Area>>),
 }
 
@@ -129,7 +129,7 @@ pub type Progress = background::Progress<Outcome>;
 pub type Job = background::Job<Outcome>;
 
 impl SafeReachState {
-    /// Ends the search and keeps what it found, or forgets a map that is there.
+    /// Ends the search and keeps its map; without a search, drops the map.
     pub fn stop_or_clear(&mut self) {
         let before = std::mem::take(&mut self.progress);
         (self.began, self.stopped) = (None, None);
@@ -215,7 +215,7 @@ fn known_share(map: &ReachMap) -> f64 {
     0.5 * (map.places.len() + back) as f64 / ROBOT_PLACES as f64
 }
 
-/// All that can be taken somewhere.
+/// All things whose reach can be searched.
 #[must_use]
 pub fn movable(scene: &Scene) -> Vec<ReachSubject> {
     let hangs = |kind| scene.cables.iter().flat_map(|c| &c.supports).any(|s| s.kind == kind);
@@ -227,7 +227,7 @@ pub fn movable(scene: &Scene) -> Vec<ReachSubject> {
     robot.into_iter().chain(supports).collect()
 }
 
-/// In words.
+/// The thing in words.
 #[must_use]
 pub fn name(scene: &Scene, moved: ReachSubject) -> String {
     match moved {

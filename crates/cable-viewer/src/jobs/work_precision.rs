@@ -14,7 +14,7 @@ use crate::units::sentence::sentence;
 /// Time within which short solves are repeated, s; the shortest one counts. With less time the
 /// first solve, which runs with cold caches, would count; more time would try the user's patience.
 const REPEATED_WITHIN_S: f64 = 0.05;
-/// Most times that a solve is repeated.
+/// Greatest number of repetitions of a solve.
 const MAX_REPEATS: usize = 5;
 
 /// The result of a setting.

@@ -1,4 +1,5 @@
-//! Analyses are what is asked beyond the answer itself, and answers kept to compare with.
+//! This part of the state holds the questions beyond the answer itself, and the answers that are
+//! pinned for comparison.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,8 +31,8 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Returns what differs in a scene that is to be pinned from that of the first pin, or else
-    /// from the one as it was opened or saved.
+    /// Returns the differences of a scene that is to be pinned from that of the first pin, or, if
+    /// there is none, from the scene as it was opened or saved.
     #[must_use]
     pub fn changes_to(&self, scene: &Scene, saved: &Scene) -> Vec<Change> {
         self.references.first().map_or(saved, |first| &first.scene).changes_to(scene)
@@ -69,10 +70,10 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Most that are held: more lines cannot be told apart.
+    /// Greatest number of pins: more lines cannot be told apart.
     pub const MAX_COUNT: usize = 8;
 
-    /// Returns what to draw beside a picture of a time, s: the same time of its run.
+    /// Returns the answer to draw beside that of a time, s: the one of its run at the same time.
     #[must_use]
     pub fn picture(&self, time_s: f64) -> &Solution {
         self.run.as_ref().and_then(|r| r.at(time_s)).unwrap_or(&self.solution)

@@ -1,4 +1,5 @@
-//! [`AppState`] consists of parts; each owns its fields and the functions that need nothing else.
+//! The state of the window, [`AppState`], consists of parts; each owns its fields and the functions
+//! that need no other part.
 
 use std::path::PathBuf;
 
@@ -17,13 +18,13 @@ use crate::state::view::Appearance;
 pub struct AppState {
     /// The scene being edited.
     pub document: Document,
-    /// The things that are picked, hovered, dragged and copied.
+    /// The items that are selected, hovered, dragged and copied.
     pub selection: Selection,
     /// The view of the scene.
     pub view: Appearance,
     /// The settings that the worker is asked for.
     pub solver: Solver,
-    /// Its answer, and how time runs.
+    /// The answer of the worker, and the run of time.
     pub live: Live,
     /// The questions beyond the answer itself.
     pub analysis: Analysis,

@@ -20,7 +20,7 @@ pub struct Camera {
     /// True if the robot or support that leads a cable has been in view since the view was moved by
     /// hand.
     pub leader_seen: bool,
-    /// Scale that the scene was fitted at, points per metre, once the view has widened since.
+    /// Scale at which the scene was fitted, points per metre, if the view has widened since.
     pub widened_from: Option<f64>,
 }
 
@@ -42,12 +42,12 @@ impl Default for Camera {
 /// pixels.
 const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
-/// Free border of a fitted scene, points: left (axis numbers), right, top, bottom. Smaller and
-/// labels cover the ends of the cable; larger wastes the window.
+/// Free border of a fitted scene, points: left (axis numbers), right, top, bottom. Smaller: labels
+/// cover the ends of the cable; larger: the window is wasted.
 pub const BORDER: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
 
-/// Most that a view widens when something leaves it, over the view of the scene. More: what falls
-/// for ever becomes a dot; less: a robot that drives far has its cable out of view.
+/// Greatest factor by which a view of the scene widens when something leaves it. Larger: a cable
+/// that falls for ever becomes a dot; smaller: a robot that drives far has its cable out of view.
 const MAX_WIDENING: f64 = 4.0;
 
 impl Camera {
@@ -116,7 +116,7 @@ impl Camera {
         self.centre_m = p;
     }
 
-    /// The view is moved by hand: it is not fitted any more, and not again once an answer comes,
+    /// Notes that the user moved the view: it is not fitted again, not even when an answer comes,
     /// and follows nothing.
     fn leave_fit(&mut self) {
         (self.fit_wanted, self.fitted_to, self.follows) = (false, None, false);
@@ -140,7 +140,7 @@ impl Camera {
         }
         let [from, to] = self.visible_m(canvas);
         let [least, most] = [free.left_bottom(), free.right_top()].map(|p| self.to_world(canvas, p));
-        // Rounding on the way to the screen and back is no way out of the view.
+        // The tolerance is for rounding on the way to the screen and back.
         let tolerance_m = 1e-6 * (to[0] - from[0]);
         if (0..2).all(|k| low[k] >= least[k] - tolerance_m && high[k] <= most[k] + tolerance_m) {
             return true;
@@ -165,7 +165,7 @@ impl Camera {
         if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
             return;
         }
-        // In a small canvas the border gives way, the scene does not.
+        // In a small canvas the border shrinks before the scene does.
         let share = |k: usize, points: f32| border[k] * (0.5 * points / (border[k & 2] + border[(k & 2) + 1])).min(1.0);
         let (width, height) = (canvas.width(), canvas.height());
         let [left, right, top, bottom] = [share(0, width), share(1, width), share(2, height), share(3, height)];
@@ -173,7 +173,7 @@ impl Camera {
             |k: usize, points: f32, border: f32| f64::from((points - border).max(40.0)) / (high[k] - low[k]).max(1e-3);
         let scale = room(0, canvas.width(), left + right).min(room(1, canvas.height(), top + bottom));
         self.points_per_m = scale.clamp(*SCALE.start(), *SCALE.end());
-        // The middle of the free part is off the middle of the canvas.
+        // The middle of the part within the borders is not that of the canvas.
         self.centre_m = [
             0.5 * (low[0] + high[0]) + f64::from(right - left) / 2.0 / self.points_per_m,
             0.5 * (low[1] + high[1]) + f64::from(top - bottom) / 2.0 / self.points_per_m,

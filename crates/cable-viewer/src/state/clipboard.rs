@@ -9,9 +9,10 @@ use cable_core::{Cable, Load, Obstacle};
 pub struct Clipboard {
     /// The things.
     pub things: Vec<Thing>,
-    /// The middle of it all, m.
+    /// The middle of the copied items, m.
     pub middle_m: Point,
-    /// As it was given to the system: pasted text that differs comes from another program.
+    /// The text as it was given to the system: if pasted text differs, it comes from another
+    /// program.
     pub text: String,
 }
 

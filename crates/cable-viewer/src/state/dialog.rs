@@ -1,4 +1,4 @@
-//! The one dialog that may be open, as data; `app/dialogs.rs` draws it.
+//! The dialog that is open is data here; `app/dialogs.rs` draws it.
 
 use std::path::PathBuf;
 
@@ -36,7 +36,7 @@ pub enum Dialog {
     Message {
         /// One line.
         title: String,
-        /// It says what, where, why and what to do.
+        /// The text says what is wrong, where, why and what to do.
         text: String,
     },
     /// The path from which a scene is read.
@@ -70,7 +70,7 @@ pub enum Dialog {
     OpenRun {
         /// The folder as typed so far.
         path: String,
-        /// It is to be held beside the present scene, not opened in its place.
+        /// True if the run is pinned beside the present scene, not opened in its place.
         hold: bool,
     },
     /// Terrain and beams to read, from a file or pasted.
@@ -89,7 +89,7 @@ pub enum Dialog {
     },
     /// The user's opinion.
     Feedback {
-        /// So far.
+        /// The answers so far.
         answers: Answers,
         /// The place to keep it at, as typed so far.
         path: String,

@@ -15,9 +15,10 @@ pub struct Document {
     pub fault: Option<SceneError>,
     /// Its file, if it has one.
     pub path: Option<PathBuf>,
-    /// As it was when last saved or loaded.
+    /// The scene as it was last saved or loaded.
     pub saved: Scene,
-    /// It comes from what a window that died had kept: it is in no file of the user's.
+    /// True if the scene comes from the recovery file of a window that died: no file of the user's
+    /// holds it.
     pub recovered: bool,
     /// Scenes before and after the present one.
     pub undo: Undo,
@@ -31,13 +32,13 @@ impl Document {
         Self { scene, fault, path, saved, recovered: false, undo: Undo::default() }
     }
 
-    /// The scene differs from its file.
+    /// Returns true if the scene differs from its file.
     #[must_use]
     pub fn unsaved(&self) -> bool {
         self.recovered || self.scene != self.saved
     }
 
-    /// Looks again at what is wrong with the scene.
+    /// Checks the scene again and stores its fault.
     pub fn validate(&mut self) {
         self.fault = self.scene.validate().err();
     }

@@ -1,7 +1,7 @@
 //! The first steps are what a newcomer is asked to do on the canvas; each hint goes once it is
 //! done.
 
-/// One of them.
+/// A first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstStep {
     /// Drags a support.
@@ -12,7 +12,7 @@ pub enum FirstStep {
     Zoom,
 }
 
-/// Those that are still to be done.
+/// The steps that are still to be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FirstSteps(Vec<FirstStep>);
 
@@ -23,18 +23,18 @@ impl Default for FirstSteps {
 }
 
 impl FirstSteps {
-    /// Those to be done, in the order they are shown.
+    /// The steps to be done, in the order in which they are shown.
     #[must_use]
     pub fn open(&self) -> &[FirstStep] {
         &self.0
     }
 
-    /// One was done.
+    /// Removes a step that was done.
     pub fn done(&mut self, step: FirstStep) {
         self.0.retain(|s| *s != step);
     }
 
-    /// The hints are not shown again.
+    /// Removes all steps: their hints are not shown again.
     pub fn hide(&mut self) {
         self.0.clear();
     }

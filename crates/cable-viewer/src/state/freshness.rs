@@ -1,5 +1,5 @@
-//! The freshness tells whether what is on screen answers the scene as it is: figures, warnings and
-//! verdicts are only shown as such where it does.
+//! The freshness tells if the answer on screen is that of the present scene: only then are figures,
+//! warnings and verdicts shown as valid.
 
 use crate::state::app_state::AppState;
 
@@ -8,21 +8,21 @@ use crate::state::app_state::AppState;
 /// new ones.
 const GRACE_S: f64 = 0.12;
 
-/// The relation of what is on screen to the scene as it is.
+/// The relation of the answer on screen to the present scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Freshness {
-    /// It does.
+    /// The answer is that of the present scene.
     Current,
-    /// The answer is being sought; what is on screen is of the scene before the last edits.
+    /// The answer is being sought; the one on screen is of the scene before the last edits.
     Solving,
-    /// Few segments, not at rest yet: a draft while the scene is being moved.
+    /// The answer is a draft with few segments, not at rest yet, while the scene is being moved.
     Draft,
-    /// The scene has no answer; what is on screen is of the last one that has.
+    /// The scene has no answer; the one on screen is of the last scene that had one.
     Outdated,
 }
 
 impl AppState {
-    /// Returns whether what is on screen answers the scene as it is.
+    /// Returns true if the answer on screen is that of the present scene.
     #[must_use]
     pub fn freshness(&self) -> Freshness {
         let Self { live, solver, .. } = self;

@@ -34,7 +34,7 @@ use crate::worker::slots::{Shared, keep};
 use crate::worker::solver_thread::{UpdateCallback, catch_panic, start};
 use crate::worker::superseded_solve::{AbandonTimeout, take_superseded};
 
-/// The window's end.
+/// The end of the worker that the window holds.
 pub struct Worker {
     kind: Backend,
 }
@@ -68,7 +68,7 @@ impl Worker {
         Self { kind: Backend::Inline { engine: Box::default(), report: None } }
     }
 
-    /// Asks; never waits for the answer.
+    /// Submits a request; it never waits for the answer.
     pub fn submit(&mut self, request: Request) {
         match &mut self.kind {
             Backend::Thread { shared, .. } => {

@@ -8,7 +8,7 @@ use cable_core::{Model, Scene, Settings, Solution};
 
 use crate::state::Playback;
 
-/// Everything asked since the worker last looked.
+/// All that the window has asked since the worker last looked.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// The scene to solve from now on.
@@ -19,7 +19,7 @@ pub struct Request {
     pub robot: Option<Option<f64>>,
     /// An earlier instant to go on from.
     pub resume: Option<Box<Resume>>,
-    /// Back to the start.
+    /// Goes back to the start.
     pub reset: bool,
     /// Takes the last reset back: the run that it ended goes on, with this scene and model.
     pub undo_reset: Option<Box<Edit>>,
@@ -29,7 +29,7 @@ pub struct Request {
     pub playback: Option<Playback>,
     /// Single steps to take.
     pub steps: u32,
-    /// Came while an earlier edit was being solved: edits come faster than answers.
+    /// True if it came while an earlier edit was being solved: edits come faster than answers.
     pub came_during_solve: bool,
     /// Number of the last edit, reset or step in it.
     pub number: u64,
@@ -56,16 +56,16 @@ pub enum EditStart {
     /// They lie as the scene says, wherever they are now: an undo leads back to the answer that
     /// was, even where a cable passes an obstacle on the way.
     Route,
-    /// It is another scene, not a change of the present one: nothing is carried over.
+    /// The scene is another one, not a change of the present one: nothing is carried over.
     NewScene,
 }
 
 /// An earlier instant to go on from.
 #[derive(Clone, Debug)]
 pub struct Resume {
-    /// The scene as it was then.
+    /// The scene at that instant.
     pub edit: Edit,
-    /// The answer of then.
+    /// The answer at that instant.
     pub answer: Arc<Solution>,
 }
 
@@ -78,7 +78,7 @@ pub struct Drag {
     pub support: usize,
     /// The target, m.
     pub to_m: Point,
-    /// A hand holds it by a spring; else it goes there whatever that takes.
+    /// True if a hand holds the support by a spring; else it goes to the target by any force.
     pub by_spring: bool,
     /// The scene with the support there, for the next rebuild.
     pub scene: Scene,
@@ -129,20 +129,21 @@ impl Request {
         self.number = self.number.max(later.number);
     }
 
-    /// It asks for an answer that takes the place of the one being sought.
+    /// Returns true if it asks for an answer in place of the one being sought.
     #[must_use]
     pub fn solves(&self) -> bool {
         self.edit.is_some() || self.resume.is_some() || self.undo_reset.is_some() || self.reset
     }
 
-    /// It leads back to what was, or to another scene: no answer of the way there is waited for.
+    /// Returns true if it leads back to an earlier state or to another scene, so that the running
+    /// solve is given up at once.
     #[must_use]
     pub fn goes_back(&self) -> bool {
         let goes_elsewhere = self.edit.as_ref().is_some_and(|e| e.start != EditStart::PresentState);
         goes_elsewhere || self.resume.is_some() || self.undo_reset.is_some() || self.reset
     }
 
-    /// Nothing is asked.
+    /// Returns true if nothing is asked.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.edit.is_none()

@@ -1,4 +1,5 @@
-//! Window and thread share one slot for a request, one for the answer, and the solve that runs.
+//! The window and the thread share one slot for a request, one for the answer, and the solve that
+//! runs.
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -26,7 +27,7 @@ pub struct Slots {
     pub stop: bool,
     /// The running solve, where it may be given up.
     pub solve: Option<Solve>,
-    /// Number of the thread that is listened to; the others have been given up.
+    /// Number of the thread whose reports are accepted; the others have been abandoned.
     pub thread: u64,
     /// Reports so far: a solve that ends starts the time to its abandonment anew.
     pub reports: u64,
@@ -39,7 +40,7 @@ pub struct Solve {
     pub engine: Box<Engine>,
     /// The request that is solved; None: the answer to a draft, or other histories of an answer.
     pub request: Option<Request>,
-    /// It seeks other histories of an answer that is on screen.
+    /// True if it seeks other histories of the answer on screen.
     pub seeks_histories: bool,
 }
 

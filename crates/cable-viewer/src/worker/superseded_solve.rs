@@ -1,6 +1,6 @@
-//! A solve cannot be stopped from outside. Where a later edit, an undo or the user does not want to
-//! wait for it, its thread is abandoned: another one goes on from where the engine was before that
-//! solve, and what the first one finds is dropped.
+//! A solve cannot be stopped from outside. If a later edit, an undo or the user makes it worthless,
+//! its thread is abandoned: another thread goes on from the engine before that solve, and the
+//! result of the first one is dropped.
 
 use std::time::Duration;
 

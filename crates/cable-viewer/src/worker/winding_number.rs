@@ -8,7 +8,8 @@ use cable_core::Simulation;
 use cable_core::math::{Point, Vec2};
 use cable_core::scene::{Obstacle, Shape};
 
-/// The cables (by number) that would have to pass an obstacle to get from one shape to another.
+/// Returns the cables (by number) that would have to pass an obstacle to get from one shape to
+/// another.
 #[must_use]
 pub fn tunnelled_cables(old: &Simulation, new: &Simulation) -> Vec<usize> {
     let stays = |o: &&Obstacle| new.scene().obstacles.iter().any(|n| n.shape == o.shape);

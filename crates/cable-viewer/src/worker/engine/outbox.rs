@@ -1,4 +1,5 @@
-//! The outbox holds what waits for the window: a snapshot, answers for the history, and ways.
+//! The outbox holds the reports that wait for the window: a snapshot, answers for the history, and
+//! routes.
 
 use std::sync::Arc;
 
@@ -18,14 +19,15 @@ pub struct Report {
     pub history_restarts: bool,
     /// New answers; at most [`crate::worker::timing::MAX_ANSWERS`].
     pub answers: Vec<Solution>,
-    /// Ways of cables (by number) that the scene of this answer is to keep.
+    /// Routes of cables (by number) that the scene of this answer is to keep.
     pub routes: Vec<(usize, Vec<Point>)>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
 }
 
-/// Leaves out every second answer until no more than [`MAX_ANSWERS`] wait. The next one tells the
-/// greatest tensions of one that is left out; warnings stay for a second, so no kind of them goes.
+/// Leaves out every second answer until no more than [`MAX_ANSWERS`] wait. The next answer takes
+/// over the greatest tensions of one that is left out; warnings stay for a second, so no kind of
+/// them is lost.
 pub fn thin(answers: &mut Vec<Solution>) {
     while answers.len() > MAX_ANSWERS {
         let last = answers.len() - 1;
@@ -60,12 +62,12 @@ fn tell_peaks_of(before: &Solution, answer: &mut Solution) {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
     pub snapshot: Snapshot,
-    /// The last answer that was no draft: what is shown of a scene that has none.
+    /// The last answer that was no draft: it is shown if a scene has no answer.
     pub last_answer: Option<LastAnswer>,
     pub answers: Vec<Solution>,
     /// The history starts again before the first of `answers`.
     pub history_restarts: bool,
-    /// Ways of cables that the scene is to keep, by the number of the cable: the last edit would
+    /// Routes of cables that the scene is to keep, by the number of the cable: the last edit would
     /// have moved them through an obstacle.
     pub routes: Vec<(usize, Vec<Point>)>,
 }
@@ -79,7 +81,7 @@ pub(super) struct LastAnswer {
 }
 
 impl Outbox {
-    /// Another scene: nothing of the one before is shown.
+    /// Begins another scene: nothing of the one before is shown.
     pub fn restart(&mut self) {
         self.snapshot.solution = None;
         self.last_answer = None;
@@ -102,7 +104,7 @@ impl Outbox {
         self.keep_answer();
     }
 
-    /// Hands out what waits.
+    /// Returns the report that waits.
     pub fn report(&mut self) -> Report {
         Report {
             snapshot: self.snapshot.clone(),

@@ -17,8 +17,8 @@ impl Engine {
         self.run = Some(copy);
     }
 
-    /// Goes on from where the last reset was asked for, as if it had not been; nothing is solved
-    /// unless the scene, the model or the mesh is another than then, which is an edit of then.
+    /// Takes the last reset back and goes on from the end of that run. Nothing is solved unless
+    /// scene, model or mesh have changed since, which counts as an edit of that run.
     pub(super) fn undo_reset(&mut self, edit: Edit) -> Option<Result<(), Error>> {
         let EndedRun { run, edit: before, phase, snapshot } = *self.ended_run.take()?;
         // The run since then takes its place.

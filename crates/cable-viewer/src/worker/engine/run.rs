@@ -1,11 +1,11 @@
-//! A run is a simulation in time: where it began, its whole steps, and what is known of it.
+//! A run is a simulation in time with its start, its whole steps and its greatest tensions.
 
 use cable_core::model::{Inertia, Question};
 use cable_core::solution::Solution;
 use cable_core::timeline::{RunMonitor, RunPeaks, TimeDebt, answer_between_steps, make_steps, usual_step};
 use cable_core::{Error, Model, Settings, Simulation};
 
-/// The question to `auto` once time runs.
+/// The setting with which `auto` chooses a model once time runs.
 pub(super) const MOTION: Question = Question::History(Inertia::Dynamic);
 
 /// A simulation in time.
@@ -13,8 +13,8 @@ pub(super) const MOTION: Question = Question::History(Inertia::Dynamic);
 pub(super) struct Run {
     simulation: Simulation,
     start: RunStart,
-    /// The figures of the run so far; None where it does not go on from a start that has settled:
-    /// a change while time runs begins another.
+    /// The figures of the run so far; None if it did not begin at rest, as after a change while
+    /// time runs.
     monitor: Option<RunMonitor>,
     /// Time that has passed on screen since the last whole step.
     debt: TimeDebt,
@@ -23,16 +23,18 @@ pub(super) struct Run {
 /// The start of a run, to which a reset goes back.
 #[derive(Clone, Debug)]
 pub(super) enum RunStart {
-    /// The scene was changed since, or the state is another's: a reset lays the scene anew.
+    /// The scene has changed since, or the state is that of another scene: a reset lays the cables
+    /// anew.
     Lost,
     /// The simulation was settled from the present scene at t = 0.
     Settled,
-    /// So was this one, which `auto` chose for rest; one that can move has taken its place.
+    /// The simulation that `auto` chose for rest was settled so; one that can move has taken its
+    /// place.
     Rest(Box<Simulation>),
 }
 
 impl Run {
-    /// One that goes on from a simulation as it is.
+    /// A run that goes on from a simulation as it is.
     pub fn new(simulation: Simulation, start: RunStart) -> Self {
         Self { simulation, start, monitor: None, debt: TimeDebt::default() }
     }
@@ -47,13 +49,13 @@ impl Run {
         Self { start, ..self }
     }
 
-    /// A copy without what is known of the run: the two coarser runs beside it begin again with the
+    /// A copy without the figures of the run: the two coarser runs beside it begin again with the
     /// next start.
     pub fn checkpoint(&self) -> Self {
         Self { simulation: self.simulation.clone(), start: self.start.clone(), monitor: None, debt: self.debt }
     }
 
-    /// The same, of which nothing more is known.
+    /// The same run without its figures.
     pub fn unmonitored(self) -> Self {
         Self { monitor: None, ..self }
     }
@@ -63,7 +65,7 @@ impl Run {
         &self.simulation
     }
 
-    /// The same, for a draft that falls.
+    /// The simulation of a draft that falls, to change it.
     pub fn simulation_mut(&mut self) -> &mut Simulation {
         &mut self.simulation
     }
@@ -83,7 +85,7 @@ impl Run {
         self.monitor.as_ref().map_or_else(Vec::new, |m| m.peaks().to_vec())
     }
 
-    /// Does this to the simulation, and to the coarser ones beside it.
+    /// Applies a function to the simulation, and to the coarser ones beside it.
     pub fn steer(&mut self, mut how: impl FnMut(&mut Simulation)) {
         how(&mut self.simulation);
         if let Some(monitor) = &mut self.monitor {
@@ -91,7 +93,7 @@ impl Run {
         }
     }
 
-    /// A hand moves a support: the start is another's.
+    /// Notes that a hand moves a support: a reset cannot go back to the start.
     pub fn draw(&mut self, how: impl FnMut(&mut Simulation)) {
         self.start = RunStart::Lost;
         self.steer(how);
@@ -120,7 +122,7 @@ impl Run {
         self.debt.take_steps(usual_step(inertia))
     }
 
-    /// Makes so many whole steps and reads the answer after them.
+    /// Makes a number of whole steps and reads the answer after them.
     pub fn make_steps(&mut self, count: u64, inertia: Inertia) -> Result<(), Error> {
         Ok(make_steps(&mut self.simulation, inertia, count, self.monitor.as_mut())?)
     }
@@ -156,7 +158,7 @@ impl Run {
 /// The simulation that moves from where the one stands that `auto` chose for rest, and whether it
 /// has come to rest there on its own mesh.
 fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), Error> {
-    // Its warning of other histories would be gone with the first step.
+    // The warning of other histories would be lost with the first step.
     let settings = Settings { histories: false, ..settings };
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
     moving.carry(rest)?;
@@ -167,7 +169,7 @@ fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), E
     }
 }
 
-/// Returns whether a model that was asked for by name lets time run without inertia: it has none.
+/// Returns true if the user chose a model that lets time run without inertia because it has none.
 #[must_use]
 pub fn is_quasi_static(model: Model) -> bool {
     !model.capabilities().inertia

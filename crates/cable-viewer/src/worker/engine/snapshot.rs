@@ -1,4 +1,4 @@
-//! The state of the engine as the window shows it.
+//! A snapshot is the state of the engine as the window shows it.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use super::{Engine, Phase};
 use crate::state::NoAnswer;
 
 impl Engine {
-    /// Adds the present instant to the history, the start as well as every reading; nothing of a
-    /// coarse mesh that follows a hand, whose tensions are none of the cable.
+    /// Adds the present instant, the start included, to the history; but not that of a coarse mesh
+    /// that follows a hand, whose tensions are not those of the cable.
     pub(super) fn sample(&mut self) {
         if let Some(run) = &self.run
             && !self.coarse()
