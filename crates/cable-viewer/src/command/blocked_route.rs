@@ -1,12 +1,12 @@
-//! A route of a cable can come to lead through an obstacle when the obstacle or the route is
-//! edited.
+//! An edit of an obstacle or of a route may lead the route through the obstacle; such routes are
+//! removed.
 
 use cable_core::Scene;
 use cable_core::contact::World;
 use cable_core::math::{Point, vec2};
 
-/// Points looked at on each piece of a way. Fewer: a thin beam is passed unseen, and the scene is
-/// refused as before.
+/// Number of points that are checked on each piece of a route. Fewer: a thin beam is missed, and
+/// the scene is refused.
 const SAMPLES_PER_LEG: usize = 64;
 /// Radius round a point within which obstacles are sought, m.
 const SEARCH_RADIUS_M: f64 = 1e3;

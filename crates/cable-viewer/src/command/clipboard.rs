@@ -22,7 +22,7 @@ use crate::state::{AppState, Item};
 /// small scene.
 const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
-/// Keeps what is picked; as text it is a table of points.
+/// Copies the selection; as text it is a table of points.
 pub fn copy(state: &mut AppState, effects: &mut Effects) {
     let (mut things, mut points, mut text) = (Vec::new(), Vec::new(), String::new());
     for item in state.selection.selected_items() {
@@ -74,7 +74,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
     })
 }
 
-/// Puts what was copied into the scene, picked.
+/// Pastes the copied items into the scene and selects them.
 pub fn paste(state: &mut AppState, at_m: Option<Point>) {
     let Clipboard { things, middle_m, .. } = state.selection.clipboard.clone();
     let to = at_m.unwrap_or([middle_m[0] + PASTE_OFFSET_M[0], middle_m[1] + PASTE_OFFSET_M[1]]);

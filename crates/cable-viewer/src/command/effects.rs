@@ -1,4 +1,5 @@
-//! Effects are what applying commands asks of the world outside [`AppState`].
+//! Effects are the requests of applied commands to the world outside [`AppState`]: the worker, jobs
+//! and files.
 
 use std::path::PathBuf;
 
@@ -11,15 +12,15 @@ use crate::worker::request::{Edit, EditStart, Request};
 /// The requests of applied commands to the world outside [`AppState`].
 #[derive(Debug, Default)]
 pub struct Effects {
-    /// For the worker.
+    /// The request for the worker.
     pub request: Request,
     /// Close the window.
     pub quit: bool,
-    /// Remove what was kept for recovery.
+    /// Remove the recovery file.
     pub forget_recovery: bool,
     /// Start the solver thread anew.
     pub restart_worker: bool,
-    /// Look for where the robot can go, or end that.
+    /// Begin or end the search for safe places.
     pub reach: Option<Option<Box<ReachQuery>>>,
     /// Ask every model about a scene, or end that.
     pub models: Option<Option<Box<Scene>>>,
@@ -36,7 +37,7 @@ pub fn submit_edit(state: &mut AppState, effects: &mut Effects) {
     submit(state, EditStart::PresentState, effects);
 }
 
-/// Sends a scene of before to the worker: the cable lies as it did then.
+/// Sends an earlier scene to the worker: the cable lies as it did then.
 pub fn submit_undone(state: &mut AppState, effects: &mut Effects) {
     submit(state, EditStart::Route, effects);
 }
@@ -47,7 +48,7 @@ pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
 }
 
 fn submit(state: &mut AppState, start: EditStart, effects: &mut Effects) {
-    // An edit is of the present.
+    // Edits apply to the live state, so a replay ends first.
     state.live.show_time(None);
     state.live.stopped_by_drag = None;
     let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);

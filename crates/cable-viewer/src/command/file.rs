@@ -41,9 +41,9 @@ pub enum FileCommand {
         /// Short id of its scene.
         scene: &'static str,
     },
-    /// Saves where it came from, else asks where to.
+    /// Saves to the file of the scene; asks for one if there is none.
     Save,
-    /// Saves, asking where to if need be, and goes on with what was pending.
+    /// Saves, asking for a file if need be, and then does the pending action.
     SaveThen(Replacement),
     /// Asks where to save.
     AskSaveAs,
@@ -66,19 +66,19 @@ pub enum FileCommand {
         /// The map takes the place of the ground that is there.
         replaces_ground: bool,
     },
-    /// Adds what the user thinks to a table.
+    /// Adds the user's feedback to a table.
     SaveFeedback(PathBuf, Answers),
     /// Writes the whole recording as a run folder.
     SaveRun(PathBuf),
-    /// Opens the folder of a run: its scene, and all it recorded.
+    /// Opens the folder of a run: its scene and its recording.
     OpenRun(PathBuf),
-    /// Holds the run of a folder to compare with.
+    /// Pins the run of a folder for comparison.
     AddReferenceRun(PathBuf),
     /// Shows a dialog, or closes it.
     SetDialog(Option<Dialog>),
-    /// Takes over what a window that died had kept.
+    /// Opens the scene that a window which died had kept.
     Recover(Box<Scene>),
-    /// Removes it.
+    /// Removes the recovery file.
     ForgetRecovery,
     /// Goes on without saving.
     Discard(Replacement),
@@ -88,7 +88,7 @@ pub enum FileCommand {
     Quit,
 }
 
-/// Does one of them.
+/// Applies a file command.
 pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     if let Some(then) = command.replacement().filter(|_| state.document.unsaved()) {
         state.ui.dialog = Some(Dialog::Unsaved { then });
@@ -97,7 +97,7 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
     execute(state, command, effects);
 }
 
-/// Closes the dialog and says what was written.
+/// Closes the dialog and names the file that was written.
 fn written(state: &mut AppState, path: PathBuf) {
     (state.ui.dialog, state.ui.written) = (None, Some(path));
 }
@@ -107,7 +107,7 @@ pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>)
     match result {
         Ok(()) => written(state, path),
         Err(text) => {
-            // The path that was typed is not lost: it is asked again.
+            // The dialog opens again with the path that was typed.
             let asked = state.ui.dialog.take();
             show_error(state, &format!("“{}” was not written", path.display()), text);
             state.ui.after_message = asked;
@@ -118,7 +118,7 @@ pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>)
 fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
         FileCommand::New => {
-            // Another new scene is not the one before.
+            // Pins do not belong to a new scene, although neither has a file.
             state.analysis.references.clear();
             open(state, new_scene(), None, effects);
         }
@@ -225,13 +225,13 @@ fn set_dialog(state: &mut AppState, dialog: Option<Dialog>) {
     let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
     state.ui.dialog = dialog.or(then);
     if state.ui.dialog.is_none() {
-        // An action that was to follow a save that was called off follows no later one.
+        // An action that was to follow a cancelled save must not follow a later one.
         state.ui.after_save = None;
     }
 }
 
 impl FileCommand {
-    /// Returns what takes the place of the present scene; None: it stays.
+    /// Returns the replacement of the present scene; None: the scene stays.
     fn replacement(&self) -> Option<Replacement> {
         Some(match self {
             Self::New => Replacement::New,
@@ -263,8 +263,8 @@ fn new_scene() -> Scene {
     Scene { name: "New scene".to_owned(), ..catalog::hanging_span() }
 }
 
-/// Returns whether what is opened is what the document was opened from: the same file, or, where
-/// neither has one, the same scene. Names do not tell: two files may have the same.
+/// Returns true if the opened scene is that of the document: from the same file, or equal if
+/// neither has a file. Names do not tell, because two files may have the same.
 fn is_same_source(document: &Document, scene: &Scene, path: Option<&Path>) -> bool {
     match (document.path.as_deref(), path) {
         (Some(before), Some(now)) => std::path::absolute(before).ok() == std::path::absolute(now).ok(),
@@ -300,7 +300,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     submit_new_scene(state, effects);
 }
 
-/// Says what a user should know about a run that was opened.
+/// Shows remarks on a run that was opened.
 fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     if !remarks.is_empty() {
         show_error(state, &format!("About the run “{}”", path.display()), remarks.join(" "));

@@ -22,7 +22,7 @@ pub struct Map<'a> {
     pub replaces_ground: bool,
 }
 
-/// The scene with what was read added to it, and what was done, in words.
+/// Returns the scene with the obstacles that were read, and a report in words.
 ///
 /// # Errors
 /// The place that cannot be read, or the reason why the scene would be refused with it, in words.

@@ -35,7 +35,7 @@ use cable_core::{Model, Settings};
 
 use crate::state::{AppState, FirstStep, Item};
 
-/// Something to do.
+/// A command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Changes the scene.
@@ -52,7 +52,7 @@ pub enum Command {
     File(FileCommand),
 }
 
-/// The first step that a command is.
+/// The first step that a command completes.
 fn first_step(command: &Command) -> Option<FirstStep> {
     match command {
         Command::Scene(SceneCommand::Move { item: Item::Support { .. } | Item::Robot, .. }) => Some(FirstStep::Drag),
@@ -67,7 +67,7 @@ fn first_step(command: &Command) -> Option<FirstStep> {
     }
 }
 
-/// Does one command.
+/// Applies one command.
 pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
     if let Some(step) = first_step(&command) {
         state.ui.first_steps.done(step);
@@ -78,7 +78,7 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
             let pulls = matches!(c, PlaybackCommand::PullPastLength(true));
             playback::apply(state, c, effects);
             if pulls && scene::is_refused_pull(state) {
-                // The pull that was refused is taken back: it can be made once more.
+                // The pull that was refused is undone and can be made again.
                 scene::apply(state, SceneCommand::Undo, effects);
             }
         }

@@ -72,7 +72,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
     }
 }
 
-/// A point moved as another was.
+/// A point, displaced by as much as another one.
 pub fn shifted(p: Point, from: Point, to: Point) -> Point {
     [p[0] + to[0] - from[0], p[1] + to[1] - from[1]]
 }

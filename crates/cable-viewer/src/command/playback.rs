@@ -6,7 +6,7 @@ use crate::state::live::ResetOrigin;
 use crate::state::{AppState, Playback};
 use crate::worker::request::Request;
 
-/// Time.
+/// Commands of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PlaybackCommand {
     /// Runs or stops.
@@ -17,22 +17,22 @@ pub enum PlaybackCommand {
     SetSpeed(f64),
     /// One 1/60 s; pauses first. While an earlier time is shown: the next picture.
     Step,
-    /// The picture before; pauses first.
+    /// Shows the instant before; pauses first.
     StepBack,
     /// Shows an earlier time (s), or the present; pauses.
     ShowTime(Option<f64>),
-    /// Goes on from the earlier time shown: what came after it is forgotten.
+    /// Goes on from the earlier time shown: the recording after it is dropped.
     ResumeFromShown,
     /// A replay begins anew at its end, or ends there.
     SetLoop(bool),
     /// Back to the start, bit for bit; pauses, and the robot's task starts again.
     Reset,
-    /// Takes the last restart back, and the edits since it if an edit was its cause: what was
-    /// recorded before is there again, and time goes on from its end.
+    /// Takes the last restart back, and the edits since if an edit was its cause: the recording
+    /// before it is there again, and time goes on from its end.
     UndoRestart,
-    /// Gives up what is being solved.
+    /// Gives up the running solve.
     CancelSolve,
-    /// Solves what was given up.
+    /// Begins the solve that was given up once more.
     Solve,
     /// The robot goes at this speed, m/s, positive to the right; None: along its path.
     DriveRobot(Option<f64>),
@@ -42,7 +42,7 @@ pub enum PlaybackCommand {
     PullPastLength(bool),
 }
 
-/// Does one of them.
+/// Applies a playback command.
 pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effects) {
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     if stops_time(state, command) {
@@ -58,7 +58,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
         PlaybackCommand::Step if state.live.recording.shown_s.is_some() => {
             state.live.playback.paused = true;
-            // After the last picture comes the present.
+            // The present comes after the last recorded instant.
             let next = state.live.recording.neighbour_s(now_s, 1).filter(|t| *t < now_s);
             state.live.show_time(next);
         }
@@ -119,7 +119,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
     send(state, effects);
 }
 
-/// Returns whether the user wants time to stand.
+/// Returns true if the user wants time to stand.
 fn stops_time(state: &AppState, command: PlaybackCommand) -> bool {
     match command {
         PlaybackCommand::TogglePause => !state.live.playback.paused,
@@ -135,7 +135,7 @@ fn stops_time(state: &AppState, command: PlaybackCommand) -> bool {
     }
 }
 
-/// Tells the worker whether time runs: not while what was recorded is replayed.
+/// Tells the worker if time runs, which it does not during a replay.
 pub fn send(state: &AppState, effects: &mut Effects) {
     let paused = state.live.playback.paused || state.live.recording.shown_s.is_some();
     let playback = Playback { paused, ..state.live.playback };

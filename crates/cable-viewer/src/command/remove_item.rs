@@ -1,4 +1,4 @@
-//! Things of the scene can be taken out, and the selection must not point at what is gone.
+//! Items of the scene are removed, and the selection with them.
 
 use cable_core::Scene;
 use cable_core::scene::{Shape, Support};
@@ -6,10 +6,10 @@ use cable_core::scene::{Shape, Support};
 use crate::command::robot_hitch::set_robot;
 use crate::state::{AppState, Item};
 
-/// Takes things out, none of them twice.
+/// Removes items, none of them twice.
 pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
-    // From the last to the first of each kind, corners and supports before what they are of: an
-    // index stays what it was.
+    // Items are removed from the last to the first of each kind, corners and supports before their
+    // obstacle or cable, so that the indices of the others stay valid.
     let rank = |item: &Item| match *item {
         Item::Corner { obstacle, corner } => (0, obstacle, corner),
         Item::Support { cable, support } => (1, cable, support),

@@ -1,10 +1,10 @@
-//! The hitch of the robot holds a support; another robot, or none, changes what hangs on it.
+//! The hitch of the robot holds a support, which changes with the robot.
 
 use cable_core::math::Point;
 use cable_core::scene::{Support, SupportKind};
 use cable_core::{Robot, Scene};
 
-/// The support that hangs on the robot, and where.
+/// The support that the robot holds, and its place.
 pub fn hitched_support(scene: &Scene) -> Option<(usize, usize, Point)> {
     let hitch = scene.hitch_m()?;
     scene.cables.iter().enumerate().find_map(|(cable, c)| {
@@ -13,7 +13,7 @@ pub fn hitched_support(scene: &Scene) -> Option<(usize, usize, Point)> {
     })
 }
 
-/// Another robot, or none: what hung on it is then fixed where it hung.
+/// Sets another robot, or none: the support that the robot held is then fixed at its place.
 pub fn set_robot(scene: &mut Scene, robot: Option<Robot>) {
     if robot.is_none()
         && let Some((cable, support, hitch)) = hitched_support(scene)

@@ -33,7 +33,7 @@ pub enum SceneCommand {
     SetCable {
         /// Index.
         cable: usize,
-        /// Its new self.
+        /// Its new properties.
         value: Box<Cable>,
     },
     /// A support with changed properties.
@@ -78,14 +78,14 @@ pub enum SceneCommand {
         /// The place where it holds the cable, m.
         at_m: Point,
     },
-    /// Another robot, or none: what hung on it is then fixed where it hung.
+    /// Sets another robot, or none: the support that the robot held is then fixed at its place.
     SetRobot(Option<Robot>),
-    /// A leg of the robot's path to a place, m: after the leg that is picked, else at its end.
+    /// Adds a leg of the robot's path to a place, m: after the selected leg, else at the end.
     AddLeg {
         /// The target, m.
         to_x_m: f64,
     },
-    /// Lays a cable from its supports at the start, whatever way it took: its route is forgotten.
+    /// Lays a cable anew from its supports at the start: its route and its motion are dropped.
     LayAnew {
         /// Index.
         cable: usize,
@@ -100,21 +100,21 @@ pub enum SceneCommand {
     Remove(Item),
     /// Takes several things out.
     RemoveAll(Vec<Item>),
-    /// Keeps what is picked to paste it.
+    /// Copies the selection.
     Copy,
-    /// Keeps what is picked and takes it out.
+    /// Copies the selection and removes it.
     Cut,
-    /// Puts what was copied into the scene, its middle at a point (m), else a little beside where
-    /// it was.
+    /// Pastes the copied items, with their middle at a point (m), else a little beside the
+    /// originals.
     Paste {
         /// The middle of the pasted items, m.
         at_m: Option<Point>,
     },
-    /// A pointer drag or a typed value is complete: the next edit is undone by itself.
+    /// Ends a pointer drag or a typed value: the next edit is another step of undo.
     EditDone,
-    /// Back by one edit.
+    /// Undoes one edit.
     Undo,
-    /// Forward by one edit.
+    /// Redoes one edit.
     Redo,
 }
 
@@ -136,7 +136,7 @@ impl SceneCommand {
     }
 }
 
-/// Does one of them.
+/// Applies a scene command.
 pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects) {
     match command {
         SceneCommand::EditDone => return state.document.undo.close_entry(),
@@ -194,7 +194,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     }
     if lays_anew {
         state.document.validate();
-        // Time that has run is a way that the cable took, too.
+        // If time has run, the cable has a history as well.
         if state.live.has_run() {
             playback::apply(state, PlaybackCommand::Reset, effects);
         }
@@ -203,8 +203,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     submit_edited_scene(state, dragged, effects);
 }
 
-/// Returns whether an undo or redo leads to the scene of the other run, which an edit ended or
-/// which came after that edit.
+/// Returns true if an undo or redo leads to the scene of the other run: the one that an edit ended,
+/// or the one after that edit.
 fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     let scene = state.live.earlier_run.as_ref().and_then(|run| match &run.cause {
         RestartCause::Edit(scene) => Some(scene),
@@ -270,11 +270,12 @@ fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Poin
             submit_edit(state, effects);
             state.live.stopped_by_drag = grabbed;
         }
-        // Back within reach: `resume_after_drag` goes on as soon as the worker has stopped.
+        // The support is back within reach: `resume_after_drag` goes on as soon as the worker has
+        // stopped.
         Some(_) if grabbed.is_some() && state.live.stopped_by_drag == grabbed => {}
         Some((cable, support, to_m)) if !state.live.playback.paused && state.document.fault.is_none() => {
             state.live.show_time(None);
-            // A pointer holds by a spring; a key or a robot puts it there.
+            // A pointer holds the support by a spring; a key or a robot prescribes its place.
             let held = Item::Support { cable, support };
             let by_spring =
                 state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
@@ -289,7 +290,7 @@ fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Poin
 /// within reach: a support from where the cable held it last, to be drawn on from there.
 pub fn resume_after_drag(state: &mut AppState, effects: &mut Effects) {
     let Some(item) = state.live.stopped_by_drag else { return };
-    // Not before the worker has said that it stopped: that would stop time once more.
+    // Time must not go on before the worker has reported its stop, which would pause it once more.
     if state.document.fault.is_some() || !state.live.playback.paused || !state.live.latest.stale {
         return;
     }
@@ -310,7 +311,7 @@ pub fn resume_after_drag(state: &mut AppState, effects: &mut Effects) {
     submit_edit(state, effects);
 }
 
-/// Has a support drawn to a point (m), by a spring or not.
+/// Moves a support to a point (m), by a spring or by prescription.
 fn drag_support(state: &mut AppState, cable: usize, support: usize, to_m: Point, effects: &mut Effects) {
     let by_spring = state.selection.spring_support == Some((cable, support));
     let drag = Drag { cable, support, to_m, by_spring, scene: state.document.scene.clone() };

@@ -4,7 +4,7 @@ use cable_core::Support;
 use cable_core::math::Point;
 use cable_core::scene::SupportKind;
 
-/// The kinds in the order a picker shows them: name, and what it does.
+/// The kinds in the order of the picker, with name and explanation.
 pub const KINDS: [(SupportKind, &str, &str); 6] = [
     (SupportKind::Fixed, "Fixed", "Held at a point, free to turn"),
     (SupportKind::Clamped, "Clamped", "Held at a point and in a direction"),
@@ -29,8 +29,8 @@ pub fn refusal(kind: SupportKind, end: bool, robot: bool) -> Option<&'static str
 /// presets.
 const FIRST_LOAD_N: Point = [0.0, -10.0];
 
-/// The support as another kind. `at_m` and `arc_length_m`: where it is now; `end`: it is the
-/// cable's start or end.
+/// The support as another kind. `at_m` and `arc_length_m` are its present place; `end` is true for
+/// the cable's start or end.
 #[must_use]
 pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: f64, end: bool) -> Support {
     let mut new = Support::new(support.name.clone(), kind);
@@ -42,7 +42,7 @@ pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: 
     if held || kind == SupportKind::Robot {
         new.release_s = support.release_s;
     }
-    // Between the ends a grip says where on the cable it sits; the ends sit at the ends.
+    // A support between the ends states its arc length; those at the ends have none.
     let grips = !matches!(kind, SupportKind::Pulley | SupportKind::Free);
     if grips && !end {
         new.arc_length_m = support.arc_length_m.or(Some(arc_length_m));

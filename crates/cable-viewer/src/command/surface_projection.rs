@@ -14,12 +14,12 @@ const MAX_PUSHES: usize = 40;
 /// Distance from a permitted place below which a point is there, m: rounding.
 const CLEAR_M: f64 = 1e-12;
 
-/// Returns where a support that is moved to a point (m) comes to stand: on the surface of what it
-/// would be in, the cable's radius off it.
+/// Returns the place of a support that is moved to a point (m): if that is inside an obstacle, one
+/// cable radius off its surface.
 pub fn clear_of_obstacles(scene: &Scene, cable: usize, support: usize, to_m: Point) -> Point {
     let corners: usize = scene.obstacles.iter().map(|o| corner_count(&o.shape)).sum();
     let Some(of) = scene.cables.get(cable).filter(|_| (1..=MAX_CORNERS).contains(&corners)) else { return to_m };
-    // A wheel may be mounted on what it stands in; the hitch goes with the robot.
+    // A wheel may be mounted on the obstacle around it, and the hitch goes with the robot.
     let held = of.supports.get(support).filter(|s| s.kind != SupportKind::Robot && s.radius_m.is_none_or(|r| r == 0.0));
     if held.is_none() {
         return to_m;

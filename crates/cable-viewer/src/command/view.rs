@@ -24,9 +24,9 @@ pub enum ViewCommand {
     ToggleSelected(Item),
     /// Picks several things.
     SelectAll(Vec<Item>),
-    /// Takes the tension at a place of a cable apart, or not any more.
+    /// Shows or hides the tension budget at a place of a cable.
     SetTensionMarker(Option<TensionMarker>),
-    /// Draws a frame round things to pick, between two corners, m.
+    /// Draws the selection rectangle between two corners, m.
     SetMarquee(Option<[Point; 2]>),
     /// The pointer is over an item or over none, at a point of the world (m).
     Hover(Option<Item>, Option<Point>),
@@ -41,19 +41,19 @@ pub enum ViewCommand {
         /// Above 1 = closer.
         factor: f64,
     },
-    /// The whole scene in view.
+    /// Fits the whole scene into the view.
     Fit,
     /// A torn cable stays in view until the view is moved.
     Follow,
-    /// The cable's middle in the middle, same scale.
+    /// Centres the view on the cable at the same scale.
     Recentre,
-    /// A point in the middle, same scale, m.
+    /// Centres the view on a point (m) at the same scale.
     CentreOn(Point),
     /// Puts a point (m) in the middle and shows what lies round it.
     ZoomOn(Point),
     /// Opens and folds parts of the window.
     ShowPanels(OpenPanels),
-    /// Does something, and shows the section in which it is answered.
+    /// Applies a command, and shows the section with its result.
     UseTool(ToolSection, Box<ViewCommand>),
     /// Shows another measure in the graphs, or has them keep up with the data.
     AskGraph(GraphRequest),
@@ -69,7 +69,7 @@ pub enum ViewCommand {
     SearchSafeReach,
     /// Ends that search and keeps its map; once it has ended, the map is dropped.
     EndSafeReach,
-    /// The part of it that is asked and shown.
+    /// Sets the question and the display of the safe reach.
     SetSafeReachOptions(safe_reach::SafeReachOptions),
     /// Shows or hides the effect of less and of more friction.
     SetFrictionRange {
@@ -78,7 +78,7 @@ pub enum ViewCommand {
         /// Least and greatest friction over that of the scene.
         factors: [f64; 2],
     },
-    /// Ask what neglecting bending stiffness changes.
+    /// Asks for the effect of neglected bending stiffness.
     AskBending,
     /// Does not show the hints of the first minute again.
     HideFirstSteps,
@@ -86,7 +86,7 @@ pub enum ViewCommand {
     SetTutorialPlace(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
     SetUnits(System),
-    /// Keeps the answer on screen to compare with.
+    /// Pins the answer on screen for comparison.
     AddReference,
     /// Asks every model about the scene at rest, and pins their answers.
     CompareModels,
@@ -96,7 +96,7 @@ pub enum ViewCommand {
     ChartWorkPrecision,
     /// Ends that, and keeps the results found until then.
     EndWorkPrecision,
-    /// Lets one go, or all.
+    /// Removes one pin, or all.
     RemoveReferences(Option<usize>),
 }
 
@@ -104,7 +104,7 @@ pub enum ViewCommand {
 /// find in the view; with a smaller one its position in the scene is not visible.
 const PLACE_FRACTION: f64 = 0.25;
 
-/// Does one of them.
+/// Applies a view command.
 pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) {
     match command {
         ViewCommand::Select(item) => {
@@ -242,8 +242,8 @@ fn search_safe_reach(state: &mut AppState, effects: &mut Effects) {
     };
     let (scene, settings, across) =
         (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
-    // From where the cable is on screen, once time has run: a hand or the robot may have
-    // taken it elsewhere.
+    // Once time has run, the search begins from the cable on screen: a hand or the robot may have
+    // moved it.
     let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
     effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
 }

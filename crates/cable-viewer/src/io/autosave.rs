@@ -7,18 +7,18 @@ use std::time::{Duration, Instant};
 
 use cable_core::{Scene, files};
 
-/// From a change to its copy on disk. Longer: more is lost; shorter: a long drag writes all the
-/// time.
+/// Time from a change to its copy on disk. Longer: more is lost; shorter: a long drag writes all
+/// the time.
 const PERIOD: Duration = Duration::from_secs(5);
 
 /// The changes of a scene since its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changes {
-    /// There are none.
+    /// There are no changes.
     None,
     /// The changed scene can be read again.
     Readable,
-    /// It has a fault, and could not be read.
+    /// The changed scene has a fault, and could not be read again.
     Faulty,
 }
 
@@ -35,7 +35,7 @@ pub struct Autosave {
     fault: Option<String>,
 }
 
-/// Returns where unsaved changes are kept; None on a machine without a place for them.
+/// Returns the path of the recovery file; None on a machine without a place for it.
 #[must_use]
 pub fn default_path() -> Option<PathBuf> {
     let folder = |variable: &str| std::env::var_os(variable).map(PathBuf::from).filter(|p| p.is_absolute());
@@ -45,7 +45,7 @@ pub fn default_path() -> Option<PathBuf> {
 }
 
 impl Autosave {
-    /// Keeps changes in a file.
+    /// Makes an autosave that keeps changes in a file.
     #[must_use]
     pub fn new(path: PathBuf) -> Self {
         Self { path, written: None, changed: None, writer: None, fault: None }
@@ -57,13 +57,13 @@ impl Autosave {
         &self.path
     }
 
-    /// Returns why the last copy was not written.
+    /// Returns the reason why the last copy was not written.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Returns what a killed program has left: nothing, a scene, or the fault of the file.
+    /// Returns the copy that a killed program has left: none, a scene, or the fault of the file.
     #[must_use]
     pub fn found(&self) -> Option<Result<Scene, String>> {
         match files::load_scene(&self.path) {
@@ -72,7 +72,8 @@ impl Autosave {
         }
     }
 
-    /// Looks at the scene; returns after how long to look again, if that matters.
+    /// Compares the scene with the copy and writes it if it is due; returns the time until the next
+    /// call, if one is needed.
     pub fn update(&mut self, scene: &Scene, changes: Changes, now: Instant) -> Option<Duration> {
         self.take_result();
         if changes == Changes::None {
@@ -142,7 +143,7 @@ impl Autosave {
             Err(_) => Some("the thread that saves has stopped".to_owned()),
         };
         if self.fault.is_some() {
-            // Tried again after the next period.
+            // The copy is tried again after the next period.
             self.written = None;
         }
     }

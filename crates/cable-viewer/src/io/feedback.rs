@@ -4,14 +4,14 @@ use std::path::Path;
 
 use cable_core::{Solution, files};
 
-/// The question, and the word a column has.
+/// The questions, each with the heading of its column.
 pub const QUESTIONS: [(&str, &str); 4] = [
     ("useful", "It is useful for my work"),
     ("clear", "It is clear what I see"),
     ("realistic", "What the cable does looks real"),
     ("easy", "It is easy to use"),
 ];
-/// Answers below this are low: what confused is asked for.
+/// Below this mark the user is asked what was confusing.
 pub const MIN_GOOD_RATING: u8 = 4;
 /// Best answer; the worst is 1.
 pub const MAX_RATING: u8 = 5;
@@ -24,7 +24,7 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct Answers {
     /// 1 to 5; None: not answered yet.
     pub marks: [Option<u8>; QUESTIONS.len()],
-    /// The things that confused.
+    /// The text on what was confusing.
     pub words: String,
 }
 
@@ -40,19 +40,19 @@ pub struct Context<'a> {
 }
 
 impl Answers {
-    /// Something was marked low, and what confused is not said yet.
+    /// Returns true if a mark is low and the text on it is still empty.
     #[must_use]
     pub fn needs_comment(&self) -> bool {
         self.marks.iter().flatten().any(|m| *m < MIN_GOOD_RATING) && self.words.trim().is_empty()
     }
 
-    /// It can be saved.
+    /// Returns true if the answers can be saved.
     #[must_use]
     pub fn complete(&self) -> bool {
         self.marks.iter().all(Option::is_some) && !self.needs_comment()
     }
 
-    /// A row: the marks, the words, and what was on screen while they were given.
+    /// A row of the table: the marks, the text, and the state on screen.
     #[must_use]
     fn row(&self, context: &Context<'_>) -> String {
         let mut cells: Vec<String> = self.marks.iter().map(|m| m.map_or_else(String::new, |m| m.to_string())).collect();
@@ -69,7 +69,7 @@ impl Answers {
     }
 }
 
-/// A cell of a table, whatever is in it.
+/// A cell of a table, quoted if need be.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.trim().replace('"', "\"\"").replace(['\n', '\r'], " "))
 }

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use cable_core::files;
 
-/// Returns whether an earlier window saw the first steps done.
+/// Returns true if the first steps were done in an earlier window.
 #[must_use]
 pub fn are_done(mark: &Path) -> bool {
     mark.exists()
 }
 
-/// Remembers it; where that fails the hints come again, which is no loss worth a message.
+/// Writes the mark; if that fails, the hints come again, which is not worth a message.
 pub fn remember(mark: &Path) {
     if let Some(folder) = mark.parent() {
         let _ = std::fs::create_dir_all(folder);

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Most entries of a folder that are looked at: a list of more is not searched by eye.
+/// Greatest number of entries that are listed: nobody searches more by eye.
 const MAX_ENTRIES: usize = 2000;
 
 /// The listing of a folder in a dialog.
