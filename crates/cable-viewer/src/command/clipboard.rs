@@ -143,7 +143,8 @@ fn put_support(state: &mut AppState, cable: usize, support: &Support, at_m: Poin
         SupportKind::Free | SupportKind::Robot => SupportKind::Pulley,
         kind => kind,
     };
-    let mut put = of_kind(support, kind, at_m, arc_length_m, false);
+    let is_end = false;
+    let mut put = of_kind(support, kind, at_m, arc_length_m, is_end);
     put.at_m = put.at_m.map(|_| at_m);
     put.arc_length_m = put.arc_length_m.map(|_| arc_length_m);
     if let (Some(motion), Some(was)) = (&mut put.motion, support.at_m) {

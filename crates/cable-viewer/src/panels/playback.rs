@@ -123,7 +123,10 @@ fn speed(ui: &mut Ui, state: &AppState, with_slider: bool, commands: &mut Vec<Co
         if let Some(speed) = slid.value {
             commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
         }
-        slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::drag_help(true)));
+        slid.response.on_hover_text(format!(
+            "Simulated seconds per second, 0.01× to 4×\n{}",
+            slider::drag_help(rail.logarithmic)
+        ));
     }
     let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {

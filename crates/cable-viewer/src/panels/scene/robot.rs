@@ -102,7 +102,8 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let taken = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);
     let last = scene.cables.get_mut(cable).and_then(|c| c.supports.last_mut());
     if let Some(support) = last.filter(|s| taken(s.kind)) {
-        *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, true);
+        let is_end = true;
+        *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, is_end);
     }
 }
 

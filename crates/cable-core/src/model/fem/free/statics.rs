@@ -353,7 +353,8 @@ impl Statics {
         self.network = Some(network);
         // A stiff cable has a definite shape even without weight.
         self.beam = Some(beam);
-        let warnings = self.warnings(false);
+        let has_auxiliary_weight = false;
+        let warnings = self.warnings(has_auxiliary_weight);
         Ok(StepReport { cost, warnings })
     }
 

@@ -134,7 +134,8 @@ impl Curve {
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
         let form = PieceShape::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
         let piece = BoundaryPiece { form, extent: f64::INFINITY, kink_before: false, feature: None };
-        Self::new(vec![piece], false, None, friction, sense)
+        let closed = false;
+        Self::new(vec![piece], closed, None, friction, sense)
     }
 
     fn new(pieces: Vec<BoundaryPiece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
