@@ -658,3 +658,21 @@ fn the_present_row_of_pinned_results_is_of_the_scene_that_was_solved() {
     assert!(!state(&harness).is_current());
     assert_eq!(row(&harness), before);
 }
+
+/// Issue 20: a slack cable, made by a drag that was taken back, left its warnings on the timeline
+/// of the scene that has none.
+#[test]
+fn issue_020_events_of_a_scene_that_was_taken_back_are_on_no_timeline() {
+    let scene = catalog::tank_robot();
+    let mut harness = open(scene.clone());
+    assert_eq!(state(&harness).live.recording.events(), []);
+    let start = scene.robot.as_ref().unwrap().at_m;
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m: [start[0] - 4.5, start[1]] }));
+    apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+    harness.run_steps(3);
+    assert!(!state(&harness).live.recording.events().is_empty(), "slack cable is an event");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene, scene);
+    assert_eq!(state(&harness).live.recording.events(), []);
+}
