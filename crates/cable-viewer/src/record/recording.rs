@@ -82,11 +82,11 @@ impl Recording {
         let replaced = self.frames.entries().last().is_some_and(|e| e.time_s >= time_s);
         let active = &mut self.active;
         self.events.retain(|e| {
-            let stays = e.time_s < time_s || (e.time_s == time_s && !replaced);
-            if !stays {
+            let of_replaced = replaced && e.time_s == time_s;
+            if of_replaced {
                 active.retain(|(kind, cable)| *kind != e.warning.kind || *cable != e.warning.cable);
             }
-            stays
+            e.time_s <= time_s && !of_replaced
         });
     }
 

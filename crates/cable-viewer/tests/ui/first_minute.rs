@@ -184,7 +184,8 @@ fn a_map_is_picked_from_a_list_too() {
     assert_eq!(harness.state().state.document.scene.obstacles.len(), 1);
 }
 
-/// Issue 20: "Drag the robot" is the first hint, and a press a point beside its hull moved the view.
+/// Issue 20: "Drag the robot" is the first hint, and a press a point beside its hull moved the
+/// view.
 #[test]
 fn issue_020_a_press_beside_the_hull_of_the_robot_picks_it() {
     let mut harness = open(catalog::tank_robot());

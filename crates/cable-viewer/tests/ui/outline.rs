@@ -84,7 +84,7 @@ fn the_right_panel_follows_the_selection() {
             &["Tension before", "Tension after"],
         ),
         (catalog::tank(), "Select beam", "Obstacle “beam”", &["Lying on it", "Friction"]),
-        (catalog::loads_wind_heat(), "Select load 1", "load 1", &["Tension there"]),
+        (catalog::loads_wind_heat(), "Select load 1", "Load 1", &["Tension there"]),
         (catalog::tank(), "Select umbilical", "Cable “umbilical”", &["Cable preset", "Length slider"]),
         (catalog::tank(), "Select Scene", "The scene", &["Scene name", "Map"]),
         (catalog::tank(), "Select Environment", "The environment", &["Gravity", "Plan view"]),

@@ -348,6 +348,7 @@ fn an_edit_that_begins_the_run_anew_keeps_what_was_recorded() {
         harness.run_steps(2);
         let (recorded, end) = (state(&harness).live.recording.span_s().unwrap(), answer(&harness));
         assert!(recorded[1] > 0.9);
+        let graph = harness.get_by_label("Over time").rect();
         // A drag: many moves, one entry to undo.
         for k in 1..=5 {
             let to_m = [at[0] - 0.04 * f64::from(k), at[1]];
@@ -356,6 +357,7 @@ fn an_edit_that_begins_the_run_anew_keeps_what_was_recorded() {
         apply(&mut harness, Command::Scene(SceneCommand::EditDone));
         assert_eq!(answer(&harness).time_s, 0.0, "{item:?}: another start is another run");
         harness.get_by_label("Undo restart");
+        assert_eq!(harness.get_by_label("Over time").rect(), graph, "the graphs stay where they are");
         // The wheel of the mouse and pins are no edits.
         harness.key_press(Key::F);
         harness.run_steps(2);
