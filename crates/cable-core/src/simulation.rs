@@ -627,12 +627,6 @@ impl Simulation {
         }
     }
 
-    /// Bounds the work of searches for equilibria and of advances without inertia: see
-    /// [`Mechanics::limit_work`].
-    pub(crate) fn limit_work(&mut self, work: usize) {
-        self.cables.iter_mut().for_each(|c| c.limit_work(work));
-    }
-
     /// From now on no cable breaks, whatever pulls it.
     pub(crate) fn prevent_breaks(&mut self) {
         self.cables.iter_mut().for_each(SimulatedCable::prevent_breaks);

@@ -248,7 +248,7 @@ fn issue_016_a_loose_cable_pulls_the_harder_the_farther_it_is_drawn() {
     let (friction, [top, end, along], length) = (0.5, [4.0, 0.4, 7.0], 16.0);
     let (radius, w) = (0.5 * 0.028, GRAVITY);
     let ratio = (length - (top - radius) - (end - radius)) / along;
-    // How far the end is drawn with a pull H: material of the floor's folds is straightened.
+    // The displacement of the end at a pull H: loose cable of the floor is straightened.
     let drawn = |h: f64| {
         let up = end - radius;
         let arc = (up * (up + 2.0 * h / w)).sqrt();
@@ -294,6 +294,48 @@ fn issue_016_a_beam_overhead_is_not_in_the_way() {
             let [with, without] = [rest(&s), alone].map(|a| a.max_tension().tension_n);
             assert!((with - without).abs() < 1e-3 * without, "{model} {left}: {with} N for {without} N");
         }
+    }
+}
+
+/// An end exactly on the ground, on a box or on a pipe blocked the straight way, and the cable was
+/// led over whatever hung above the middle: 1.2 MN for 10.5 N (72 of 72 random scenes).
+#[test]
+fn issue_016_an_end_on_a_surface_is_in_no_way() {
+    for number in 0..40 {
+        let mut dice = Chance(number * 7 + 3);
+        (0..8).for_each(|_| _ = dice.next());
+        let (_, mut s) = scene(0);
+        let radius = dice.within(0.005, 0.015);
+        let span = dice.within(3.0, 12.0);
+        let stands_m = if dice.next() < 0.5 { 0.0 } else { dice.within(0.1, 0.4) };
+        let [low, high] = [[span, stands_m + radius], [0.0, dice.within(0.5, 4.0)]];
+        let ends = if dice.next() < 0.5 { [high, low] } else { [low, high] };
+        let c = &mut s.cables[0];
+        c.preset = None;
+        c.diameter_m = 2.0 * radius;
+        c.bending_stiffness_n_m2 = 0.0;
+        c.length_m = (high[1] - low[1]).hypot(span) * dice.within(1.01, 1.2);
+        c.supports = vec![Support::fixed("a", ends[0]), Support::fixed("b", ends[1])];
+        c.route_m = Vec::new();
+        let polygon = |x: [f64; 2], y: [f64; 2]| Shape::Polygon {
+            points_m: vec![[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]],
+        };
+        let named = |name: &str, shape: Shape| Obstacle { name: name.to_owned(), shape, friction: Some(0.3) };
+        s.obstacles = vec![named("floor", Shape::Terrain { points_m: vec![[-5.0, 0.0], [20.0, 0.0]] })];
+        if stands_m > 0.0 {
+            let shape = if dice.next() < 0.5 {
+                polygon([span - 0.1, span + 0.1], [-0.01, stands_m])
+            } else {
+                Shape::Circle { center_m: [span, 0.5 * stands_m], radius_m: 0.5 * stands_m }
+            };
+            s.obstacles.push(named("stand", shape));
+        }
+        let rest = |s: &Scene| Simulation::new(s.clone(), Model::Auto).unwrap().settle();
+        let alone = rest(&s);
+        let up = high[1] + dice.within(0.5, 5.0);
+        s.obstacles.push(named("beam", polygon([0.3 * span, 0.7 * span], [up, up + 0.3])));
+        let [with, without] = [rest(&s), alone].map(|a| a.unwrap().max_tension().tension_n);
+        assert!((with - without).abs() < 1e-3 * without, "{number}: {with} N for {without} N");
     }
 }
 

@@ -52,15 +52,21 @@ impl Geometry {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
     }
 
-    /// The bodies that are in the way from one place to another (m), in order.
+    /// Returns the bodies that are in the way between two places (m), in order. A place that
+    /// touches a body is not in its way there.
     #[must_use]
-    pub(crate) fn bodies_between(&self, from: Vec2, to: Vec2) -> Vec<usize> {
-        let sweep = Sweep::new([from; 2], [to; 2], 0.0);
-        let parts: Vec<ObstaclePart> = self.parts(sweep.low, sweep.high, sweep.margin).collect();
-        let of_one_body = parts.chunk_by(|a, b| a.body == b.body);
-        let blocks =
-            |parts: &&[ObstaclePart]| self.free_fraction_among(parts.iter().copied(), &sweep, [None, None]) < 1.0;
-        of_one_body.filter(blocks).filter_map(|parts| parts.first()).map(|part| part.body).collect()
+    pub(crate) fn bodies_between(&self, a: Vec2, b: Vec2) -> Vec<usize> {
+        // A move may leave what it touches at its start, and is stopped by what it would touch at
+        // its end. What blocks a way stops it in both directions.
+        let moves = [Sweep::new([a; 2], [b; 2], 0.0), Sweep::new([b; 2], [a; 2], 0.0)];
+        let [forth, _] = moves;
+        let blocks = |part: ObstaclePart| {
+            moves.iter().all(|sweep| self.free_fraction_among(std::iter::once(part), sweep, [None, None]) < 1.0)
+        };
+        let mut found: Vec<usize> =
+            self.parts(forth.low, forth.high, forth.margin).filter(|&p| blocks(p)).map(|p| p.body).collect();
+        found.dedup();
+        found
     }
 
     /// Returns the free fraction with respect to `parts`, which hold all parts within the margin of

@@ -9,7 +9,7 @@
 //! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
 //! | `robot_outline.rs` | the robot as an obstacle |
 //! | `unreachable_obstacles.rs` | obstacles that the cable cannot come to are left out |
-//! | `way_over.rs` | the way from one place to another, over what is in the way |
+//! | `way_over.rs` | the route between two places, over the obstacles in the way |
 //! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
 //! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |

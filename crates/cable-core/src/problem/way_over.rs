@@ -1,26 +1,28 @@
-//! The way from one place to another goes straight, or over what is in the way.
+//! The route between two places is straight, or leads over the obstacles that are in the way.
 //!
-//! Over everything that stands between the two places would be too much: a beam high above a hill
-//! has nothing to do with how a cable is led over the hill. What is in the way is therefore found
-//! step by step: what the straight way meets, then what the way over that meets, and so on.
+//! An obstacle is in the way if the route without it would meet it. A beam high above a hill is
+//! not: a cable that is led over the hill passes below the beam. The obstacles in the way are
+//! therefore found step by step: those that the straight route meets, then those that the route
+//! over these meets, and so on.
 
 use crate::contact::World;
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross};
 
-/// Clearance of a way over a corner or circle, in distances of the centre line of a touching cable
-/// … Smaller: the way is pushed out of the obstacle once more; larger: it begins farther from its
-/// rest. A choice, tuned on no campaign, as are the two below.
+/// Clearance of a route over a corner or circle, as a multiple of the distance of the centre line
+/// of a touching cable. Smaller: the route is pushed out of the obstacle once more; larger: it
+/// begins farther from its equilibrium. A choice, tuned on no campaign, as are the two below.
 const TOP_CLEARANCE: f64 = 1.05;
-/// … and this much more, m, for cables so thin that the factor is nothing. Smaller and larger: as
-/// above.
+/// Additional clearance, m, for cables so thin that the factor has no effect. Smaller and larger:
+/// as above.
 const TOP_CLEARANCE_M: f64 = 2e-3;
-/// Radius of the polygon round a circle in clearances, so that its sides are clear as well: 1/cos
-/// of half a side, 5.6°, is 1.005. Smaller: sides cut into the circle; larger: as of the clearance.
+/// Radius of the polygon round a circle, as a multiple of the clearance, so that its sides are
+/// clear as well: 1/cos of half a side, 5.6°, is 1.005. Smaller: sides cut into the circle; larger:
+/// as for the clearance.
 const CIRCLE_POLYGON: f64 = 1.02;
 
-/// The bodies of a world that are in the way from `a` to `b` (m), in order; all of them where there
-/// is no way over those.
+/// Returns the bodies of a world that are in the way from `a` to `b` (m), in order. The route over
+/// them may still meet one of them, if an end is below its overhang.
 pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
     let geometry = world.geometry();
     let count = geometry.bodies().len();
@@ -28,10 +30,6 @@ pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
     let mut way = vec![a, b];
     for _ in 0..=count {
         let met: Vec<usize> = way.windows(2).flat_map(|leg| geometry.bodies_between(leg[0], leg[1])).collect();
-        if met.is_empty() {
-            found.sort_unstable();
-            return found;
-        }
         let before = found.len();
         for body in met {
             if !found.contains(&body) {
@@ -43,11 +41,12 @@ pub(crate) fn bodies_in_the_way(world: &World, a: Vec2, b: Vec2) -> Vec<usize> {
         }
         way = hull_over(world, &found, a, b);
     }
-    (0..count).collect()
+    found.sort_unstable();
+    found
 }
 
-/// The upper hull of the places `a` and `b` (m) and of the tops of some bodies between them, from
-/// `a` to `b`.
+/// Returns the upper convex hull of `a`, `b` (m) and the tops of `bodies` between them, from `a` to
+/// `b`.
 pub(crate) fn hull_over(world: &World, bodies: &[usize], a: Vec2, b: Vec2) -> Vec<Vec2> {
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
     let bodies = bodies.iter().filter_map(|k| world.geometry().bodies().get(*k));
@@ -70,7 +69,7 @@ pub(crate) fn hull_over(world: &World, bodies: &[usize], a: Vec2, b: Vec2) -> Ve
     hull
 }
 
-/// Points just clear of the top of every corner and of the circle of a body.
+/// Returns points just above every corner of a body, or around its circle.
 fn tops(body: &Body) -> Vec<Vec2> {
     let clear = TOP_CLEARANCE * body.offset + TOP_CLEARANCE_M;
     let mut out = Vec::new();

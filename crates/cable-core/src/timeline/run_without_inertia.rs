@@ -8,12 +8,6 @@ use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
-/// The most work of one of its steps, in iterations times elements: a step of a thousand bars that
-/// slide takes a tenth of it. A cable that is let go on a slope slides for ever without inertia.
-/// Less: runs that would have an answer are given up; more: a run waits longer for one that has
-/// none.
-const MAX_WORK: usize = 1_000_000;
-
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
 pub(super) struct RunWithoutInertia {
@@ -41,10 +35,7 @@ impl RunWithoutInertia {
         let settings = Settings { histories: false, ..run.settings() };
         let question = Question::History(Inertia::QuasiStatic);
         let simulation = Simulation::for_question(run.scene().clone(), Model::Auto, settings, question);
-        let simulation = simulation.ok().and_then(|mut simulation| {
-            simulation.limit_work(MAX_WORK);
-            simulation.settle().is_ok().then_some(simulation)
-        });
+        let simulation = simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
         // A cast takes what is too long for one step as one.
         let times = ((QUASI_STATIC_STEP_S / step_s).round() as u64).max(1);
         let model = simulation.as_ref().map_or(Model::Auto, Simulation::model);

@@ -84,8 +84,8 @@ pub fn verdict(verification: &Verification) -> &'static str {
 
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
-/// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
-/// that gave it.
+/// The light that says if the answer obeys the laws of mechanics, checked independently of the
+/// model that gave it.
 fn verdict_light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let text = verdict(verification);

@@ -10,7 +10,7 @@ const MAX_DIFFERENCES: usize = 2;
 /// The name of a pinned result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PinName {
-    /// What sets it apart: its differences, else its scene.
+    /// Its name among the pins: the inputs that differ, else its scene.
     pub short: String,
     /// Its scene, and what sets it apart.
     pub full: String,

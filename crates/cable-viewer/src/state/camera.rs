@@ -14,10 +14,11 @@ pub struct Camera {
     pub fit_wanted: bool,
     /// Size of the canvas that the scene was fitted to, points, until the view is moved by hand.
     pub fitted_to: Option<[f32; 2]>,
-    /// What leads a cable, or a piece that is torn off, is kept in view, until the view is moved by
-    /// hand.
+    /// The view keeps the robot or support that leads a cable, or a torn piece, in sight, until the
+    /// view is moved by hand.
     pub follows: bool,
-    /// What leads a cable has been in view since the view was moved by hand.
+    /// True if the robot or support that leads a cable has been in view since the view was moved by
+    /// hand.
     pub leader_seen: bool,
     /// Scale that the scene was fitted at, points per metre, once the view has widened since.
     pub widened_from: Option<f64>,

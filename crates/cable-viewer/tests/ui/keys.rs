@@ -146,7 +146,7 @@ fn issue_020_tab_leads_to_every_control_and_the_focus_is_seen() {
     }
 }
 
-/// What the pointer does with a menu, the keys do: open, choose, and leave.
+/// Keys do with a menu as the pointer does: open, choose, and leave.
 #[test]
 fn issue_020_a_menu_is_used_by_keys() {
     let mut harness = open(catalog::tank_robot());

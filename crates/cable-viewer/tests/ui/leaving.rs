@@ -83,7 +83,7 @@ fn a_view_that_was_moved_is_left_alone_and_offers_to_follow_what_leads_the_cable
     }
     assert_eq!(harness.state().state.view.camera.points_per_m, moved.points_per_m, "as large as it was");
     assert!(harness.query_by_label("Follow the cable").is_none());
-    // What the user moves out of view is out of view on purpose.
+    // The user moved it out of view on purpose.
     apply(&mut harness, Command::View(ViewCommand::Pan(Vec2::new(0.0, 3000.0))));
     let camera = harness.state().state.view.camera;
     harness.run_steps(10);
@@ -91,7 +91,7 @@ fn a_view_that_was_moved_is_left_alone_and_offers_to_follow_what_leads_the_cable
     assert!(harness.query_by_label("Follow the cable").is_none());
 }
 
-/// What falls for ever does not become a dot: the view goes with it.
+/// The view goes with a cable that falls for ever, which does not become a dot.
 #[test]
 fn a_view_widens_no_further_than_the_cable_can_be_seen() {
     let mut scene = catalog::hanging_span();

@@ -64,16 +64,16 @@ impl SolverMemory {
         let (mut off, mut limits) = (0.0, FrictionLimits::default());
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
+            let is_searched = round >= tuning.whole_lag_rounds;
             cable.contacts.list_neighbours(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
             cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
-                let contacts = &mut cable.contacts.friction_contacts;
-                off = limits.next(contacts, &before, round >= tuning.whole_lag_rounds);
+                let next = if is_searched { FrictionLimits::false_position } else { FrictionLimits::substitute };
+                off = next(&mut limits, &mut cable.contacts.friction_contacts, &before);
             }
             cable.input.stopping.shift = cable.meshing.soft_shift();
-            // Limits are sought by differences of forces, which have to be known better for that.
-            let is_searched = round >= tuning.whole_lag_rounds;
+            // False position uses differences of forces, which need a tighter tolerance.
             let exact = cable.input.stopping.tolerance;
             if is_searched {
                 let least = larger(SEARCH_TOLERANCE * exact, rounding_of_bars(cable));

@@ -159,9 +159,8 @@ fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = points.first().copied().into_iter().collect();
     for leg in points.windows(2) {
         let (a, b) = (leg[0], leg[1]);
-        let blocked = !problem.world.is_empty() && (problem.world.free_fraction([a, a], [b, b], 0.0) < 1.0);
-        if blocked && (b.x - a.x).abs() > 1e-9 {
-            let bodies = bodies_in_the_way(&problem.world, a, b);
+        let bodies = bodies_in_the_way(&problem.world, a, b);
+        if !bodies.is_empty() && (b.x - a.x).abs() > 1e-9 {
             let hull = hull_over(&problem.world, &bodies, a, b);
             out.extend(hull.iter().skip(1));
         } else {

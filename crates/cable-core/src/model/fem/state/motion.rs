@@ -57,6 +57,15 @@ pub(in crate::model::fem) struct NodalMotion {
 }
 
 impl NodalMotion {
+    /// Moves the node `k` and its history by the same way (m).
+    pub(in crate::model::fem) fn shift(&mut self, k: usize, way: Vec2) {
+        self.positions[k] += way;
+        self.previous_positions[k] += way;
+        if let Some(older) = self.older_positions.get_mut(k) {
+            *older += way;
+        }
+    }
+
     /// Becomes a copy of `other`, reusing its memory where possible.
     pub(in crate::model::fem) fn copy_from(&mut self, other: &Self) {
         let Self {

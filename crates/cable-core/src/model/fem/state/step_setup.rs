@@ -101,8 +101,15 @@ fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dra
     }
 }
 
-/// Moves the wheels of pulleys, with the nodes that slide over them.
+/// Moves the wheels of pulleys, with the nodes that slide over them and their history: a wheel
+/// gives its node no velocity along the cable.
 fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(usize) -> Option<Vec2>) {
+    let mesh = &cable.mesh;
+    let is_wheel = |k: usize| mesh.sliding[k].as_ref().is_some_and(|s| matches!(s.slide_over, SlideOver::Pulley(_)));
+    let beside = (0..mesh.rest_length.len()).filter(|&e| is_wheel(e) || is_wheel(e + 1));
+    let lengths = &mut cable.input.losses.lengths_at_wheels;
+    lengths.clear();
+    lengths.extend(beside.map(|e| (e, mesh.path(e, &cable.motion.positions).length)));
     for (k, node) in cable.mesh.sliding.iter_mut().enumerate() {
         let Some(node) = node else { continue };
         let SlideOver::Pulley(support) = node.slide_over else { continue };
@@ -110,7 +117,7 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
         let Some((at, _)) = holding.and_then(|s| s.place_at(to)) else { continue };
         let follower = cable.motion.followers.get(support).copied().flatten();
         node.end.center = follower.map_or(dragged_to(support).unwrap_or(at), |f| f.position());
-        cable.motion.positions[k] = node.position();
+        cable.motion.shift(k, node.position() - cable.motion.positions[k]);
         cable.input.supports.start[k] = cable.motion.positions[k];
     }
 }

@@ -91,7 +91,9 @@ impl Stepper {
                     // BDF2 would take them into account half a step late.
                     if self.cable.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
                         self.cable.motion.step_before = 0.0;
-                        lay_down_released(&mut self.cable, [start, to]);
+                        if is_dynamic {
+                            lay_down_released(&mut self.cable, [start, to]);
+                        }
                     }
                     if progress.finish(piece) {
                         return Ok(total);
@@ -126,6 +128,9 @@ impl Stepper {
         let to = start + piece;
         let mut hand_targets = std::mem::take(&mut self.hand_drive.hand_targets);
         self.cable.interpolate_targets(&mut hand_targets, request.dragged, piece / (request.due - start));
+        // The cable balances at the end of the piece, without the supports that release it on the
+        // way.
+        lay_down_released(&mut self.cable, [start, to]);
         let tried = self.step_without_pull(to, &hand_targets).or_else(|failure| {
             let tuning = &self.cable.mesh.tuning.equilibrium;
             if failure.cause == FailureCause::CornerPulls || depth < tuning.halvings_before_relaxation {
@@ -134,6 +139,7 @@ impl Stepper {
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
             self.cable.motion.time = start;
+            lay_down_released(&mut self.cable, [start, to]);
             self.relax(to, &hand_targets)
         });
         self.hand_drive.hand_targets = hand_targets;
@@ -175,8 +181,8 @@ impl Stepper {
             progress.size = progress.left;
         }
         self.cable.motion.step_before = 0.0;
-        let spent = failure.cause == FailureCause::WorkSpent;
-        if !spent && progress.depth <= self.cable.mesh.tuning.step.max_halvings {
+        let is_final = matches!(failure.cause, FailureCause::WorkSpent | FailureCause::SlidesAway);
+        if !is_final && progress.depth <= self.cable.mesh.tuning.step.max_halvings {
             return Ok(());
         }
         Err(SolveError::StepFailed {

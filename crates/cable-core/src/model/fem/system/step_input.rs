@@ -82,6 +82,9 @@ pub struct LossTerms {
     pub bars: Vec<[f64; 2]>,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
+    /// Bars beside the wheels of pulleys, with the length (m) of the path of each at the start of
+    /// the step, before the wheels move.
+    pub lengths_at_wheels: Vec<(usize, f64)>,
     /// Damping stiffness of bends, EI τ/h, N m² (0: none).
     pub bending: f64,
 }

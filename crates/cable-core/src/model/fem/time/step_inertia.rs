@@ -71,5 +71,8 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
             length(&m.positions) * now - length(&m.previous_positions) * past + older
         };
     }
+    for &(bar, length) in &input.losses.lengths_at_wheels {
+        input.losses.predicted_length[bar] = length;
+    }
     loss_memory::add(cable, h, rate, decay);
 }

@@ -172,14 +172,15 @@ pub(in crate::model::spans) fn section_route(
 /// A way from `a` to `b` if the straight one is blocked: out from under obstacles above either end,
 /// then above everything that is in the way.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
-    let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
-    if world.is_empty() || free(a, b) {
+    let bodies = bodies_in_the_way(world, a, b);
+    if bodies.is_empty() {
         return Vec::new();
     }
+    let free = |p: Vec2, q: Vec2| world.geometry().bodies_between(p, q).is_empty();
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
     let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
-    for body in bodies_in_the_way(world, a, b).into_iter().filter_map(|k| world.geometry().bodies().get(k)) {
+    for body in bodies.into_iter().filter_map(|k| world.geometry().bodies().get(k)) {
         let points = body.edges.iter().flat_map(|e| [e.from, e.to]).chain(body.center);
         for q in points.filter(|q| q.x > low - body.offset && q.x < high + body.offset) {
             top = top.max(q.y + 2.0 * body.offset + clear);

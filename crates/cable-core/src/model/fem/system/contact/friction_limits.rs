@@ -1,68 +1,71 @@
-//! The friction limits of contacts are sought with which a lagged step finds the normal forces that
-//! they were made of.
+//! A lagged step balances the cable with frozen friction limits; this module finds the limits that
+//! agree with the normal forces of the balanced step.
 //!
-//! With a limit x of a contact the step is balanced by normal forces that allow a friction f(x).
-//! Sought is f(x) = x. Each round takes x = f(x) first. Where a contact that rubs more presses
-//! less, that goes to and fro without end: from there on the fixed point lies between two limits
-//! that were tried, and is found by false position, contact by contact (the Illinois method: M.
-//! Dowell, P. Jarratt, "A modified regula falsi method for computing the root of an equation", BIT
-//! 11, 1971).
+//! With the limit x at a contact, the balanced step has a normal force N there, which allows the
+//! friction f(x) = μN. Wanted is the fixed point f(x) = x. Successive substitution x ← f(x) is
+//! tried first. If more friction at a contact reduces its normal force, substitution oscillates.
+//! The fixed point then lies between two limits that were tried, and is found by false position,
+//! for each contact by itself (the Illinois method: M. Dowell, P. Jarratt, "A modified regula falsi
+//! method for computing the root of an equation", BIT 11, 1971).
 
 use crate::math::larger;
 use crate::model::fem::system::contact::friction_contact::{FrictionContact, of_node};
 
-/// Limits that are tried on one side, one after the other, before the other side is forgotten if
-/// that halved nothing. Fewer: steep changes are sought anew; more: rounds are lost on a limit that
-/// is no longer one.
-const MAX_IN_A_ROW: u32 = 3;
+/// Number of successive trials on one side of the fixed point after which the bracket is dropped,
+/// unless they halved the excess. Smaller: brackets of steep functions are dropped; larger: rounds
+/// are spent on a bracket that other contacts have made invalid.
+const MAX_SAME_SIDE_TRIALS: u32 = 3;
 
-/// A limit that was tried, and what the step then allowed more than that, N.
+/// A limit x that was tried, and its excess f(x) − x, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Tried {
+struct Trial {
     limit: f64,
     excess: f64,
 }
 
-/// The limits between which that of a contact lies.
+/// The two limits between which the fixed point of a contact lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bracket {
     contact: FrictionContact,
-    /// The greatest limit with which more is allowed, and the least with which less is.
-    low: Option<Tried>,
-    high: Option<Tried>,
-    /// True if the limit that was tried last is the low one.
-    rises: bool,
-    /// Limits that were tried on this side one after the other, and the excess of the first, N.
-    in_a_row: (u32, f64),
+    /// The last trial with a positive excess: the fixed point is above it.
+    low: Option<Trial>,
+    /// The last trial with a negative excess: the fixed point is below it.
+    high: Option<Trial>,
+    /// True if the last trial is the low one.
+    last_is_low: bool,
+    /// Number of successive trials on the side of the last one.
+    same_side_trials: u32,
+    /// Excess of the first of them, N.
+    first_excess: f64,
 }
 
 impl Bracket {
     fn new(contact: FrictionContact) -> Self {
-        Self { contact, low: None, high: None, rises: false, in_a_row: (0, 0.0) }
+        Self { contact, low: None, high: None, last_is_low: false, same_side_trials: 0, first_excess: 0.0 }
     }
 
-    /// Adds a limit that was tried. The one on the other side is forgotten where it contradicts
-    /// this one, or where the search came no nearer from this side: other contacts have changed
-    /// since.
-    fn add(&mut self, now: Tried) {
-        let rises = now.excess > 0.0;
-        let again = rises == self.rises && self.in_a_row.0 > 0;
-        self.rises = rises;
-        self.in_a_row = if again { (self.in_a_row.0 + 1, self.in_a_row.1) } else { (1, now.excess) };
-        let (side, other) = if rises { (&mut self.low, &mut self.high) } else { (&mut self.high, &mut self.low) };
-        *side = Some(now);
+    /// Adds a trial. The other end of the bracket is dropped if it contradicts the trial, or if
+    /// trials on this side do not converge: then other contacts have changed since it was tried.
+    fn add(&mut self, trial: Trial) {
+        let is_low = trial.excess > 0.0;
+        let repeats = is_low == self.last_is_low && self.same_side_trials > 0;
+        self.last_is_low = is_low;
+        (self.same_side_trials, self.first_excess) =
+            if repeats { (self.same_side_trials + 1, self.first_excess) } else { (1, trial.excess) };
+        let (side, other) = if is_low { (&mut self.low, &mut self.high) } else { (&mut self.high, &mut self.low) };
+        *side = Some(trial);
         let Some(far) = other else { return };
-        let (count, first) = self.in_a_row;
-        let stalls = count >= MAX_IN_A_ROW && now.excess.abs() > 0.5 * first.abs();
-        if rises != (far.limit > now.limit) || stalls {
+        let stalls =
+            self.same_side_trials >= MAX_SAME_SIDE_TRIALS && trial.excess.abs() > 0.5 * self.first_excess.abs();
+        if is_low != (far.limit > trial.limit) || stalls {
             *other = None;
-            self.in_a_row = (1, now.excess);
-        } else if again {
+            (self.same_side_trials, self.first_excess) = (1, trial.excess);
+        } else if repeats {
             far.excess *= 0.5;
         }
     }
 
-    /// The limit to try next, N; None where there are not two between which it lies.
+    /// The next limit to try, N; None without two ends.
     fn next(&self) -> Option<f64> {
         let (low, high) = (self.low?, self.high?);
         let next = (low.limit * high.excess - high.limit * low.excess) / (high.excess - low.excess);
@@ -70,45 +73,60 @@ impl Bracket {
     }
 }
 
-/// The search for the limits of all contacts.
+/// The search for the friction limits of all contacts in the rounds of a step.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct FrictionLimits(Vec<Bracket>);
 
 impl FrictionLimits {
-    /// Replaces the limits that a round allows, in `contacts`, by those to try next, given those
-    /// with which it was balanced; `is_searched`: not by what it allows, where another is known.
-    /// Returns the greatest difference between what was used and what is allowed, N. Both lists are
-    /// in order of nodes; a contact that is gone allows nothing.
-    pub(in crate::model::fem) fn next(
+    /// Keeps the limits f(x) of `contacts` as those of the next round; `used` has the limits x of
+    /// the round that gave them. Both lists are in order of nodes. Returns the greatest |f(x) − x|,
+    /// N; a contact that has opened has f(x) = 0.
+    pub(in crate::model::fem) fn substitute(
         &mut self,
         contacts: &mut Vec<FrictionContact>,
         used: &[FrictionContact],
-        is_searched: bool,
     ) -> f64 {
-        let is_gone = |b: &&FrictionContact| !of_node(contacts, b.touch.node).any(|n| n.is_of(&b.touch));
-        let gone: Vec<FrictionContact> = used.iter().filter(is_gone).copied().collect();
-        contacts.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
-        contacts.sort_by_key(|r| r.touch.node);
+        let off = self.add_trials(contacts, used);
+        contacts.retain(|c| c.limit != 0.0);
+        off
+    }
+
+    /// As [`Self::substitute`], but contacts with a bracket get its next limit.
+    pub(in crate::model::fem) fn false_position(
+        &mut self,
+        contacts: &mut Vec<FrictionContact>,
+        used: &[FrictionContact],
+    ) -> f64 {
+        let off = self.add_trials(contacts, used);
+        for (contact, bracket) in contacts.iter_mut().zip(&self.0) {
+            contact.limit = bracket.next().unwrap_or(contact.limit);
+        }
+        contacts.retain(|c| c.limit != 0.0);
+        off
+    }
+
+    /// Adds a trial to the bracket of each contact, in the order of `contacts`, which then has
+    /// those that have opened, too.
+    fn add_trials(&mut self, contacts: &mut Vec<FrictionContact>, used: &[FrictionContact]) -> f64 {
+        let has_opened = |u: &&FrictionContact| !of_node(contacts, u.touch.node).any(|c| c.is_of(&u.touch));
+        let opened: Vec<FrictionContact> = used.iter().filter(has_opened).copied().collect();
+        contacts.extend(opened.iter().map(|u| FrictionContact { limit: 0.0, ..*u }));
+        contacts.sort_by_key(|c| c.touch.node);
         let mut off = 0.0;
         let mut brackets = Vec::with_capacity(contacts.len());
-        for contact in contacts.iter_mut() {
+        for contact in contacts.iter() {
             let node = contact.touch.node;
-            let limit = of_node(used, node).find(|b| b.is_of(&contact.touch)).map_or(0.0, |b| b.limit);
+            let limit = of_node(used, node).find(|u| u.is_of(&contact.touch)).map_or(0.0, |u| u.limit);
             let excess = contact.limit - limit;
             off = larger(off, excess.abs());
-            let low = self.0.partition_point(|b| b.contact.touch.node < node);
-            let mut known = self.0[low..].iter().take_while(|b| b.contact.touch.node == node);
-            let mut bracket = known
-                .find(|b| b.contact.is_of(&contact.touch))
-                .map_or_else(|| Bracket::new(*contact), |b| Bracket { contact: *contact, ..*b });
-            bracket.add(Tried { limit, excess });
-            if is_searched && let Some(next) = bracket.next() {
-                contact.limit = next;
-            }
+            let first = self.0.partition_point(|b| b.contact.touch.node < node);
+            let mut of_same_node = self.0[first..].iter().take_while(|b| b.contact.touch.node == node);
+            let known = of_same_node.find(|b| b.contact.is_of(&contact.touch));
+            let mut bracket = known.map_or_else(|| Bracket::new(*contact), |b| Bracket { contact: *contact, ..*b });
+            bracket.add(Trial { limit, excess });
             brackets.push(bracket);
         }
         self.0 = brackets;
-        contacts.retain(|r| r.limit != 0.0);
         off
     }
 }
@@ -139,7 +157,8 @@ mod tests {
             let mut off = f64::INFINITY;
             for round in 0..rounds {
                 let mut now = vec![contact(3, allows(used[0].limit)), contact(4, 0.5 + 0.4 * used[1].limit)];
-                off = limits.next(&mut now, &used, round >= 8);
+                let next = if round < 8 { FrictionLimits::substitute } else { FrictionLimits::false_position };
+                off = next(&mut limits, &mut now, &used);
                 // One without a limit is left out.
                 if now.len() == 1 {
                     now.insert(0, contact(3, 0.0));
