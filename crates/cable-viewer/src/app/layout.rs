@@ -1,7 +1,7 @@
 //! The layout says where panels and canvas are.
 
 use egui::style::ScrollAnimation;
-use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui, UiBuilder, vec2};
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, Rect, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::guidance::{first_step_hints, tutorial_bar};
 use crate::app::menu;
@@ -129,6 +129,8 @@ const WARNING_WIDTH: f32 = 300.0;
 /// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
 /// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
 const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
+/// Height of the row of playback in the first frame, points; later ones use that of the one before.
+const PLAYBACK_HEIGHT: f32 = 26.0;
 
 /// A size as a part of the window's, within limits (points).
 #[derive(Clone, Copy, Debug)]
@@ -159,10 +161,43 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
-    Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     state.ui.results_beside = wide && open.results;
-    if wide && open.results {
-        side(ui, Panel::right("read"), INSPECTOR_WIDTH.of(width), |ui| {
+    // The keyboard goes through panels in the order in which they are drawn. They are drawn as they
+    // are read, from the left to the right and down; those at the lower edge, which come last, keep
+    // the height that they had in the frame before.
+    let below_menu = ui.available_rect_before_wrap();
+    let playback_height = HeightKept::of(ui, "playback", PLAYBACK_HEIGHT);
+    let mut main = child(ui, "main", below_menu.with_max_y(below_menu.max.y - playback_height.points));
+    if !wide && (open.edit || open.results) {
+        tabs(&mut main, state, !graphs, commands);
+    }
+    let main = main.available_rect_before_wrap();
+    let inspector_width = if state.ui.results_beside { INSPECTOR_WIDTH.of(width) } else { 0.0 };
+    let beside_inspector = main.with_max_x(main.max.x - inspector_width);
+    // A past that is shown must not be forgotten about.
+    let past = state.live.recording.shown_s.is_some();
+    let graphs_height = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
+    let drawer = match (graphs && open.graphs, past) {
+        (true, _) => Some(("plots", graphs_height)),
+        (false, true) => Some(("timeline", PLAYBACK_HEIGHT)),
+        (false, false) => None,
+    };
+    let drawer = drawer.map(|(name, usual)| HeightKept::of(ui, name, usual));
+    let drawer_height = drawer.as_ref().map_or(0.0, |drawer| drawer.points);
+    let mut picture = child(ui, "picture", beside_inspector.with_max_y(beside_inspector.max.y - drawer_height));
+    if wide && open.edit {
+        let outline = Panel::left("edit");
+        side(&mut picture, outline, OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
+    }
+    if !told_in_panel {
+        strip_above(&mut picture, state, commands);
+    }
+    let canvas = CentralPanel::no_frame().frame(Frame::NONE);
+    let canvas = canvas.show(&mut picture, |ui| canvas::ui(ui, state, commands)).response.rect;
+    canvas::follow::offer(&picture, canvas, state, commands);
+    first_step_hints::ui(&picture, canvas, state, commands);
+    if state.ui.results_beside {
+        side(&mut child(ui, "inspector", main), Panel::right("read"), inspector_width, |ui| {
             legend::beside(ui, state);
             safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
@@ -171,36 +206,54 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             scroll(ui, Column::Results, state, commands);
         });
     }
-    if !wide && (open.edit || open.results) {
-        tabs(ui, state, !graphs, commands);
-    }
     // Below outline and canvas, and so wider than the canvas.
-    // A past that is shown must not be forgotten about.
-    let past = state.live.recording.shown_s.is_some();
-    if graphs && open.graphs {
-        let high = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
-        let frame = Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(5, 2));
-        let drawer = Panel::bottom("plots").frame(frame).resizable(true).default_size(high);
-        drawer.size_range(GRAPHS_HEIGHT.1..=500.0).show(ui, |ui| {
-            // A panel takes the height of what is in it: without this it shrinks by a margin a
-            // frame.
-            ui.set_min_height(ui.available_height());
-            panels::plots::ui(ui, state, commands);
-        });
-    } else if past || (graphs && state.live.earlier_run.is_some()) {
-        Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
+    if let Some(kept) = drawer {
+        let mut below = child(ui, "below", beside_inspector);
+        let drawn = if kept.name == "plots" {
+            let frame = Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(5, 2));
+            let drawer = Panel::bottom("plots").frame(frame).resizable(true).default_size(graphs_height);
+            drawer.size_range(GRAPHS_HEIGHT.1..=500.0).show(&mut below, |ui| {
+                // A panel takes the height of what is in it: without this it shrinks by a margin a
+                // frame.
+                ui.set_min_height(ui.available_height());
+                panels::plots::ui(ui, state, commands);
+            })
+        } else {
+            Panel::bottom("timeline").show(&mut below, |ui| panels::timeline::ui(ui, state, commands))
+        };
+        kept.keep(ui, drawn.response.rect.height());
     }
-    if wide && open.edit {
-        side(ui, Panel::left("edit"), OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
-    }
-    if !told_in_panel {
-        strip_above(ui, state, commands);
-    }
-    let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
-    canvas::follow::offer(ui, canvas.response.rect, state, commands);
-    first_step_hints::ui(ui, canvas.response.rect, state, commands);
+    let mut foot = child(ui, "foot", below_menu);
+    let drawn = Panel::bottom("playback").show(&mut foot, |ui| panels::playback::ui(ui, state, commands));
+    playback_height.keep(ui, drawn.response.rect.height());
     highlight::frame(ui.ctx());
     focus::frame(ui.ctx());
+}
+
+/// A part of the window by itself.
+fn child(ui: &mut Ui, name: &str, part: Rect) -> Ui {
+    ui.new_child(UiBuilder::new().id_salt(name).max_rect(part))
+}
+
+/// The height of a panel that is drawn after what stands above it, in the frame before.
+struct HeightKept {
+    name: &'static str,
+    points: f32,
+}
+
+impl HeightKept {
+    /// Before the first frame it is the `usual` one, points.
+    fn of(ui: &Ui, name: &'static str, usual: f32) -> Self {
+        Self { name, points: ui.data(|d| d.get_temp(Id::unique(("height", name)))).unwrap_or(usual) }
+    }
+
+    /// Keeps the height for the next frame, which follows at once if it is another.
+    fn keep(self, ui: &Ui, height: f32) {
+        ui.data_mut(|d| d.insert_temp(Id::unique(("height", self.name)), height));
+        if height != self.points {
+            ui.ctx().request_repaint();
+        }
+    }
 }
 
 /// The meaning of the colours and the worst warning, in a strip above the canvas: on it they would

@@ -193,7 +193,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut panels = state.ui.panels;
-    checkbox(ui, &mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
+    checkbox(ui, &mut panels.edit, "Outline ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
     checkbox(ui, &mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
     checkbox(ui, &mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
     if panels != state.ui.panels {

@@ -109,7 +109,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
         ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
         ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),
-        ("Show or fold the edit panel", show(OpenPanels { edit: !panels.edit, ..panels })),
+        ("Show or fold the outline", show(OpenPanels { edit: !panels.edit, ..panels })),
         ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
         ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),
     ];

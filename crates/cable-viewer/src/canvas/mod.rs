@@ -12,7 +12,7 @@ pub mod follow;
 pub mod layers;
 mod pointer;
 
-use egui::{Rect, Role, Sense, Ui, WidgetInfo};
+use egui::{Id, Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::canvas_view::{CanvasView, hints_height};
 use crate::canvas::layers::{
@@ -57,11 +57,20 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         camera: state.view.camera,
         painter: &painter,
         palette: theme::palette(ui.visuals()),
-        occupied: Vec::new(),
+        occupied: Vec::from_iter(take_kept_clear(ui)),
         avoided: Vec::new(),
     };
     draw(&mut view, state);
     badge(ui, rect, state, commands);
+}
+
+/// Keeps labels out of a part of the canvas over which something is drawn, in the next frame.
+pub fn keep_clear(ui: &Ui, part: Rect) {
+    ui.data_mut(|d| d.insert_temp(Id::unique("kept clear"), Some(part)));
+}
+
+fn take_kept_clear(ui: &Ui) -> Option<Rect> {
+    ui.data_mut(|d| d.remove_temp::<Option<Rect>>(Id::unique("kept clear"))).flatten()
 }
 
 /// Time (s) after which a solve is said on the canvas, and after which it can be cancelled.
@@ -72,7 +81,7 @@ const BADGE_AFTER_S: [f64; 2] = [0.25, 0.8];
 fn badge(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
     let Some(seconds) = state.solving().filter(|s| *s > BADGE_AFTER_S[0]) else { return };
     let top = egui::pos2(rect.center().x, rect.min.y + 12.0);
-    let area = egui::Area::new(egui::Id::unique("solving")).fixed_pos(top).pivot(egui::Align2::CENTER_TOP);
+    let area = egui::Area::new(Id::unique("solving")).fixed_pos(top).pivot(egui::Align2::CENTER_TOP);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.horizontal(|ui| {

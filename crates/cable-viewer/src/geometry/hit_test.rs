@@ -60,10 +60,18 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE_HIT_RADIUS) {
         return Some(Item::Cable(cable));
     }
-    if inside(&robot_outline(state), state.view.camera.to_world(canvas, p)) {
+    let (robot, world) = (robot_outline(state), state.view.camera.to_world(canvas, p));
+    if inside(&robot, world) {
         return Some(Item::Robot);
     }
-    obstacle_at(state, canvas, p)
+    // A robot of 30 points is missed by a point or two: beside it, where nothing else is, it is
+    // picked as well.
+    obstacle_at(state, canvas, p).or_else(|| {
+        let reach = f64::from(LINE_HIT_RADIUS) / state.view.camera.points_per_m;
+        let sides = robot.iter().zip(robot.iter().cycle().skip(1));
+        let beside = sides.into_iter().any(|(&a, &b)| distance_to_segment(a, b, world) <= reach);
+        beside.then_some(Item::Robot)
+    })
 }
 
 /// The obstacle, or one of its corners, is selected.
@@ -137,15 +145,17 @@ fn along(a: Point, b: Point, p: Point) -> f64 {
     if l2 > 0.0 { (((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / l2).clamp(0.0, 1.0) } else { 0.0 }
 }
 
+/// Distance of a point from a segment, m.
+fn distance_to_segment(a: Point, b: Point, p: Point) -> f64 {
+    let f = along(a, b, p);
+    (a[0] + (b[0] - a[0]) * f - p[0]).hypot(a[1] + (b[1] - a[1]) * f - p[1])
+}
+
 fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     let world = state.view.camera.to_world(canvas, p);
     let reach = f64::from(LINE_HIT_RADIUS) / state.view.camera.points_per_m;
-    let near_line = |points: &[Point], reach: f64| {
-        points.windows(2).any(|s| {
-            let f = along(s[0], s[1], world);
-            (s[0][0] + (s[1][0] - s[0][0]) * f - world[0]).hypot(s[0][1] + (s[1][1] - s[0][1]) * f - world[1]) <= reach
-        })
-    };
+    let near_line =
+        |points: &[Point], reach: f64| points.windows(2).any(|s| distance_to_segment(s[0], s[1], world) <= reach);
     let hit = |shape: &Shape| match shape {
         // The solid below the ground fills half the window: only its surface can be picked.
         Shape::Terrain { points_m } => near_line(points_m, reach),

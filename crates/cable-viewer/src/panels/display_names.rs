@@ -43,8 +43,7 @@ fn property(key: &str) -> String {
         return known.quantity.name.to_owned();
     }
     let plain = unit(key).map_or(key, |(name, _)| name).replace('_', " ");
-    let mut letters = plain.chars();
-    letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
+    capital(&plain)
 }
 
 /// The value of a key with its unit and four digits.
@@ -121,6 +120,12 @@ pub fn place(path: &str) -> String {
         if number.is_empty() { format!("{known}s") } else { one_of(known, number) }
     });
     let text = parts.collect::<Vec<_>>().join(", ");
+    capital(&text)
+}
+
+/// The text with a capital, as a sentence begins.
+#[must_use]
+pub fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |c| c.to_uppercase().chain(letters).collect())
 }

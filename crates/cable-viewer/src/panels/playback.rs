@@ -1,8 +1,9 @@
 //! The playback panel pauses, steps and resets time and sets its speed.
 
-use egui::{Button, Color32, Label, RichText, TextStyle, Ui};
+use egui::{Align, Button, Color32, Label, Layout, RichText, TextStyle, Ui};
 
 use crate::command::{Command, PlaybackCommand};
+use crate::panels::timeline;
 use crate::state::{AppState, Freshness, Playback};
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
@@ -43,7 +44,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.separator();
         speed(ui, state, with_slider, commands);
         ui.separator();
-        show_status(ui, status(state));
+        // At the end of the row: nothing moves when it comes and goes.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            timeline::restart(ui, state, commands);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| show_status(ui, status(state)));
+        });
     });
 }
 

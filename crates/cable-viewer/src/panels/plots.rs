@@ -19,8 +19,6 @@ use crate::widgets::field;
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
 const ONE_ROW: f32 = 960.0;
-/// Room for the button that brings back what a restart put away, points.
-const UNDO_RESTART: f32 = 98.0;
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
@@ -36,8 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
     asked(ui, state, &mut view);
-    let restart = if state.live.earlier_run.is_some() { UNDO_RESTART } else { 0.0 };
-    if ui.available_width() >= ONE_ROW + restart {
+    if ui.available_width() >= ONE_ROW {
         ui.horizontal(|ui| {
             controls(ui, state, &mut view);
             ui.separator();

@@ -10,6 +10,7 @@ use egui::Ui;
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::handles;
 use crate::geometry::supports::{is_broken, support_position};
+use crate::panels::display_names::capital;
 use crate::panels::readouts::dimmed_if_old;
 use crate::panels::scene::{self, loads, obstacles, supports};
 use crate::panels::{cable, environment, robot, solver};
@@ -20,7 +21,7 @@ use crate::widgets::{field, readout};
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(item) = state.selection.selected else { return };
-    ui.add(egui::Label::new(egui::RichText::new(state.describe(item)).strong()).truncate());
+    ui.add(egui::Label::new(egui::RichText::new(capital(&state.describe(item))).strong()).truncate());
     ui.horizontal(|ui| {
         let at_m = handles::of(state, item);
         if let Some(at_m) = at_m

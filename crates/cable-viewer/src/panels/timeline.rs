@@ -32,7 +32,6 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let span = state.live.recording.span_s();
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     replay_controls(ui, state, commands);
-    restart_control(ui, state, commands);
     let mut push = |command| commands.push(Command::Playback(command));
     let [first, last] = span.unwrap_or([0.0, 1.0]);
     let text = match state.live.recording.shown_s {
@@ -108,28 +107,26 @@ fn replay_controls(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// Draws the button that goes on with the run before an edit or a reset, where there is one.
-fn restart_control(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let mut push = |command| commands.push(Command::Playback(command));
-    if let Some(run) = &state.live.earlier_run {
-        let is_later = is_later_run(state);
-        let help = match &run.cause {
-            RestartCause::Reset(_) if state.live.reset_is_last => {
-                "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
-            }
-            RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
-            RestartCause::Edit(_) if is_later => {
-                "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
-                 in its place (Ctrl+Shift+Z)"
-            }
-            RestartCause::Edit(_) => {
-                "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
-                 kept in its place (Ctrl+Z)"
-            }
-        };
-        if ui.button(restart_button(state)).on_hover_text(help).clicked() {
-            push(PlaybackCommand::UndoRestart);
+/// The button that goes on with the other run, where a restart has put one away.
+pub fn restart(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(run) = &state.live.earlier_run else { return };
+    let is_later = is_later_run(state);
+    let help = match &run.cause {
+        RestartCause::Reset(_) if state.live.reset_is_last => {
+            "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
         }
+        RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
+        RestartCause::Edit(_) if is_later => {
+            "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
+             in its place (Ctrl+Shift+Z)"
+        }
+        RestartCause::Edit(_) => {
+            "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
+             kept in its place (Ctrl+Z)"
+        }
+    };
+    if ui.button(restart_button(state)).on_hover_text(help).clicked() {
+        commands.push(Command::Playback(PlaybackCommand::UndoRestart));
     }
 }
 

@@ -1,7 +1,14 @@
 //! Lines are cut at their sharp corners: the painter joins the two sides of a corner of 90° and
 //! more by a slanted piece several times as thick as the line, which reads as a spike or a slope.
+//! Points on a straight stretch are left out first: each takes four to six triangles, and the same
+//! pixels are drawn without them.
 
 use egui::{Pos2, Vec2};
+
+/// A point may lie so far above or below the line that is drawn without it, points. Larger: smooth
+/// lines are seen to have corners; smaller: more triangles, which without a GPU take most of a
+/// frame.
+const STRAIGHT_TOLERANCE: f32 = 0.1;
 
 /// Least cosine of a turn that is joined. Smaller: the steps of tension at contacts are slanted;
 /// larger: smooth lines fall into pieces.
@@ -35,6 +42,39 @@ pub(super) fn pieces(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2) 
     pieces
 }
 
+/// The points of a line without those that lie on the straight stretch between others, as seen on
+/// the screen; `to_screen` is where a point stands there.
+pub(super) fn without_straight_points(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2) -> Vec<[f64; 2]> {
+    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
+    // The last kept point, the one before this, and the slopes of lines from the one that pass by
+    // all points since within the tolerance.
+    let mut stretch: Option<(Pos2, [f64; 2], [f32; 2])> = None;
+    for &point in points {
+        let at = to_screen(point);
+        let slopes_by =
+            |from: Pos2| [-STRAIGHT_TOLERANCE, STRAIGHT_TOLERANCE].map(|off| (at.y + off - from.y) / (at.x - from.x));
+        let Some((from, before, slopes @ [least, most])) = stretch.filter(|_| at.is_finite()) else {
+            kept.extend(stretch.map(|(_, before, _)| before));
+            kept.push(point);
+            stretch = at.is_finite().then_some((at, point, [f32::NEG_INFINITY, f32::INFINITY]));
+            continue;
+        };
+        let slope = (at.y - from.y) / (at.x - from.x);
+        stretch = if at.x > from.x && (least..=most).contains(&slope) {
+            let [low, high] = slopes_by(from);
+            Some((from, point, [slopes[0].max(low), slopes[1].min(high)]))
+        } else {
+            kept.push(before);
+            let from = to_screen(before);
+            let slopes = if at.x > from.x { slopes_by(from) } else { [f32::INFINITY, f32::NEG_INFINITY] };
+            Some((from, point, slopes))
+        };
+    }
+    kept.extend(stretch.map(|(_, before, _)| before));
+    kept.dedup();
+    kept
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +92,35 @@ mod tests {
         let noise: Vec<[f64; 2]> = (0..900).map(f64::from).map(|x| [x, 30.0 * (x % 2.0)]).collect();
         assert_eq!(of(&noise), [&noise[..]]);
         assert_eq!((of(&[]), of(&[[1.0, 1.0]])), (vec![&[][..]], vec![&[[1.0, 1.0]][..]]));
+    }
+
+    #[test]
+    fn a_line_without_its_straight_points_passes_by_all_of_them() {
+        let screen = |[x, y]: [f64; 2]| Pos2::new(x as f32, y as f32);
+        let thin = |points: &[[f64; 2]]| without_straight_points(points, screen);
+        let straight: Vec<[f64; 2]> = (0..90).map(f64::from).map(|x| [x, 3.0 - 0.5 * x]).collect();
+        assert_eq!(thin(&straight), [straight[0], straight[89]]);
+        let step = [[0.0, 0.0], [5.0, 0.0], [5.0, 4.0], [5.0, 9.0], [12.0, 9.0]];
+        assert_eq!(thin(&step), step, "what stands upright is kept");
+        let gap = [[0.0, 1.0], [1.0, 1.0], [2.0, f64::NAN], [3.0, 1.0], [4.0, 1.0], [5.0, 1.0]];
+        let left: Vec<_> = thin(&gap).iter().map(|p| p[0]).collect();
+        assert_eq!(left, [0.0, 1.0, 2.0, 3.0, 5.0], "a gap stays one");
+        assert_eq!((thin(&[]), thin(&[[1.0, 1.0]])), (vec![], vec![[1.0, 1.0]]));
+        for waves in [0.02, 0.1, 0.7, 3.0] {
+            let wave: Vec<[f64; 2]> = (0..400)
+                .map(f64::from)
+                .map(|x| [0.5 * x, 20.0 * (0.5 * waves * x).sin() + 5.0 * (0.01 * x).cos()])
+                .collect();
+            let kept = thin(&wave);
+            assert!((kept[0], kept[kept.len() - 1]) == (wave[0], wave[399]) && kept.len() < 400 || waves > 1.0);
+            for p in &wave {
+                let k = kept.partition_point(|q| q[0] < p[0]).clamp(1, kept.len() - 1);
+                let ([a, b], [c, d]) = (kept[k - 1], kept[k]);
+                let there = b + (d - b) * (p[0] - a) / (c - a);
+                assert!((there - p[1]).abs() < 1.05 * f64::from(STRAIGHT_TOLERANCE), "{waves}: {p:?} beside {there}");
+            }
+        }
+        let smooth: Vec<[f64; 2]> = (0..230).map(f64::from).map(|x| [2.0 * x, 40.0 * (0.01 * x).sin()]).collect();
+        assert!(thin(&smooth).len() < 60, "{}", thin(&smooth).len());
     }
 }

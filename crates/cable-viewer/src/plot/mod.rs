@@ -291,6 +291,7 @@ fn draw_lines(plot: &mut PlotUi<'_>, graph: &Graph<'_>, lines: &[Series], [x_si,
         }
         let transform = *plot.transform();
         let to_screen = |p: [f64; 2]| transform.position_from_point(&p.into());
+        let points = line_corners::without_straight_points(&points, to_screen);
         let pieces =
             if style == LineStyle::Solid { line_corners::pieces(&points, to_screen) } else { vec![&points[..]] };
         for piece in pieces {

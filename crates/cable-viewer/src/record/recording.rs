@@ -61,9 +61,7 @@ impl Recording {
 
     /// Adds an answer; one at or before the last replaces what came after it.
     pub fn push(&mut self, solution: Solution) {
-        while self.events.last().is_some_and(|e| e.time_s > solution.time_s) {
-            self.events.pop();
-        }
+        self.forget_replaced_events(solution.time_s);
         for w in &solution.warnings {
             let known = match w.kind {
                 // A break stays: each one is an event of its own.
@@ -76,6 +74,20 @@ impl Recording {
         }
         self.active = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
         self.frames.push(solution);
+    }
+
+    /// Forgets the events after an instant (s), and those of the answer that another of the same
+    /// instant replaces: it was of a scene that has been changed since.
+    fn forget_replaced_events(&mut self, time_s: f64) {
+        let replaced = self.frames.entries().last().is_some_and(|e| e.time_s >= time_s);
+        let active = &mut self.active;
+        self.events.retain(|e| {
+            let of_replaced = replaced && e.time_s == time_s;
+            if of_replaced {
+                active.retain(|(kind, cable)| *kind != e.warning.kind || *cable != e.warning.cable);
+            }
+            e.time_s <= time_s && !of_replaced
+        });
     }
 
     /// Forgets everything but whether it loops.
@@ -218,6 +230,20 @@ mod tests {
         assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [1.0, 4.0]);
         r.push(at(2.0, 1, true));
         assert_eq!(r.events().len(), 1, "what is wound back over is forgotten");
+    }
+
+    #[test]
+    fn an_answer_that_replaces_another_takes_its_events_away() {
+        let mut r = Recording::default();
+        r.push(at(0.0, 1, true));
+        r.push(at(0.0, 1, true));
+        assert_eq!(r.events().len(), 1, "one that both have stays");
+        r.push(at(0.0, 1, false));
+        assert_eq!(r.events(), []);
+        r.push(at(1.0, 1, true));
+        r.push(at(2.0, 1, true));
+        r.push(at(2.0, 1, false));
+        assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [1.0], "what began before stays");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::app::guidance::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use cable_viewer::geometry::robot::robot_outline;
 use cable_viewer::state::Item;
 use cable_viewer::state::dialog::{Dialog, Replacement};
 use cable_viewer::state::tutorial_place::TutorialPlace;
@@ -181,4 +182,26 @@ fn a_map_is_picked_from_a_list_too() {
         harness.run_steps(20);
     }
     assert_eq!(harness.state().state.document.scene.obstacles.len(), 1);
+}
+
+/// Issue 20: "Drag the robot" is the first hint, and a press a point beside its hull moved the
+/// view.
+#[test]
+fn issue_020_a_press_beside_the_hull_of_the_robot_picks_it() {
+    let mut harness = open(catalog::tank_robot());
+    let canvas = harness.get_by_label("Canvas").rect();
+    let (top, camera) = {
+        let state = &harness.state().state;
+        let outline = robot_outline(state);
+        let back = outline.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
+        let top = outline.iter().copied().filter(|p| p[0] < back[0] + 1.0).max_by(|a, b| a[1].total_cmp(&b[1]));
+        (top.unwrap(), state.view.camera)
+    };
+    let from = camera.to_screen(canvas, top) - Vec2::new(0.0, 3.0);
+    let before = harness.state().state.document.scene.robot.as_ref().unwrap().at_m;
+    drag(&mut harness, from, Vec2::new(-30.0, 0.0));
+    let state = &harness.state().state;
+    assert_eq!(state.selection.selected, Some(Item::Robot));
+    assert!(state.document.scene.robot.as_ref().unwrap().at_m[0] < before[0] - 0.2);
+    assert_eq!(state.view.camera.centre_m, camera.centre_m, "the view stays");
 }

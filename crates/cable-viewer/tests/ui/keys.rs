@@ -130,6 +130,10 @@ fn issue_020_tab_leads_to_every_control_and_the_focus_is_seen() {
             assert!(passed.len() < 300, "{passed:?}");
         }
         let names: Vec<&str> = passed.iter().map(|(_, name)| name.as_str()).collect();
+        // From the title to the outline, the results, the graphs and the row at the foot.
+        let order = ["File", "Add waypoint", "Find safe reach", "Follow", "Reset"];
+        let places = order.map(|name| names.iter().position(|n| *n == name).expect(name));
+        assert!(places.is_sorted(), "{order:?} are at {places:?} at {size}: {names:?}");
         let controls = crate::help::controls(&harness);
         for (name, ..) in &controls {
             let works = || harness.query_all_by_label(name).any(|n| !n.accesskit_node().is_disabled());

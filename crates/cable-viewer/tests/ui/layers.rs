@@ -11,7 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use crate::warnings::galleys;
-use crate::{apply, open};
+use crate::{apply, drag, open};
 
 /// Everything that is written, and where.
 fn texts(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Rect)> {
@@ -198,4 +198,28 @@ fn torn_ends_are_marked_and_a_cable_that_nothing_holds_has_no_sag() {
         }
     }
     harness.get_by_label_contains("sag –");
+}
+
+/// Issue 20: at 1024×640 a label could lie behind the hints of the first minute.
+#[test]
+fn issue_020_no_label_lies_behind_the_hints() {
+    let mut harness = open(catalog::tank_robot());
+    harness.set_size(Vec2::new(1024.0, 640.0));
+    harness.run_steps(4);
+    let hints = ["Drag the robot", "Press Space to play", "Scroll to zoom", "Start here…"];
+    let places = |harness: &Harness<'_, ViewerApp>| {
+        let of_hints = hints.map(|hint| harness.get_by_label(hint).rect()).into_iter().reduce(Rect::union).unwrap();
+        let others = canvas_texts(harness).into_iter().filter(|(text, _)| !hints.contains(&text.as_str()));
+        (of_hints, others.collect::<Vec<_>>())
+    };
+    // The view is moved so that the labels of the hitch would stand where the hints are.
+    let (of_hints, labels) = places(&harness);
+    let (_, hitch) = labels.iter().find(|(text, _)| text.starts_with("hitch ")).expect("the hitch has a label");
+    let empty = harness.get_by_label("Canvas").rect().left_top() + Vec2::new(120.0, 60.0);
+    drag(&mut harness, empty, Vec2::new(0.0, of_hints.center().y - hitch.center().y));
+    harness.run_steps(2);
+    let (of_hints, labels) = places(&harness);
+    assert!(labels.len() > 3, "{labels:?}");
+    let behind: Vec<_> = labels.iter().filter(|(_, place)| place.intersects(of_hints)).collect();
+    assert!(behind.is_empty(), "{behind:?}");
 }

@@ -76,20 +76,20 @@ fn a_support_that_the_scene_moves_is_not_called_fixed() {
 #[test]
 fn the_right_panel_follows_the_selection() {
     for (scene, row, title, figures) in [
-        (catalog::tank(), "Select hitch", "support “hitch” of “umbilical”", &["Force on it", "Arc length"][..]),
+        (catalog::tank(), "Select hitch", "Support “hitch” of “umbilical”", &["Force on it", "Arc length"][..]),
         (
             catalog::pulley_waypoints(),
             "Select wheel",
-            "support “wheel” of “cable”",
+            "Support “wheel” of “cable”",
             &["Tension before", "Tension after"],
         ),
-        (catalog::tank(), "Select beam", "obstacle “beam”", &["Lying on it", "Friction"]),
-        (catalog::loads_wind_heat(), "Select load 1", "load 1", &["Tension there"]),
-        (catalog::tank(), "Select umbilical", "cable “umbilical”", &["Cable preset", "Length slider"]),
-        (catalog::tank(), "Select Scene", "the scene", &["Scene name", "Map"]),
-        (catalog::tank(), "Select Environment", "the environment", &["Gravity", "Plan view"]),
-        (catalog::tank(), "Select Solver", "the solver", &["Tolerance", "FEM", "Chart error over cost"]),
-        (catalog::robot_drive(), "Select robot", "the robot", &["Pull of the cable", "Add drive", "Robot facing"]),
+        (catalog::tank(), "Select beam", "Obstacle “beam”", &["Lying on it", "Friction"]),
+        (catalog::loads_wind_heat(), "Select load 1", "Load 1", &["Tension there"]),
+        (catalog::tank(), "Select umbilical", "Cable “umbilical”", &["Cable preset", "Length slider"]),
+        (catalog::tank(), "Select Scene", "The scene", &["Scene name", "Map"]),
+        (catalog::tank(), "Select Environment", "The environment", &["Gravity", "Plan view"]),
+        (catalog::tank(), "Select Solver", "The solver", &["Tolerance", "FEM", "Chart error over cost"]),
+        (catalog::robot_drive(), "Select robot", "The robot", &["Pull of the cable", "Add drive", "Robot facing"]),
     ] {
         let mut harness = open(scene);
         let canvas = harness.get_by_label("Canvas").rect();

@@ -125,6 +125,13 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     assert_eq!(own.line(tension).unwrap().points(), read.line(tension).unwrap().points());
     let now = state(&harness).live.history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max);
     assert!(now > 1.8 * own.peak(tension).unwrap().value);
+    // The table is no wider than its panel at any width of window: it would have to be scrolled.
+    for size in [[1024.0, 640.0], [1280.0, 800.0]] {
+        harness.set_size(egui::Vec2::from(size));
+        harness.run_steps(3);
+        let right = harness.get_by_label("Events").rect().right();
+        assert!(right <= size[0] - 5.0, "the last column ends at {right} of {}", size[0]);
+    }
     harness.get_by_label("Whole runs");
     let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
     let names = ["Pinned: Hanging span", "Pinned: read from “run”"];

@@ -2,6 +2,7 @@
 
 use egui::{Align2, Area, Frame, Id, Label, Margin, Order, Pos2, Rect, Ui, pos2, vec2};
 
+use crate::canvas;
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, FirstStep};
@@ -45,7 +46,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
             });
         });
     });
-    area("buttons", hints.response.rect.right_top() + vec2(GAP, 0.0)).show(ui.ctx(), |ui| {
+    let buttons = area("buttons", hints.response.rect.right_top() + vec2(GAP, 0.0)).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(MARGIN).show(ui, |ui| {
             ui.horizontal(|ui| {
                 ui.set_min_height(HEIGHT);
@@ -61,6 +62,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
             });
         });
     });
+    canvas::keep_clear(ui, hints.response.rect.union(buttons.response.rect));
 }
 
 fn text(state: &AppState, step: FirstStep) -> String {

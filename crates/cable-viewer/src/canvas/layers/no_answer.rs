@@ -3,7 +3,7 @@
 use egui::{FontId, Rect, Stroke, StrokeKind, vec2};
 
 use crate::canvas::canvas_view::CanvasView;
-use crate::panels::scene_errors;
+use crate::panels::{display_names, scene_errors};
 use crate::state::{AppState, WorkerStatus};
 use crate::units::sentence::sentence;
 
@@ -12,7 +12,7 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
-            let told = scene_errors::summary(state).unwrap_or_else(|| sentence(why));
+            let told = scene_errors::summary(state).unwrap_or_else(|| display_names::capital(&sentence(why)));
             ("No answer for this scene", told)
         }
         _ => return,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use cable_core::summary::sag;
 use cable_core::{Model, Scene, Solution};
-use egui::{Grid, Id, RichText, Ui};
+use egui::{Grid, Id, Response, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
@@ -174,43 +174,41 @@ fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
     let own = state.live.recording.span_s().map(|span_s| {
         let peaks =
             measures.map(|m| state.live.history.peak(m.primary_line()?).map(|[time_s, value]| Peak { time_s, value }));
-        ("Now".to_owned(), None, (span_s, peaks, state.live.recording.events().len()))
+        (None, (span_s, peaks, state.live.recording.events().len()))
     });
     ui.separator();
     ui.strong("Whole runs");
     readout::wide(ui, "runs", |ui| {
-        Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).show(ui, |ui| {
+        Grid::new("runs").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
             for (title, help) in [
-                ("", ""),
                 ("Lasts", "From its first to its last picture"),
                 ("Most tension", "Over the whole run, and when"),
-                ("Most pull", "Of the cable on the robot"),
+                ("Most pull", "Of the cable on the robot, and when"),
                 ("Events", "Warnings that began"),
             ] {
-                let title = ui.weak(title);
-                if !help.is_empty() {
-                    title.on_hover_text(help);
-                }
+                ui.add(egui::Label::new(RichText::new(title).weak().size(FIGURES)).extend()).on_hover_text(help);
             }
             ui.end_row();
             let held = state.analysis.references.iter().enumerate();
             let held = held.filter_map(|(k, h)| {
                 let run = h.run.as_deref()?;
-                Some((String::new(), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+                Some((Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
             });
-            for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
-                if let Some((k, name)) = k.and_then(|k| Some((k, names.get(k)?))) {
-                    name_above(ui, k, &name.full);
-                    ui.end_row();
+            for (k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+                match k.and_then(|k| Some((k, names.get(k)?))) {
+                    Some((k, name)) => name_above(ui, k, &name.full),
+                    None => dimmed_row_if_old(ui, state, |ui| {
+                        ui.strong("Now").on_hover_text("The run on screen");
+                    }),
                 }
+                ui.end_row();
                 let cells = |ui: &mut Ui| {
-                    ui.strong(&name);
-                    ui.label(format::duration(last - first));
+                    figure(ui, &format::duration(last - first), None);
                     for peak in peaks {
-                        let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
-                        ui.label(peak.map_or_else(|| "–".to_owned(), at));
+                        let text = peak.map_or_else(|| "–".to_owned(), |p: Peak| format::force(p.value));
+                        figure(ui, &text, peak.map(|p| format!("at {:.2} s", p.time_s)));
                     }
-                    ui.label(events.to_string());
+                    figure(ui, &events.to_string(), None);
                 };
                 if k.is_none() {
                     dimmed_row_if_old(ui, state, cells)
@@ -259,7 +257,16 @@ fn row(ui: &mut Ui, f: &RunFigures, present: Option<&RunFigures>) {
 
 /// A figure, and below it how much it is above the present one.
 fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
-    ui.vertical(|ui| {
+    let share = value.zip(present).filter(|(value, present)| *present != 0.0 && value.is_finite());
+    let below = share.map(|(value, present)| change(value / present - 1.0));
+    if let Some(share) = figure(ui, &text, below) {
+        share.on_hover_text("Against the present answer");
+    }
+}
+
+/// A figure with its unit, and small words below it, which are returned.
+fn figure(ui: &mut Ui, text: &str, below: Option<String>) -> Option<Response> {
+    let column = ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         // Units are weaker than figures: four of them in a row were read as one string.
         let (figure, unit) = text.split_at(text.find([' ', '\u{a0}']).unwrap_or(text.len()));
@@ -268,14 +275,9 @@ fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
             words.append(part, 0.0, egui::TextFormat::simple(egui::FontId::proportional(FIGURES), colour));
         }
         ui.add(egui::Label::new(words).extend());
-        if let (Some(value), Some(present)) = (value, present)
-            && present != 0.0
-            && value.is_finite()
-        {
-            let share = egui::Label::new(RichText::new(change(value / present - 1.0)).small().weak()).extend();
-            ui.add(share).on_hover_text("Against the present answer");
-        }
+        below.map(|below| ui.add(egui::Label::new(RichText::new(below).small().weak()).extend()))
     });
+    column.inner
 }
 
 /// A relative change in per cent; a change that rounds to zero has no sign.

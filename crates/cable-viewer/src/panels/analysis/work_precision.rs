@@ -10,6 +10,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, P
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::work_precision::{Entry, Outcome};
+use crate::panels::display_names::capital;
 use crate::plot::TIME_MARK;
 use crate::render::colour;
 use crate::state::AppState;
@@ -76,11 +77,6 @@ fn outcome(ui: &mut Ui, state: &AppState, found: &Outcome) {
     for (model, why) in by_model {
         ui.label(RichText::new(format!("{model}: {why}")).small());
     }
-}
-
-fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
 }
 
 fn name(setting: Setting) -> String {

@@ -5,6 +5,7 @@ use cable_core::math::Point;
 use egui::{Atom, AtomExt, Button, Ui};
 
 use crate::command::{Command, ViewCommand};
+use crate::panels::display_names::capital;
 use crate::panels::readouts::DIMMED;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
@@ -46,7 +47,7 @@ pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, c
     });
     let response = row.inner;
     field::name(&response, &format!("Select {name}"));
-    if response.on_hover_text(format!("{}: click to select it", state.describe(item))).clicked() {
+    if response.on_hover_text(format!("{}: click to select it", capital(&state.describe(item)))).clicked() {
         commands.push(Command::View(ViewCommand::Select((!selected).then_some(item))));
     }
 }

@@ -9,6 +9,7 @@ use egui::{Align, Atom, Button, Color32, Layout, RichText, ScrollArea, TextStyle
 
 use crate::command::scene::is_refused_pull;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::display_names::capital;
 use crate::panels::quality;
 use crate::panels::scene_errors::{self, Fix};
 use crate::panels::warnings::figures::{figures, short_title};
@@ -180,7 +181,7 @@ fn entries(state: &AppState) -> Vec<WarningRow> {
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
         let cancelled = *error == NoAnswer::Cancelled;
-        let error = capital(&sentence(error));
+        let error = capital(sentence(error).trim_end_matches('.'));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
         let (title, fixes) = if cancelled { ("Not solved", vec![solve]) } else { ("No answer", Vec::new()) };
@@ -211,16 +212,11 @@ fn entry(severity: Severity, text: String) -> WarningRow {
     }
 }
 
-fn capital(text: &str) -> String {
-    let text = text.trim_end_matches('.');
-    let mut chars = text.chars();
-    chars.next().map_or_else(String::new, |c| c.to_uppercase().chain(chars).collect())
-}
-
 fn dead_worker(state: &AppState) -> Option<WarningRow> {
     let WorkerStatus::Dead(words) = &state.solver.status else { return None };
     let fix = Fix { label: "Restart the solver".to_owned(), command: Command::File(FileCommand::RestartWorker) };
-    let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
+    let text =
+        format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words.trim_end_matches('.')));
     Some(WarningRow { title: "The solver stopped".to_owned(), fixes: vec![fix], ..entry(Severity::Stop, text) })
 }
 

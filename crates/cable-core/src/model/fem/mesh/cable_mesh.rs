@@ -7,7 +7,7 @@ use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
 use crate::model::fem::mesh::mass_matrix::Spread;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
+use crate::model::fem::mesh::tangent_path::{BarEnd, StraightPart, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;
 use crate::problem::Problem;
 
@@ -141,7 +141,22 @@ impl Mesh {
     #[inline]
     #[must_use]
     pub fn straight(&self, e: usize, x: &[Vec2]) -> [Vec2; 2] {
-        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() { [x[e], x[e + 1]] } else { self.path(e, x).ends }
+        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
+            [x[e], x[e + 1]]
+        } else {
+            StraightPart::of(&self.end(e, x), &self.end(e + 1, x)).ends
+        }
+    }
+
+    /// The direction of the straight part of bar `e`; a unit vector.
+    #[inline]
+    #[must_use]
+    pub fn direction(&self, e: usize, x: &[Vec2]) -> Vec2 {
+        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
+            TangentPath::line(x[e], x[e + 1]).direction
+        } else {
+            StraightPart::of(&self.end(e, x), &self.end(e + 1, x)).direction
+        }
     }
 
     /// The obstacle features round which the ends of bar `e` run.

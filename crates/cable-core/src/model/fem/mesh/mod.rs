@@ -22,7 +22,7 @@ pub(in crate::model::fem) use mass_matrix::Spread;
 pub(in crate::model::fem) use sliding_node::{
     BalancedTensions, SlideOver, SlidingNode, SlidingNodeLoad, StickSlip, mean_factor, round_of,
 };
-pub(in crate::model::fem) use tangent_path::{BarEnd, TangentPath, angle_between, rotate};
+pub(in crate::model::fem) use tangent_path::{BarEnd, StraightPart, TangentPath, angle_between, rotate};
 
 /// Gap to which a shape is pushed out of obstacles, as a fraction of the barrier's reach. Smaller:
 /// nodes begin with a larger barrier force; larger: at 1 they are out of contact and fall back into

@@ -82,30 +82,14 @@ impl TangentPath {
     /// The path between two ends.
     #[must_use]
     pub fn between(a: &BarEnd, b: &BarEnd) -> Self {
-        let d = b.center - a.center;
-        if a.radius > 0.0
-            && b.radius > 0.0
-            && d.norm() <= COINCIDENT_CENTRE_FRACTION * a.radius
-            && a.sense * b.sense > 0.0
-        {
-            return Self::round(a, b);
-        }
-        let rho = b.sense * b.radius - a.sense * a.radius;
-        let square = d.norm_squared() - rho * rho;
-        let straight = if square > 0.0 { square.sqrt() } else { 0.0 };
-        let far = d.norm();
-        let direction = if far > 0.0 {
-            // t = (l D − ρ perp(D))/D² has unit length even if the straight part has vanished.
-            let t = d * straight - perp(d) * rho;
-            let size = t.norm();
-            if size > 0.0 { t / size } else { Vec2::x() }
-        } else {
-            Vec2::x()
+        let straight = match StraightPart::between(a, b) {
+            Some(straight) => straight,
+            None => return Self::round(a, b),
         };
-        let normal = |end: &BarEnd| perp(direction) * -end.sense;
-        let ends = [a.center + normal(a) * a.radius, b.center + normal(b) * b.radius];
+        let normal = |end: &BarEnd| perp(straight.direction) * -end.sense;
         let arc = |end: &BarEnd| if end.radius > 0.0 { end.sense * angle_between(normal(end), end.mark) } else { 0.0 };
         let arcs = [-arc(a), arc(b)];
+        let StraightPart { length: straight, direction, ends } = straight;
         let length = straight + a.radius * arcs[0] + b.radius * arcs[1];
         Self { length, straight, direction, ends, arcs }
     }
@@ -124,6 +108,55 @@ impl TangentPath {
             ends: [at, at],
             arcs: [0.5 * turn, 0.5 * turn],
         }
+    }
+}
+
+/// The straight part of a path without the angles of its arcs, each of which takes an atan2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StraightPart {
+    /// Length l, m.
+    pub length: f64,
+    /// Direction t; a unit vector.
+    pub direction: Vec2,
+    /// Its ends, m.
+    pub ends: [Vec2; 2],
+}
+
+impl StraightPart {
+    /// The straight part between two ends; None where both lie on one round.
+    fn between(a: &BarEnd, b: &BarEnd) -> Option<Self> {
+        let d = b.center - a.center;
+        if a.radius > 0.0
+            && b.radius > 0.0
+            && d.norm() <= COINCIDENT_CENTRE_FRACTION * a.radius
+            && a.sense * b.sense > 0.0
+        {
+            return None;
+        }
+        let rho = b.sense * b.radius - a.sense * a.radius;
+        let square = d.norm_squared() - rho * rho;
+        let length = if square > 0.0 { square.sqrt() } else { 0.0 };
+        let far = d.norm();
+        let direction = if far > 0.0 {
+            // t = (l D − ρ perp(D))/D² has unit length even if the straight part has vanished.
+            let t = d * length - perp(d) * rho;
+            let size = t.norm();
+            if size > 0.0 { t / size } else { Vec2::x() }
+        } else {
+            Vec2::x()
+        };
+        let normal = |end: &BarEnd| perp(direction) * -end.sense;
+        let ends = [a.center + normal(a) * a.radius, b.center + normal(b) * b.radius];
+        Some(Self { length, direction, ends })
+    }
+
+    /// That of [`TangentPath::between`].
+    #[must_use]
+    pub fn of(a: &BarEnd, b: &BarEnd) -> Self {
+        Self::between(a, b).unwrap_or_else(|| {
+            let TangentPath { straight: length, direction, ends, .. } = TangentPath::round(a, b);
+            Self { length, direction, ends }
+        })
     }
 }
 

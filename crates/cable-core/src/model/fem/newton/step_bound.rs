@@ -3,7 +3,7 @@
 
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
-use crate::model::fem::mesh::{BarEnd, TangentPath};
+use crate::model::fem::mesh::{BarEnd, StraightPart};
 use crate::model::fem::newton::step_potential::Workspace;
 use crate::model::fem::system::{StepContext, StepInput, Unknowns, longest};
 
@@ -60,7 +60,7 @@ impl Workspace {
             } else {
                 let end =
                     |k: usize| mesh.sliding[k].as_ref().map_or(BarEnd::point(x[k] + move_of(k) * free), |s| s.end);
-                TangentPath::between(&end(e), &end(e + 1)).ends
+                StraightPart::of(&end(e), &end(e + 1)).ends
             };
             let sweep = Sweep::new(from, to, mesh.tuning.newton.kept_gap_fraction).at_most(most);
             free *= match contacts.search.lists.of(e, [from, to], sweep.margin) {

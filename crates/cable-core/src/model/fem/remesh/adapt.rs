@@ -113,7 +113,7 @@ fn pin_down(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingN
 
 fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
     keep_answer(cable);
-    let along = cable.mesh.path(k - 1, &cable.motion.positions).direction;
+    let along = cable.mesh.direction(k - 1, &cable.motion.positions);
     let (mesh, m) = (&mut cable.mesh, &mut cable.motion);
     mesh.sliding[k] = Some(sliding);
     mesh.arc_length[k] = arc_length;
@@ -156,7 +156,7 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
         };
     let Some(end) = cable.mesh.sliding[k].map(|s| s.end) else { return false };
     let x = &cable.motion.positions;
-    let along = cable.mesh.path(k - 1, x).direction + cable.mesh.path(k, x).direction;
+    let along = cable.mesh.direction(k - 1, x) + cable.mesh.direction(k, x);
     let outward = perp(along) * -end.sense;
     let outward =
         if outward.norm() > cable.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };

@@ -190,7 +190,7 @@ impl<'a> Criteria<'a> {
             (false, _) => return None,
         };
         let path = mesh.path(bar, x);
-        let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
+        let along = if on_segment { path.direction } else { path.direction + mesh.direction(node, x) };
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
         // A cable folded back on itself at an obstacle runs round it in neither sense, and one that
         // is bent away from it hits it with a node.
@@ -200,7 +200,7 @@ impl<'a> Criteria<'a> {
         // Seen from the nodes beyond the bar, the cable must bend round the corner and be taut.
         let first = bar.saturating_sub(1);
         let beyond = (bar + 1).min(last - 1);
-        let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
+        let wrap = sense * angle_between(mesh.direction(first, x), mesh.direction(beyond, x));
         let tension = mesh.bar(bar).tension(path.length);
         if !(wrap > 0.0 && tension > mesh.tuning.remesh.sliding_tension_weights * self.meshing.bar_weight) {
             return None;

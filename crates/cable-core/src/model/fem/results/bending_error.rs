@@ -33,14 +33,14 @@ pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
     let mut touches: Vec<ContactPair> = Vec::new();
     cable.contacts.find(&cable.problem, mesh, x, &mut touches);
     for t in touches.iter().filter(|t| !t.on_segment && t.node > 0 && t.node + 1 < mesh.nodes()) {
-        let bend = turn(mesh.path(t.node - 1, x).direction, mesh.path(t.node, x).direction);
+        let bend = turn(mesh.direction(t.node - 1, x), mesh.direction(t.node, x));
         take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), t.node);
     }
     for t in touches.iter().filter(|t| t.on_segment) {
         // The neighbouring nodes could have touched instead.
         let ends = [t.node, t.node + 1].into_iter().filter(|&k| k > 0 && k + 1 < mesh.nodes());
         for k in ends {
-            let bend = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction);
+            let bend = turn(mesh.direction(k - 1, x), mesh.direction(k, x));
             take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), k);
         }
     }

@@ -174,7 +174,7 @@ fn report(
     });
     for rub in rubs.clone() {
         let e = rub.touch.node.min(bars - 1);
-        let along = d.mesh.path(e, x).direction;
+        let along = d.mesh.direction(e, x);
         friction_n += d.contacts.friction_force(rub, x).dot(&along) * part(&rub.touch);
         if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
             slips += rub.limit;
@@ -191,7 +191,7 @@ fn report(
     // The turn is summed bar by bar, because a wrap may go round more than once.
     let turned: f64 = (before..after)
         .filter(|&e| d.mesh.sliding[e + 1].is_none())
-        .map(|e| turn(d.mesh.path(e, x).direction, d.mesh.path(e + 1, x).direction))
+        .map(|e| turn(d.mesh.direction(e, x), d.mesh.direction(e + 1, x)))
         .sum();
     let frictionless = first.pair.gap.friction == 0.0;
     let mut out = ContactReport {

@@ -69,7 +69,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
             });
             return (taken - hung) * sign;
         }
-        let middle = d.mesh.path(e, x).direction * tension[e];
+        let middle = d.mesh.direction(e, x) * tension[e];
         let half = half(d, node, usize::from(sign > 0.0), x);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
@@ -96,7 +96,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
             node,
             next,
             obstacle: ground.obstacle,
-            along: d.mesh.path(e, x).direction,
+            along: d.mesh.direction(e, x),
             normal: ground.normal,
             force: grounded - lift * sign,
         });
@@ -173,7 +173,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
 pub(super) fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
     if k > 0 && k + 1 < x.len() {
         let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
-        return turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction) / rest;
+        return turn(mesh.direction(k - 1, x), mesh.direction(k, x)) / rest;
     }
     let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) else { return 0.0 };
     let e = if k == 0 { 0 } else { k - 1 };

@@ -8,6 +8,9 @@ use crate::model::fem::state::CableState;
 use crate::model::fem::time::loss_memory;
 use crate::solution::Node;
 
+/// Room for so many points on each round: more are rare, and only cost a copy.
+const USUAL_POINTS_ON_ROUND: usize = 8;
+
 pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
@@ -25,7 +28,8 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
         force_n: force.into(),
         ..Node::default()
     };
-    let mut out: Vec<Node> = Vec::with_capacity(n + 2);
+    let rounds = mesh.sliding.iter().flatten().count();
+    let mut out: Vec<Node> = Vec::with_capacity(n + rounds * USUAL_POINTS_ON_ROUND);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             for p in points_on_round(d, k, sliding, &load, x, tension) {
@@ -45,7 +49,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
             k if k + 1 == n => ends[1].norm(),
             k => 0.5 * (tension[k - 1] + tension[k]),
         };
-        let bar = |e: usize| mesh.path(e, x).direction * tension[e] + shear(mesh, &moments, e, x);
+        let bar = |e: usize| mesh.direction(e, x) * tension[e] + shear(mesh, &moments, e, x);
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),

@@ -16,7 +16,7 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
     let (before, after) = (d.load(first)?, d.load(last)?);
     let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
     let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
-    let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
+    let directions = [d.mesh.direction(first - 1, x), d.mesh.direction(last, x)];
     let momentum_flux = d.mesh.sliding[first].and_then(|node| node.balanced).map_or(0.0, |b| b.momentum_flux);
     let force = directions[1] * (tension[last] - momentum_flux) - directions[0] * (tension[first - 1] - momentum_flux)
         + d.input.loads.body * share;

@@ -67,12 +67,11 @@ impl<'a> MovingMass<'a> {
         }
         let (mesh, x) = (self.mesh, &self.motion.positions);
         for k in 1..mesh.nodes().saturating_sub(1) {
-            if !mesh.sliding[k].is_some_and(|node| counts(node.slide_over)) {
+            if !mesh.sliding[k].as_ref().is_some_and(|node| counts(node.slide_over)) {
                 continue;
             }
             let s = &mesh.arc_length;
-            let ways =
-                mesh.path(k - 1, x).direction * (s[k] - s[k - 1]) + mesh.path(k, x).direction * (s[k + 1] - s[k]);
+            let ways = mesh.direction(k - 1, x) * (s[k] - s[k - 1]) + mesh.direction(k, x) * (s[k + 1] - s[k]);
             sum -= ways * (0.5 * self.problem.linear_density * w[k]);
         }
         sum

@@ -19,7 +19,7 @@
 //! would alternate when a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
-use crate::model::fem::mesh::{Mesh, TangentPath};
+use crate::model::fem::mesh::{Mesh, SlidingNode, TangentPath};
 
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +40,11 @@ impl Weight {
     /// The weight of bar `e` on its path, under a body force (N/m).
     #[must_use]
     pub fn of(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
-        let full = Self::spread_evenly(mesh, e, path, body);
-        let lying = lying_fraction(mesh, e);
-        if lying == 1.0 { full } else { full.lying(lying, mesh, e, path, body) }
+        match lying_fraction(mesh, e) {
+            0.0 => Self::at_ends(mesh, e, path, body),
+            1.0 => Self::spread_evenly(mesh, e, path, body),
+            part => Self::spread_evenly(mesh, e, path, body).lying(part, mesh, e, path, body),
+        }
     }
 
     /// The weight if the material is spread evenly over the path.
@@ -78,10 +80,17 @@ impl Weight {
         Self { center, slope, excess, parts }
     }
 
+    /// The weight if none of it acts on rounds: half of it acts at each end of the bar.
+    fn at_ends(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
+        let at = |j: usize| mesh.sliding[e + j].as_ref().map_or(path.ends[j], SlidingNode::position);
+        let half = [0, 1].map(|j| if mesh.sliding[e + j].is_some() { Vec2::zeros() } else { body * 0.5 });
+        Self { center: (at(0) + at(1)) * 0.5, slope: half, excess: 0.0, parts: [0.0, 1.0, 0.0] }
+    }
+
     /// The weight if only a fraction of the weight on rounds (0 to 1) acts there, and half of the
     /// rest at each end of the bar.
     fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
-        let at = |j: usize| mesh.sliding[e + j].map_or(path.ends[j], |s| s.position());
+        let at = |j: usize| mesh.sliding[e + j].as_ref().map_or(path.ends[j], SlidingNode::position);
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slide.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
         let [first, _, second] = self.parts;
@@ -96,7 +105,7 @@ impl Weight {
     /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, N/m².
     #[must_use]
     pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &TangentPath, at: Vec2, body: Vec2) -> Mat2 {
-        let Some(round) = mesh.sliding[e + 1 - j].map(|s| s.end).filter(|end| end.radius > 0.0) else {
+        let Some(round) = mesh.sliding[e + 1 - j].as_ref().map(|s| s.end).filter(|end| end.radius > 0.0) else {
             return Mat2::zeros();
         };
         let full = Self::spread_evenly(mesh, e, path, body);
@@ -149,6 +158,7 @@ fn is_large(mesh: &Mesh, k: usize) -> bool {
 fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
     let of = |k: usize, side: usize| {
         mesh.sliding[k]
+            .as_ref()
             .map_or(1.0, |s| if is_large(mesh, k) || mesh.nodes() == 2 { s.lying_fractions[side] } else { 0.0 })
     };
     smaller(of(e, 1), of(e + 1, 0))
@@ -208,7 +218,7 @@ pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], b
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode};
+    use crate::model::fem::mesh::{BarEnd, SlideOver};
     use proptest::prelude::*;
 
     const BODY: Vec2 = Vec2::new(0.7, -3.0);

@@ -102,10 +102,10 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
         let round = &mut sum[kind_of(node.slide_over)];
         let l = |e: usize| bar_energy::rest_length(mesh, e, &unknowns.slides);
         if moves(k - 1) {
-            *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, l(k - 1));
+            *round += mesh.direction(k - 1, x) * bar_energy::pull_on(mesh, input, k - 1, x, l(k - 1));
         }
         if moves(k + 1) {
-            *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, l(k));
+            *round -= mesh.direction(k, x) * bar_energy::pull_on(mesh, input, k, x, l(k));
         }
         for (e, side) in [(k - 1, 1), (k, 0)] {
             *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slides), input.loads.body)[side];
