@@ -86,7 +86,12 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
                 !kept.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
             }
         };
-        if leaves
+        let slide_over = |k: usize| cable.mesh.sliding.get(k).copied().flatten().map(|s| s.slide_over);
+        // Of the nodes on a wheel that let go, one keeps the bend.
+        if is_released && slide_over(k) == slide_over(k + 1) {
+            remove(cable, k);
+            changed = true;
+        } else if leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
             && IntersectionCheck::of(cable).clear_without(k)
         {
@@ -200,8 +205,8 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     true
 }
 
-/// Places the material node `k` on the line from a centre `from` along `way` (m), where its two bars
-/// are `whole` (m) long together, if they are longer at the end of the line.
+/// Places the material node `k` on the line from a centre `from` along `way` (m), where its two
+/// bars are `whole` (m) long together, if they are longer at the end of the line.
 fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, [from, way]: [Vec2; 2]) {
     let (mut near, mut far) = (0.0, 1.0);
     while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
