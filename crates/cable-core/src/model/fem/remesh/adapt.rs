@@ -78,22 +78,29 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
     let mut changed = false;
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
+        let is_released = cable.mesh.sliding[k].is_some_and(|s| is_released(cable, s.slide_over));
         let leaves = match cable.mesh.sliding[k].map(|s| s.slide_over) {
             None => false,
-            Some(SlideOver::Pulley(support)) => {
-                cable.problem.supports.get(support).is_none_or(|s| !s.holds_from(cable.motion.time))
-            }
+            Some(SlideOver::Pulley(_)) => is_released,
             Some(slide_over @ SlideOver::Obstacle { .. }) => {
                 !kept.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
             }
         };
-        if leaves
+        let slide_over = |k: usize| cable.mesh.sliding.get(k).copied().flatten().map(|s| s.slide_over);
+        // Of the nodes on a wheel that let go, one keeps the bend.
+        if is_released && slide_over(k) == slide_over(k + 1) {
+            remove(cable, k);
+            changed = true;
+        } else if leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
             && IntersectionCheck::of(cable).clear_without(k)
         {
             remove(cable, k);
             changed = true;
-        } else if leaves && (rests || Criteria::of(cable).settles_unstretched(k)) && settle_down(cable, k) {
+        } else if leaves
+            && (rests || is_released || Criteria::of(cable).settles_unstretched(k))
+            && settle_down(cable, k)
+        {
             changed = true;
             k += 1;
         } else if leaves && rests && IntersectionCheck::of(cable).clear_without(k) {
@@ -104,6 +111,12 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
         }
     }
     changed
+}
+
+/// True if a node slides over the wheel of a pulley that has let go.
+fn is_released(cable: &CableState, slide_over: SlideOver) -> bool {
+    let SlideOver::Pulley(support) = slide_over else { return false };
+    cable.problem.supports.get(support).is_none_or(|s| !s.holds_from(cable.motion.time))
 }
 
 /// Turns a material node into a sliding node.
@@ -136,7 +149,8 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
 /// It is placed where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars
 /// keep their lines. Its material is not that of the mark, unless that was in the middle of the
 /// arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
-/// broke it.)
+/// broke it.) Where the wheel of a pulley let go it is placed nearer, so that its bars are as long
+/// together as the path over the wheel: the cable may hold there at a large angle.
 pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bool {
     match cable.mesh.sliding.get(k).copied().flatten() {
         Some(node) => attribute_to(cable, node.slide_over, |d| make_material(d, k)),
@@ -160,8 +174,13 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let outward = perp(along) * -end.sense;
     let outward =
         if outward.norm() > cable.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };
+    let released = cable.mesh.sliding[k].is_some_and(|s| is_released(cable, s.slide_over));
+    let whole = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length).iter().sum();
     let (sliding, place) = (cable.mesh.sliding[k].take(), cable.motion.positions[k]);
     cable.motion.positions[k] = end.center + outward * (end.radius * out);
+    if released {
+        place_at_path_length(cable, k, whole, [end.center, outward * (end.radius * out)]);
+    }
     if ![k - 1, k].into_iter().all(|e| IntersectionCheck::of(cable).is_clear(e)) {
         cable.mesh.sliding[k] = sliding;
         cable.motion.positions[k] = place;
@@ -184,6 +203,19 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     m.previous_positions[k] = m.positions[k] - m.velocities[k] * m.step_before;
     m.slide_rates[k] = 0.0;
     true
+}
+
+/// Places the material node `k` on the line from a centre `from` along `way` (m), where its two
+/// bars are `whole` (m) long together, if they are longer at the end of the line.
+fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, [from, way]: [Vec2; 2]) {
+    let (mut near, mut far) = (0.0, 1.0);
+    while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
+        let middle = 0.5 * (near + far);
+        cable.motion.positions[k] = from + way * middle;
+        let x = &cable.motion.positions;
+        let length: f64 = [k - 1, k].map(|e| cable.mesh.path(e, x).length).iter().sum();
+        *(if length > whole { &mut far } else { &mut near }) = middle;
+    }
 }
 
 /// Puts sliding nodes where corners and circles press; returns what they slide over.

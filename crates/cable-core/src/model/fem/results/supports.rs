@@ -34,6 +34,20 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
     })
 }
 
+/// A pulley that has let go of the cable, at its place; None for any other.
+fn released_pulley(d: &CableState, support: usize, x: &[Vec2]) -> Option<SupportReaction> {
+    let s = d.problem.supports.get(support).filter(|s| !s.holds_from(d.time()))?;
+    let (at, _) = s.place_at(d.time())?;
+    let nearest = (0..x.len()).min_by(|&i, &j| (x[i] - at).norm().total_cmp(&(x[j] - at).norm()))?;
+    Some(SupportReaction {
+        name: s.name.clone(),
+        x_m: at.x,
+        y_m: at.y,
+        arc_length_m: d.mesh.arc_length[nearest],
+        ..SupportReaction::default()
+    })
+}
+
 pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
     let problem: &Problem = &d.problem;
     problem
@@ -42,7 +56,7 @@ pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[
         .zip(&d.meshing.support_node)
         .enumerate()
         .filter_map(|(k, (s, node))| {
-            let Some(node) = *node else { return pulley(d, k, x, tension) };
+            let Some(node) = *node else { return pulley(d, k, x, tension).or_else(|| released_pulley(d, k, x)) };
             let last = x.len() - 1;
             let on_ground = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];
