@@ -88,13 +88,11 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
         };
         let slide_over = |k: usize| cable.mesh.sliding.get(k).copied().flatten().map(|s| s.slide_over);
         // Of the nodes on a wheel that let go, one keeps the bend.
-        if is_released && slide_over(k) == slide_over(k + 1) {
-            remove(cable, k);
-            changed = true;
-        } else if leaves
+        let is_spare = is_released && slide_over(k) == slide_over(k + 1);
+        let runs_straight = leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
-            && IntersectionCheck::of(cable).clear_without(k)
-        {
+            && IntersectionCheck::of(cable).clear_without(k);
+        if is_spare || runs_straight {
             remove(cable, k);
             changed = true;
         } else if leaves
