@@ -58,13 +58,13 @@ impl Geometry {
     pub(crate) fn bodies_between(&self, a: Vec2, b: Vec2) -> Vec<usize> {
         // A move may leave what it touches at its start, and is stopped by what it would touch at
         // its end. What blocks a way stops it in both directions.
-        let moves = [Sweep::new([a; 2], [b; 2], 0.0), Sweep::new([b; 2], [a; 2], 0.0)];
-        let [forth, _] = moves;
-        let blocks = |part: ObstaclePart| {
-            moves.iter().all(|sweep| self.free_fraction_among(std::iter::once(part), sweep, [None, None]) < 1.0)
+        let (there, back) = (Sweep::new([a; 2], [b; 2], 0.0), Sweep::new([b; 2], [a; 2], 0.0));
+        let stops = |sweep: &Sweep, part: ObstaclePart| {
+            self.free_fraction_among(std::iter::once(part), sweep, [None, None]) < 1.0
         };
-        let mut found: Vec<usize> =
-            self.parts(forth.low, forth.high, forth.margin).filter(|&p| blocks(p)).map(|p| p.body).collect();
+        let parts = self.parts(there.low, there.high, there.margin);
+        let blocking = parts.filter(|&part| stops(&there, part) && stops(&back, part));
+        let mut found: Vec<usize> = blocking.map(|part| part.body).collect();
         found.dedup();
         found
     }

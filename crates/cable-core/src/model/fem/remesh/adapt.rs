@@ -4,6 +4,8 @@
 //! After every accepted step
 //! - a sliding node that no longer presses on its corner is removed or becomes a material node (the
 //!   round is as far out as the barrier reaches, so nothing jumps);
+//! - the sliding nodes of a pulley that has let go are removed but for one, which becomes a
+//!   material node;
 //! - a corner or circle that presses on a bar or a node gets a sliding node;
 //! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them),
 //!   passed ones lose theirs;
@@ -78,26 +80,24 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
     let mut changed = false;
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
-        let is_released = cable.mesh.sliding[k].is_some_and(|s| is_released(cable, s.slide_over));
-        let leaves = match cable.mesh.sliding[k].map(|s| s.slide_over) {
+        let [this, next] = [k, k + 1].map(|k| cable.mesh.sliding[k].map(|s| s.slide_over));
+        let has_let_go = this.is_some_and(|slide_over| has_let_go(cable, slide_over));
+        let leaves = match this {
             None => false,
-            Some(SlideOver::Pulley(_)) => is_released,
+            Some(SlideOver::Pulley(_)) => has_let_go,
             Some(slide_over @ SlideOver::Obstacle { .. }) => {
                 !kept.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
             }
         };
-        let slide_over = |k: usize| cable.mesh.sliding.get(k).copied().flatten().map(|s| s.slide_over);
-        // Of the nodes on a wheel that let go, one keeps the bend.
-        let is_spare = is_released && slide_over(k) == slide_over(k + 1);
+        // Of the nodes on a wheel that has let go, one keeps the bend.
+        let is_spare = has_let_go && this == next;
         let runs_straight = leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
             && IntersectionCheck::of(cable).clear_without(k);
         if is_spare || runs_straight {
             remove(cable, k);
             changed = true;
-        } else if leaves
-            && (rests || is_released || Criteria::of(cable).settles_unstretched(k))
-            && settle_down(cable, k)
+        } else if leaves && (rests || has_let_go || Criteria::of(cable).settles_unstretched(k)) && settle_down(cable, k)
         {
             changed = true;
             k += 1;
@@ -112,7 +112,7 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
 }
 
 /// True if a node slides over the wheel of a pulley that has let go.
-fn is_released(cable: &CableState, slide_over: SlideOver) -> bool {
+fn has_let_go(cable: &CableState, slide_over: SlideOver) -> bool {
     let SlideOver::Pulley(support) = slide_over else { return false };
     cable.problem.supports.get(support).is_none_or(|s| !s.holds_from(cable.motion.time))
 }
@@ -172,12 +172,13 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let outward = perp(along) * -end.sense;
     let outward =
         if outward.norm() > cable.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };
-    let released = cable.mesh.sliding[k].is_some_and(|s| is_released(cable, s.slide_over));
+    let has_let_go = cable.mesh.sliding[k].is_some_and(|s| has_let_go(cable, s.slide_over));
     let whole = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length).iter().sum();
     let (sliding, place) = (cable.mesh.sliding[k].take(), cable.motion.positions[k]);
-    cable.motion.positions[k] = end.center + outward * (end.radius * out);
-    if released {
-        place_at_path_length(cable, k, whole, [end.center, outward * (end.radius * out)]);
+    let way = outward * (end.radius * out);
+    cable.motion.positions[k] = end.center + way;
+    if has_let_go {
+        place_at_path_length(cable, k, whole, end.center, way);
     }
     if ![k - 1, k].into_iter().all(|e| IntersectionCheck::of(cable).is_clear(e)) {
         cable.mesh.sliding[k] = sliding;
@@ -205,7 +206,7 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
 
 /// Places the material node `k` on the line from a centre `from` along `way` (m), where its two
 /// bars are `whole` (m) long together, if they are longer at the end of the line.
-fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, [from, way]: [Vec2; 2]) {
+fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, from: Vec2, way: Vec2) {
     let (mut near, mut far) = (0.0, 1.0);
     while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
         let middle = 0.5 * (near + far);
