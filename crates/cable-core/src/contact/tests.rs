@@ -389,3 +389,22 @@ fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
     }
     assert!(cut > 300, "{cut}");
 }
+
+/// An end that touches the ground is not in its own way, in either direction; a hill of that ground
+/// is, and so is a beam that the way crosses.
+#[test]
+fn a_way_is_blocked_by_what_it_crosses_and_not_by_what_its_ends_touch() {
+    let ground = obstacle(terrain(&[[-9.0, 0.0], [2.0, 0.0], [3.0, 0.8], [4.0, 0.0], [9.0, 0.0]]));
+    let points_m = vec![[-6.0, 0.3], [-5.0, 0.3], [-5.0, 3.0], [-6.0, 3.0]];
+    let world = World::new(&[ground, obstacle(Shape::Polygon { points_m })], 0.5, RADIUS);
+    let between = |a: [f64; 2], b: [f64; 2]| {
+        let ways = [(a, b), (b, a)].map(|(a, b)| world.geometry().bodies_between(a.into(), b.into()));
+        assert_eq!(ways[0], ways[1], "{a:?} to {b:?}");
+        ways[0].clone()
+    };
+    assert!(between([-2.0, 1.0], [1.0, RADIUS]).is_empty());
+    assert!(between([-2.0, RADIUS], [1.0, RADIUS]).is_empty());
+    assert_eq!(between([1.0, RADIUS], [8.0, 0.3]), [0]);
+    assert_eq!(between([-8.0, 1.0], [1.0, RADIUS]), [1]);
+    assert_eq!(between([-8.0, 0.6], [8.0, 0.3]), [0, 1]);
+}
