@@ -13,7 +13,7 @@
 //!
 //! Material, position and momentum of the remaining nodes do not change.
 
-use crate::math::{Vec2, bounded, perp};
+use crate::math::{Vec2, perp};
 use crate::model::Inertia;
 use crate::model::fem::mesh::{SlideOver, SlidingNode};
 use crate::model::fem::obstacle::IntersectionCheck;
@@ -26,14 +26,8 @@ use crate::model::fem::system::contact::floor_friction;
 
 /// Arc of a bar on its rounds below which it counts as unwound, rad: its tangent points have passed
 /// each other. Nearer to 0: bars that graze a round are not divided; farther: a bar that runs
-/// backwards is. A choice, tuned on no campaign, as are the two below.
+/// backwards is. A choice, tuned on no campaign.
 const UNWOUND_ARC: f64 = -0.1;
-/// Least straight part of a bar that is divided, as a fraction of the longest allowed length.
-/// Smaller: bars that lie on a round are divided beside it; larger: long bars between rounds stay.
-const MIN_CUT_STRAIGHT: f64 = 0.8;
-/// Fraction of the straight part at either end in which a bar is not divided. Smaller: pieces too
-/// short for their neighbours; larger: pieces less even than possible.
-const UNCUT_END_FRACTION: f64 = 0.1;
 
 /// The effects of an adaptation of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -197,7 +191,7 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let m = &mut cable.motion;
     let slid = floor_friction::as_move(cable.contacts.floor_slip[k], along.try_normalize(0.0).unwrap_or_default());
     cable.contacts.floor_slip[k] = slid;
-    m.velocities[k] = along * (-0.5 * m.slide_rates[k]);
+    m.velocities[k] -= along * (0.5 * m.slide_rates[k]);
     m.previous_velocities[k] = m.velocities[k];
     m.previous_positions[k] = m.positions[k] - m.velocities[k] * m.step_before;
     m.slide_rates[k] = 0.0;
@@ -312,26 +306,18 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
         let x = &cable.motion.positions;
         let path = cable.mesh.path(e, x);
         let unwound = path.arcs.iter().any(|&a| a < UNWOUND_ARC);
-        if length > cable.mesh.tuning.remesh.max_bar * even
-            && path.straight > MIN_CUT_STRAIGHT * cable.mesh.tuning.remesh.max_bar * even
-            && !unwound
-        {
-            // Pieces are even if the straight part permits; beside a sliding node the odd piece is
-            // the one next to it.
+        // Only the straight part can be divided and only it counts: if the arcs counted, a piece
+        // could be so short that it would be removed at once, and again in each step.
+        if path.straight > cable.mesh.tuning.remesh.max_bar * even && !unwound {
+            // Pieces are even; beside a sliding node the odd piece is the one next to it.
             let slides = [e, e + 1].map(|k| cable.mesh.sliding[k].is_some());
-            let part = match slides {
+            let first = match slides {
                 [false, true] => even,
-                [true, false] => length - even,
-                _ => 0.5 * length,
+                [true, false] => path.straight - even,
+                _ => 0.5 * path.straight,
             };
-            let lead = path.arcs[0] * cable.mesh.end(e, x).radius / path.length;
-            let straight = path.straight / path.length;
-            let fraction = bounded(
-                part / length,
-                lead + UNCUT_END_FRACTION * straight,
-                lead + (1.0 - UNCUT_END_FRACTION) * straight,
-            );
-            let arc_length = cable.mesh.arc_length[e] + fraction * length;
+            let lead = path.arcs[0] * cable.mesh.end(e, x).radius;
+            let arc_length = cable.mesh.arc_length[e] + (lead + first) / path.length * length;
             insert(cable, e + 1, arc_length, None);
             changed = true;
             if slides[1] && !slides[0] {

@@ -28,11 +28,19 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     let at = path.ends[0] + (path.ends[1] - path.ends[0]) * fraction;
     let m = &mut cable.motion;
     let t = path.direction;
-    let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.slide_rates[j] } else { m.velocities[j] };
-    let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
-    let earlier =
-        |j: usize| if mesh.sliding[j].is_some() { t * -m.previous_slide_rates[j] } else { m.previous_velocities[j] };
-    let v_before = earlier(k - 1) * (1.0 - part) + earlier(k) * part;
+    // Material at a sliding node moves with its round and runs over it.
+    let of_material = |v: &[Vec2], rate: &[f64]| {
+        let at = |j: usize| if mesh.sliding[j].is_some() { v[j] - t * rate[j] } else { v[j] };
+        at(k - 1) * (1.0 - part) + at(k) * part
+    };
+    let v = of_material(&m.velocities, &m.slide_rates);
+    let v_before = of_material(&m.previous_velocities, &m.previous_slide_rates);
+    // A new mark moves with the round on which it is.
+    let beside = [k - 1, k].into_iter().find(|&j| {
+        mesh.sliding[j].is_some_and(|other| sliding.is_some_and(|this| this.slide_over == other.slide_over))
+    });
+    let [of_round, of_round_before] =
+        beside.map_or([Vec2::zeros(); 2], |j| [m.velocities[j], m.previous_velocities[j]]);
     // The floor acts on it as on its neighbours.
     let slid = |j: usize| {
         let slid = cable.contacts.floor_slip[j];
@@ -40,9 +48,9 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     };
     let between = slid(k - 1) * (1.0 - part) + slid(k) * part;
     let between = if sliding.is_some() { floor_friction::as_slide(between, t) } else { between };
-    let w = if sliding.is_some() { -v.dot(&t) } else { 0.0 };
-    let w_before = if sliding.is_some() { -v_before.dot(&t) } else { 0.0 };
-    let (x, v, v_before) = sliding.map_or((at, v, v_before), |s| (s.position(), Vec2::zeros(), Vec2::zeros()));
+    let w = if sliding.is_some() { (of_round - v).dot(&t) } else { 0.0 };
+    let w_before = if sliding.is_some() { (of_round_before - v_before).dot(&t) } else { 0.0 };
+    let (x, v, v_before) = sliding.map_or((at, v, v_before), |s| (s.position(), of_round, of_round_before));
     mesh.insert_node(k, arc_length, sliding);
     m.insert_node(
         k,
@@ -77,7 +85,8 @@ fn remove_plain(cable: &mut CableState, k: usize) {
         // Material that comes to lie on the round has no history.
         let history = |d: &CableState| {
             let mass = MovingMass::of(d);
-            mass.sliding_momentum_at(&d.motion.slide_rates) - mass.sliding_momentum_at(&d.motion.previous_slide_rates)
+            let m = &d.motion;
+            mass.slid_by(&m.velocities, &m.slide_rates) - mass.slid_by(&m.previous_velocities, &m.previous_slide_rates)
         };
         let had = history(cable);
         merge(cable, k);
@@ -92,7 +101,7 @@ fn merge(cable: &mut CableState, k: usize) {
     let momentum = |d: &CableState| {
         let (m, mass) = (&d.motion, MovingMass::of(d));
         [(&m.velocities, &m.slide_rates), (&m.previous_velocities, &m.previous_slide_rates)]
-            .map(|(v, w)| mass.moved_by(v) + mass.sliding_momentum_at(w))
+            .map(|(v, w)| mass.moved_by(v) + mass.slid_by(v, w))
     };
     let had = momentum(cable);
     take_out(cable, k);

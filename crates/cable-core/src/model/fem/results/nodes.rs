@@ -33,7 +33,8 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             for p in points_on_round(d, k, sliding, &load, x, tension) {
-                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.slide_rates[k] * p.stretch);
+                let along = p.force.try_normalize(0.0).unwrap_or_default();
+                let velocity = v[k] - along * (d.motion.slide_rates[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                 if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {

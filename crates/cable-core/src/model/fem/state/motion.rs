@@ -21,7 +21,8 @@ const STEPS_BEFORE_BDF3: usize = 3;
 pub(in crate::model::fem) struct NodalMotion {
     /// Position of each node, m; for a sliding node that of its mark.
     pub(in crate::model::fem) positions: Vec<Vec2>,
-    /// Velocity of each node that moves with its material, m/s.
+    /// Velocity of each node, m/s; that of a sliding node is that of its round, over which the
+    /// material runs at the slide rate.
     pub(in crate::model::fem) velocities: Vec<Vec2>,
     /// Position one step ago, m.
     pub(in crate::model::fem) previous_positions: Vec<Vec2>,

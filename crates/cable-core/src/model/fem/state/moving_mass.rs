@@ -50,17 +50,19 @@ impl<'a> MovingMass<'a> {
 
     /// Momentum of the material at sliding nodes, kg m/s: on pulleys, and on rounds of obstacles.
     pub(in crate::model::fem) fn sliding_momentum(&self) -> [Vec2; 2] {
-        [SUPPORTS, CONTACTS]
-            .map(|kind| self.slid_by(&self.motion.slide_rates, |slide_over| kind_of(slide_over) == kind))
+        let NodalMotion { velocities, slide_rates, .. } = self.motion;
+        [SUPPORTS, CONTACTS].map(|kind| self.slid_over(velocities, slide_rates, |over| kind_of(over) == kind))
     }
 
-    /// Momentum of all material at sliding nodes at rates `w` (m/s) of the arc length, kg m/s.
-    pub(in crate::model::fem) fn sliding_momentum_at(&self, w: &[f64]) -> Vec2 {
-        self.slid_by(w, |_| true)
+    /// Momentum of all material at sliding nodes whose rounds move at `v` (m/s), at rates `w` (m/s)
+    /// of the arc length, kg m/s.
+    pub(in crate::model::fem) fn slid_by(&self, v: &[Vec2], w: &[f64]) -> Vec2 {
+        self.slid_over(v, w, |_| true)
     }
 
-    /// Half of the material of a sliding node moves along each of its bars.
-    fn slid_by(&self, w: &[f64], counts: impl Fn(SlideOver) -> bool) -> Vec2 {
+    /// Half of the material of a sliding node moves along each of its bars, and all of it with its
+    /// round.
+    fn slid_over(&self, v: &[Vec2], w: &[f64], counts: impl Fn(SlideOver) -> bool) -> Vec2 {
         let mut sum = Vec2::zeros();
         if self.meshing.never_slides {
             return sum;
@@ -72,7 +74,7 @@ impl<'a> MovingMass<'a> {
             }
             let s = &mesh.arc_length;
             let ways = mesh.direction(k - 1, x) * (s[k] - s[k - 1]) + mesh.direction(k, x) * (s[k + 1] - s[k]);
-            sum -= ways * (0.5 * self.problem.linear_density * w[k]);
+            sum += (v[k] * (s[k + 1] - s[k - 1]) - ways * w[k]) * (0.5 * self.problem.linear_density);
         }
         sum
     }

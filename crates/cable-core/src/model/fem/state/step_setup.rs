@@ -109,14 +109,21 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
     let beside = (0..mesh.rest_length.len()).filter(|&e| is_wheel(e) || is_wheel(e + 1));
     let lengths = &mut cable.input.losses.lengths_at_wheels;
     lengths.clear();
+    cable.input.supports.wheel_velocities.clear();
     lengths.extend(beside.map(|e| (e, mesh.path(e, &cable.motion.positions).length)));
     for (k, node) in cable.mesh.sliding.iter_mut().enumerate() {
         let Some(node) = node else { continue };
         let SlideOver::Pulley(support) = node.slide_over else { continue };
         let holding = cable.problem.supports.get(support).filter(|s| s.holds_from(from));
-        let Some((at, _)) = holding.and_then(|s| s.place_at(to)) else { continue };
+        let Some(own) = holding.and_then(|s| s.place_at(to)) else { continue };
         let follower = cable.motion.followers.get(support).copied().flatten();
-        node.end.center = follower.map_or(dragged_to(support).unwrap_or(at), |f| f.position());
+        let (at, velocity) = match (follower, dragged_to(support)) {
+            (Some(follower), _) => (follower.position(), follower.velocity()),
+            (None, Some(hand)) => (hand, Vec2::zeros()),
+            (None, None) => own,
+        };
+        node.end.center = at;
+        cable.input.supports.wheel_velocities.push((k, velocity));
         cable.motion.shift(k, node.position() - cable.motion.positions[k]);
         cable.input.supports.start[k] = cable.motion.positions[k];
     }

@@ -65,9 +65,17 @@ pub(in crate::model::fem) fn kinetic_energy(cable: &CableState) -> f64 {
     let (mesh, v) = (&cable.mesh, &cable.motion.velocities);
     let mut sum = 0.0;
     for (k, v) in v.iter().enumerate() {
-        let rate = cable.motion.slide_rates[k];
-        let square = if mesh.sliding[k].is_some() { rate * rate } else { v.norm_squared() };
-        sum += mesh.tributary_length(k) * square;
+        sum += match mesh.sliding[k] {
+            // Half of its material moves along each of its bars, and all of it with its round.
+            Some(_) => [k - 1, k]
+                .into_iter()
+                .map(|e| {
+                    let along = mesh.direction(e, &cable.motion.positions) * cable.motion.slide_rates[k];
+                    0.5 * mesh.material_between(e, e + 1) * (v - along).norm_squared()
+                })
+                .sum(),
+            None => mesh.tributary_length(k) * v.norm_squared(),
+        };
     }
     for (e, length) in mesh.spread.coupling.iter().enumerate() {
         sum -= length * (v[e + 1] - v[e]).norm_squared();

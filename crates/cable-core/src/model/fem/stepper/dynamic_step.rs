@@ -138,8 +138,11 @@ impl Stepper {
             m.previous_arc_length[k] = s;
             m.previous_slide_rates[k] = m.slide_rates[k];
             m.positions[k] = unknowns.positions[k];
-            m.velocities[k] = v;
+            m.velocities[k] = if mesh.sliding[k].is_some() { Vec2::zeros() } else { v };
             m.slide_rates[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+        for &(k, velocity) in &self.cable.input.supports.wheel_velocities {
+            m.velocities[k] = velocity;
         }
     }
 

@@ -113,6 +113,9 @@ pub struct SupportTargets {
     pub has_moving_outline: bool,
     /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
+    /// Nodes that slide over wheels of pulleys, with the velocity of the wheel (m/s) at the end of
+    /// the step.
+    pub wheel_velocities: Vec<(usize, Vec2)>,
     /// Positions from which the iteration begins, m, if an outline moved; else empty.
     pub cleared: Vec<Vec2>,
 }

@@ -35,6 +35,13 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
             input.inertial.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
         }
     }
+    // Material on a wheel moves with it: its slide lacks the wheel's acceleration along the cable.
+    for &(k, velocity) in &input.supports.wheel_velocities {
+        let s = &mesh.arc_length;
+        let ways = [k - 1, k].map(|e| mesh.direction(e, &m.positions) * (s[e + 1] - s[e]));
+        let along = (ways[0] + ways[1]) / (s[k + 1] - s[k - 1]);
+        input.inertial.predicted_slide[k] += (velocity - weights.velocity(m, k)).dot(&along) / a;
+    }
     // The coupling concerns the masses alone: hands pull at their own nodes only.
     let predicted = &input.inertial.predicted;
     input.inertial.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
