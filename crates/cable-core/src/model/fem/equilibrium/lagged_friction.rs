@@ -41,17 +41,8 @@ impl Lagged {
 
 impl SolverMemory {
     /// Minimises in rounds, with normal forces and stick-slip states renewed after each, until
-    /// nothing changes.
-    pub(in crate::model::fem) fn solve_with_lag(
-        &mut self,
-        cable: &mut CableState,
-        unknowns: &mut Unknowns,
-        rounds: usize,
-    ) -> Result<Converged, Failure> {
-        self.solve_rounds(cable, unknowns, rounds).map(|found| found.done)
-    }
-
-    /// As [`Self::solve_with_lag`]; returns the state of friction, too.
+    /// nothing changes; whether what was found when the rounds were used up is lawful remains to be
+    /// asked.
     pub(in crate::model::fem) fn solve_rounds(
         &mut self,
         cable: &mut CableState,

@@ -57,7 +57,8 @@ fn crosses_itself(x: &[Vec2]) -> bool {
 
 impl Stepper {
     /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
-    /// round-off. It starts from the present shape, and changes nothing where it does not converge.
+    /// round-off. It starts from the present shape, and changes nothing where it does not converge
+    /// or friction would not be lawful.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = self.rollback.with_saved();
         let (exact, to) = (self.cable.input.stopping.tolerance, self.cable.motion.time);
@@ -76,7 +77,7 @@ impl Stepper {
             (self.cable.input.stopping.tolerance, self.cable.input.stopping.max_iterations) =
                 (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let Ok(done) = self.solver.solve_with_lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
+            let Ok(done) = self.solver.solve_lawfully(&mut self.cable, &mut unknowns) else {
                 self.rollback.restore(&mut self.cable);
                 break;
             };
