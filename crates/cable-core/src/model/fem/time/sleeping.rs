@@ -18,6 +18,16 @@ fn sleep_distance(cable: &CableState) -> f64 {
     cable.mesh.tuning.step.sleep_distance_reaches * cable.mesh.tuning.contact.reach_m
 }
 
+/// True if the wheel of a pulley over which the cable runs moves, lets go or is elsewhere at the
+/// time `to` (s) by its own motion. Wheels that a hand drags are supports with a follower.
+fn wheels_act(cable: &CableState, to: f64) -> bool {
+    cable.problem.supports.iter().zip(&cable.motion.followers).enumerate().any(|(k, (support, follower))| {
+        let (Some(center), None) = (cable.mesh.pulley_center(k), follower) else { return false };
+        let goes = support.place_at(to).is_some_and(|(at, velocity)| at != center || velocity != Vec2::zeros());
+        goes || !support.holds_from(to)
+    })
+}
+
 /// The data of the test for a still cable, and the loads when it fell asleep.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct Sleep {
@@ -47,7 +57,7 @@ impl Sleep {
         // A cable without contact may be at the turning point of a slow swing.
         let touches =
             !cable.contacts.friction_contacts.is_empty() || !cable.contacts.self_contacts.friction_contacts.is_empty();
-        let falls_asleep = still && touches && self.same_input(cable);
+        let falls_asleep = still && touches && self.same_input(cable) && !wheels_act(cable, motion.time);
         self.asleep |= falls_asleep;
         self.since = motion.time;
         self.place.clone_from(&motion.positions);
@@ -76,7 +86,7 @@ impl Sleep {
         to: f64,
         dragged: &[Option<Vec2>],
     ) -> bool {
-        if cable.outline.as_ref().is_some_and(MovingOutline::moves) {
+        if cable.outline.as_ref().is_some_and(MovingOutline::moves) || wheels_act(cable, to) {
             self.asleep = false;
         }
         if !self.asleep {

@@ -78,7 +78,7 @@ fn sub_step(
     points: GaugePoints,
     h: f64,
 ) {
-    release_pulleys(&mut chain.mesh, chain.clock.time_s);
+    release_pulleys(&mut chain.mesh, chain.clock.time_s - h);
     let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
     chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
     hands::follow(&mut chain.drives, mesh, hand_settings, h);

@@ -6,7 +6,7 @@
 //! of rest length is spread over the whole stretch between its fixed marks, so that tension does
 //! not jump there.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, smaller};
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 
 /// Material that stays beside a node that does not run through a pulley, m.
@@ -44,22 +44,49 @@ pub(in crate::model::mass_spring) fn remesh(mesh: &mut Mesh, time_s: f64) -> boo
     changed
 }
 
-/// Makes pulleys that have let go nodes of the mesh: the material goes on as it slid.
-pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, time_s: f64) {
+/// Half of the greatest turn for which the tangents of a wheel meet at a usable point, rad.
+/// Smaller: bends of wheels that let go are cut more; larger: nodes far from the wheel are tried.
+const MAX_HALF_TURN_RAD: f64 = 1.4;
+
+/// Makes pulleys that hold no more in a sub-step from `begins_s` (s) nodes of the mesh: the
+/// material goes on as it slid.
+pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, begins_s: f64) {
     let mut k = 0;
     while k < mesh.wheels.pulleys.len() {
         let p = mesh.wheels.pulleys[k];
-        if mesh.problem.supports[p.support].position_at(time_s).is_some() {
+        if mesh.problem.supports[p.support].holds_from(begins_s) {
             k += 1;
             continue;
         }
-        let (b, a) = (mesh.element(p.node - 1), mesh.element(p.node));
+        let (n, bars) = (p.node, [p.node - 1, p.node]);
+        let [b, a] = bars.map(|e| mesh.element(e));
+        let stretch = [b.length / mesh.rest_length[n - 1], a.length / mesh.rest_length[n]];
         let along = (b.direction + a.direction).try_normalize(0.0).unwrap_or_default();
-        mesh.position[p.node] = (b.end + a.start) * 0.5;
-        mesh.velocity[p.node] -= along * p.sliding_speed;
+        let outward = (b.direction - a.direction).try_normalize(0.0).unwrap_or_default();
+        mesh.velocity[n] -= along * p.sliding_speed;
         mesh.wheels.pulleys.remove(k);
         mesh.wheels.index();
+        let half = smaller(0.5 * p.turn.abs(), MAX_HALF_TURN_RAD);
+        let chord = (b.end + a.start) * 0.5;
+        let tangents_meet = mesh.position[n] + outward * (p.radius / half.cos());
+        place_at_length(mesh, n, b.length + a.length, [chord, tangents_meet]);
+        // Both elements keep their strain; what the shorter path leaves over is shared.
+        let needs = [0, 1].map(|side| mesh.element(bars[side]).length / stretch[side]);
+        let whole = mesh.arc_length[n + 1] - mesh.arc_length[n - 1];
+        mesh.arc_length[n] = mesh.arc_length[n - 1] + whole * needs[0] / (needs[0] + needs[1]);
         mesh.update_elements();
+    }
+}
+
+/// Places node `n` on the way between two points (m) where its elements are `length` (m) long
+/// together, or at the second if they are shorter even there.
+fn place_at_length(mesh: &mut Mesh, n: usize, length: f64, [from, to]: [Vec2; 2]) {
+    let (mut near, mut far) = (0.0, 1.0);
+    while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
+        let middle = 0.5 * (near + far);
+        mesh.position[n] = from + (to - from) * middle;
+        let found = mesh.element(n - 1).length + mesh.element(n).length;
+        *(if found > length { &mut far } else { &mut near }) = middle;
     }
 }
 

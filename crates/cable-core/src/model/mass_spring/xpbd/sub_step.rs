@@ -86,7 +86,7 @@ pub(in crate::model::mass_spring) fn preview(
 /// is drawn in by more than an element in one sub-step, and put back.
 fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2], solver: &mut ConstraintSolver) {
     if !chain.mesh.wheels.pulleys.is_empty() {
-        release_pulleys(&mut chain.mesh, chain.clock.time_s);
+        release_pulleys(&mut chain.mesh, chain.clock.time_s - h);
         chain.remesh();
     }
     let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
