@@ -37,6 +37,15 @@ const TOUCHING_GAP: f64 = 1e-9;
 /// Largest fraction of a gap that a caller can ask to keep.
 const MAX_KEEP: f64 = 0.9;
 
+/// An end of a straight way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum WayEnd {
+    /// A support, which may touch a body.
+    Support,
+    /// A bend of the way, which is clear of all bodies if the way is.
+    Bend,
+}
+
 impl Geometry {
     /// See [`super::World::free_fraction`].
     #[must_use]
@@ -52,18 +61,23 @@ impl Geometry {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
     }
 
-    /// Returns the bodies that are in the way between two places (m), in order. A place that
-    /// touches a body is not in its way there.
+    /// Returns the bodies that are in the way between two places (m), in order. A support that
+    /// touches a body is not in its way there; a bend of the way has to be clear of all.
     #[must_use]
-    pub(crate) fn bodies_between(&self, a: Vec2, b: Vec2) -> Vec<usize> {
+    pub(crate) fn bodies_between(&self, [a, b]: [Vec2; 2], ends: [WayEnd; 2]) -> Vec<usize> {
         // A move may leave what it touches at its start, and is stopped by what it would touch at
-        // its end. What blocks a way stops it in both directions.
+        // its end.
         let (there, back) = (Sweep::new([a; 2], [b; 2], 0.0), Sweep::new([b; 2], [a; 2], 0.0));
         let stops = |sweep: &Sweep, part: ObstaclePart| {
             self.free_fraction_among(std::iter::once(part), sweep, [None, None]) < 1.0
         };
-        let parts = self.parts(there.low, there.high, there.margin);
-        let blocking = parts.filter(|&part| stops(&there, part) && stops(&back, part));
+        let blocks = |part: &ObstaclePart| match ends {
+            [WayEnd::Support, WayEnd::Support] => stops(&there, *part) && stops(&back, *part),
+            [WayEnd::Support, WayEnd::Bend] => stops(&there, *part),
+            [WayEnd::Bend, WayEnd::Support] => stops(&back, *part),
+            [WayEnd::Bend, WayEnd::Bend] => stops(&there, *part) || stops(&back, *part),
+        };
+        let blocking = self.parts(there.low, there.high, there.margin).filter(blocks);
         let mut found: Vec<usize> = blocking.map(|part| part.body).collect();
         found.dedup();
         found

@@ -2,6 +2,7 @@
 //! and over obstacles.
 
 use crate::contact::World;
+use crate::contact::sweep::WayEnd;
 use crate::math::{Vec2, bounded};
 use crate::model::spans::section::BoundaryConditions;
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
@@ -176,7 +177,7 @@ fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     if bodies.is_empty() {
         return Vec::new();
     }
-    let free = |p: Vec2, q: Vec2| world.geometry().bodies_between(p, q).is_empty();
+    let free = |p: Vec2, q: Vec2| world.geometry().bodies_between([p, q], [WayEnd::Support; 2]).is_empty();
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
     let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
