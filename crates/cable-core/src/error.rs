@@ -319,6 +319,21 @@ pub enum SolveError {
         /// The force that pulls it away.
         why: NoEquilibrium,
     },
+    /// The cable broke in a step without inertia, and a piece of it has no answer.
+    AfterBreak {
+        /// Name of the cable.
+        cable: String,
+        /// Time of the break, s.
+        time_s: f64,
+        /// Place of the break on the cable, m.
+        arc_length_m: f64,
+        /// Its place, m.
+        at_m: Vec2,
+        /// Breaking tension, N.
+        breaking_n: f64,
+        /// The reason of the piece.
+        why: Box<Self>,
+    },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     Neither {
         /// The error that says more of the scene.

@@ -45,6 +45,24 @@ impl SimulatedCable {
         if let (Inertia::Dynamic, Some(feature)) = (inertia, &self.too_fast) {
             return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
         }
+        let before = self.breaks.len();
+        let done = self.advance_to_turns(dt_s, inertia);
+        let broke_now = self.breaks.get(before..).and_then(<[_]>::last).filter(|_| inertia == Inertia::QuasiStatic);
+        done.map_err(|why| match broke_now {
+            Some(event) => SolveError::AfterBreak {
+                cable: self.problem.cable.name.clone(),
+                time_s: event.time_s,
+                arc_length_m: event.arc_length_m,
+                at_m: event.at,
+                breaking_n: self.problem.cable.breaking_tension_n,
+                why: Box::new(why),
+            },
+            None => why,
+        })
+    }
+
+    /// Advances time by `dt_s`, without inertia from turn to turn of the motions and loads.
+    fn advance_to_turns(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         let (mut left, end_s) = (dt_s, self.time_s() + dt_s);
         while inertia == Inertia::QuasiStatic

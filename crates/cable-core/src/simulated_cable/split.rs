@@ -48,10 +48,10 @@ impl SimulatedCable {
             detached_from: detached.and_then(|k| self.problem.supports.get(k)).map(|s| s.name.clone()),
         };
         let from = piece.part.from;
+        self.breaks.push(event);
         let new_pieces = parts.into_iter().map(|part| self.piece_after_break(part, from, point, inertia));
         let new_pieces = new_pieces.collect::<Result<Vec<_>, SolveError>>()?;
         self.pieces.splice(k..=k, new_pieces);
-        self.breaks.push(event);
         Ok(())
     }
 

@@ -78,6 +78,13 @@ impl Sentence for SolveError {
                 f.point((*at_m).into(), 3)
             ),
             Self::NoRestingPlace { why } => format!("there is no resting place: {}", why.sentence(units)),
+            Self::AfterBreak { cable, time_s, arc_length_m, at_m, breaking_n, why } => format!(
+                "`{cable}` breaks at {time_s:.4} s, {} along it, at {}, under its breaking tension of {}; what is left of it has no answer without inertia: {}. Run it with inertia, which follows the fall",
+                f.length(*arc_length_m, 3),
+                f.point((*at_m).into(), 3),
+                f.given(Quantity::Force, *breaking_n),
+                why.sentence(units)
+            ),
             Self::Neither { told, other } => format!("{}; and {}", told.sentence(units), other.sentence(units)),
             Self::Unsupported { model, feature } => {
                 format!("{model} cannot answer this scene: {}", feature.sentence(units))

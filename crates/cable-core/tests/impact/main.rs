@@ -37,7 +37,8 @@ const CHAIN_PEAK_N: f64 = 470.0;
 /// bars, 71 kN at 168, and hundreds of newtons of chatter for ever.
 #[test]
 fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
-    let found = [84, 168].map(|n| medians(16, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
+    // Medians over 16 starts scatter by a tenth.
+    let found = [84, 168].map(|n| medians(48, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
     show("84 bars", &found[0]);
     show("168 bars", &found[1]);
     let [coarse, fine] = found;

@@ -269,7 +269,10 @@ impl Layer for ScaledModel {
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
                 SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
             }
-            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. } | SolveError::Setting { .. }) => error,
+            error @ (SolveError::AfterBreak { .. }
+            | SolveError::Indefinite { .. }
+            | SolveError::Unsound { .. }
+            | SolveError::Setting { .. }) => error,
         }
     }
 }

@@ -36,7 +36,7 @@ impl Stepper {
     fn minimise_step(&mut self, h: f64) -> Result<(Unknowns, Converged), Failure> {
         let (mut unknowns, exact) =
             (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
-        self.cable.contacts.prepare(
+        self.cable.contacts.prepare_step(
             &self.cable.problem,
             &self.cable.mesh,
             &unknowns.positions,

@@ -22,6 +22,8 @@ pub struct ContactSet {
     pub tuning: ContactTuning,
     /// The barrier.
     pub barrier: Barrier,
+    /// The barrier with which the last accepted step was balanced.
+    balanced: Barrier,
     /// Slide ε at which friction is fully mobilised, m.
     pub slip: f64,
     /// Friction of the present step.
@@ -48,6 +50,7 @@ impl ContactSet {
         Self {
             tuning,
             barrier,
+            balanced: barrier,
             slip: tuning.slip_m,
             friction_contacts: Vec::with_capacity(nodes),
             before: Vec::with_capacity(nodes),
@@ -62,8 +65,9 @@ impl ContactSet {
 
     /// Copies another set, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, friction_contacts, memory, floor_slip, self_contacts, outline_motion, .. } = other;
-        (self.barrier, self.slip) = (*barrier, *slip);
+        let Self { barrier, balanced, slip, friction_contacts, memory, floor_slip, .. } = other;
+        let Self { self_contacts, outline_motion, .. } = other;
+        (self.barrier, self.balanced, self.slip) = (*barrier, *balanced, *slip);
         // Memory is reserved for as many contacts, so that a travelling contact front needs no
         // allocation; and for no more, or each copy would double it.
         self.friction_contacts.clear();
@@ -133,17 +137,34 @@ impl ContactSet {
     /// Sets up friction for a step that began at `start`, with the contacts and normal forces at
     /// `now` (m).
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
-        self.self_contacts.prepare(&self.barrier, mesh, now, start);
-        self.find_friction_contacts(problem, mesh, now, start);
+        self.prepare_with(self.barrier, problem, mesh, [now, start]);
+    }
+
+    /// As [`Self::prepare`], with the normal forces of the step before. With those of a barrier
+    /// that has become stiffer since then friction would rise with the rate of the tension, and
+    /// feed vibrations: a cable drawn over a floor at 0.05 m/s chattered between 53 and 192 N.
+    pub fn prepare_step(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.prepare_with(self.balanced, problem, mesh, [now, start]);
+    }
+
+    fn prepare_with(&mut self, barrier: Barrier, problem: &Problem, mesh: &Mesh, [now, start]: [&[Vec2]; 2]) {
+        self.self_contacts.prepare(&barrier, mesh, now, start);
+        self.find_friction_contacts(barrier, problem, mesh, [now, start]);
     }
 
     /// Sets up friction of contacts with obstacles only.
-    fn find_friction_contacts(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+    fn find_friction_contacts(
+        &mut self,
+        barrier: Barrier,
+        problem: &Problem,
+        mesh: &Mesh,
+        [now, start]: [&[Vec2]; 2],
+    ) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
         self.friction_contacts.clear();
         for touch in &touches {
-            let limit = touch.pair.gap.friction * touch.load(&self.barrier);
+            let limit = touch.pair.gap.friction * touch.load(&barrier);
             // A contact that is counted twice has pairs of both signs, and so has its friction.
             let same = self
                 .friction_contacts
@@ -182,7 +203,7 @@ impl ContactSet {
         same: impl Fn(f64, f64) -> bool,
     ) -> bool {
         std::mem::swap(&mut self.friction_contacts, &mut self.before);
-        self.find_friction_contacts(problem, mesh, now, start);
+        self.find_friction_contacts(self.barrier, problem, mesh, [now, start]);
         let limit = |all: &[FrictionContact], touch: &ContactPair| {
             of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
         };
@@ -226,6 +247,7 @@ impl ContactSet {
     /// slide of sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
+        self.balanced = self.barrier;
         self.self_contacts.commit(end, self.tuning.slip_m);
         self.memory.commit(&mut self.friction_contacts, end, self.slip, self.tuning.remembered_steps);
         if problem.floor_friction.is_some() {
