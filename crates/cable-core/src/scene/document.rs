@@ -44,8 +44,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the pose of the robot at the start: on its ground, or as given where the terrain ends
-    /// below its tracks.
+    /// Returns the pose of the robot at the start: on its ground, or as given where the terrain
+    /// ends below its tracks.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {
         let robot = self.robot.as_ref()?;

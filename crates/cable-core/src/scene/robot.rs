@@ -96,9 +96,9 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Returns the position of the hitch on level ground in a side view, m; `None` for an unknown preset.
-    /// [`Scene::robot_pose`](crate::scene::Scene::robot_pose) takes the ground of a scene into
-    /// account.
+    /// Returns the position of the hitch on level ground in a side view, m; `None` for an unknown
+    /// preset. [`Scene::robot_pose`](crate::scene::Scene::robot_pose) takes the ground of a scene
+    /// into account.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         let pose = Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading };
