@@ -286,6 +286,7 @@ impl Simulation {
             self.warning_monitor.at_rest(&observed, time_s)
         }
         self.warn_through_robot();
+        self.warn_without_ground();
         self.verification = self.verify(&self.answers);
         self.next_cheaper = None;
     }
@@ -308,6 +309,15 @@ impl Simulation {
                 self.warnings.push(Warning::new(cause, &answer.name, problem.length, [0.0; 2]));
             }
         }
+    }
+
+    /// Warns where a robot has a path that it cannot drive from the start on.
+    fn warn_without_ground(&mut self) {
+        self.warnings.retain(|w| w.cause != WarningCause::RobotWithoutGround);
+        let robot = self.scene.robot.as_ref().filter(|r| self.vehicle.is_none() && !r.path.is_empty());
+        let (Some(robot), Some(cable)) = (robot, self.scene.cables.first()) else { return };
+        let warning = Warning::new(WarningCause::RobotWithoutGround, &cable.name, cable.length_m, [0.0; 2]);
+        self.warnings.push(warning.at(robot.at_m));
     }
 
     #[cfg(test)]

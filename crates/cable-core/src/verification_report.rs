@@ -14,9 +14,11 @@ pub enum Law {
     Finite,
     /// Arc length grows from 0 to the cable's length.
     Material,
-    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every
-    /// piece, its free ends with it.
+    /// Supports, contacts, loads and weight add up to nothing, of every piece, its free ends with
+    /// it.
     Balance,
+    /// They add up to nothing of the whole cable, as they are reported.
+    TotalBalance,
     /// The stiff cable's moments balance its shear.
     Moment,
     /// The cable is where its supports hold it.
@@ -53,6 +55,7 @@ impl Law {
             Self::Finite => "finite numbers",
             Self::Material => "material from end to end",
             Self::Balance => "balance of forces",
+            Self::TotalBalance => "balance of the whole cable",
             Self::Moment => "balance of moments",
             Self::Support => "held by its supports",
             Self::Tension => "tension is the force",
@@ -75,6 +78,7 @@ impl Law {
             Self::Finite => "a number is not finite",
             Self::Material => "the nodes do not run from one end of the material to the other",
             Self::Balance => "forces are out of balance",
+            Self::TotalBalance => "the forces that are reported of the whole cable are out of balance",
             Self::Moment => "moments are out of balance",
             Self::Support => "the cable is not where it is held",
             Self::Tension => "tension is not the force in the cable",
@@ -90,6 +94,12 @@ impl Law {
         }
     }
 
+    /// Returns whether it is a law of the whole cable, which no place of it breaks.
+    #[must_use]
+    pub fn is_of_whole(self) -> bool {
+        matches!(self, Self::TotalBalance | Self::Momentum)
+    }
+
     /// The quantity that is measured.
     #[must_use]
     pub fn quantity(self) -> Quantity {
@@ -99,6 +109,7 @@ impl Law {
             Self::Moment => Quantity::Moment,
             Self::Momentum => Quantity::Impulse,
             Self::Balance
+            | Self::TotalBalance
             | Self::Tension
             | Self::Compression
             | Self::Stability

@@ -92,7 +92,7 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
 }
 
 pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
-    found.ask(Law::Balance);
+    [Law::Balance, Law::TotalBalance].into_iter().for_each(|law| found.ask(law));
     let limit = BALANCE_FRACTION * checked.scale;
     let mut sums = Balance { scale_n: larger(found.balance.scale_n, checked.scale), ..found.balance };
     let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
@@ -177,9 +177,7 @@ fn check_sums(checked: &CheckedCable<'_>, found: &mut Verification, mut sums: Ba
     sums.residual_n = larger(sums.residual_n, off);
     let limit = if checked.answer.contacts.is_empty() { limit } else { REPORTED_BALANCE * checked.scale };
     if !(off <= limit) {
-        let mut finding = checked.finding(Law::Balance, 0, off, limit);
-        "the whole cable".clone_into(&mut finding.with);
-        found.report(finding);
+        found.report(checked.finding(Law::TotalBalance, 0, off, limit));
     }
     let add = |to: &mut [f64; 2], v: Vec2| *to = [to[0] + v.x, to[1] + v.y];
     let supports: Vec2 = support_forces(checked);

@@ -158,7 +158,10 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
     if lumped > FOLD_TURN {
         return None;
     }
-    let limit = length_slack(checked, material, touches) + (TURN * turn + lumped) * material;
+    // The floor of a plan view may act anywhere between two nodes, not evenly: the mean direction
+    // is then anywhere between those at the nodes.
+    let by_floor = if checked.floor_rubs() { 0.5 * turn.sqrt() } else { 0.0 };
+    let limit = length_slack(checked, material, touches) + (TURN * turn + lumped + by_floor) * material;
     Some((bar.way - rates * (material / 6.0), limit))
 }
 

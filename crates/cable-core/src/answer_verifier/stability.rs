@@ -10,6 +10,7 @@
 use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
 use super::surroundings::Neighbours;
+use super::tolerance::BALANCE_FRACTION;
 use crate::math::larger;
 use crate::scene::SupportKind;
 use crate::verification_report::{Law, Verification};
@@ -48,7 +49,9 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     }
     let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;
-    if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
+    // A force that may be out of balance is no compression.
+    let noise = BALANCE_FRACTION * checked.scale;
+    if let Some((bar, push, most)) = excess(&bars, stiffness, ends).filter(|(_, push, _)| !(*push <= noise)) {
         found.report(checked.finding(Law::Stability, first_node[bar], push, most));
     }
 }
@@ -95,7 +98,7 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
     let mut count = 0;
     let mut begun = ends[0];
     for (k, bar) in bars.iter().enumerate() {
-        if bar.pinned && k > 0 && !bar.held && !bars[k - 1].held {
+        if (bar.pinned || bar.clamped[0]) && k > 0 && !bar.held && !bars[k - 1].held {
             count += if begun { 2 } else { 0 };
             begun = true;
         }

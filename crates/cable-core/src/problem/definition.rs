@@ -50,7 +50,8 @@ pub struct Problem {
     pub(crate) unreachable: Option<Arc<World>>,
     /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,
-    /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
+    /// Plan view: friction coefficient with the floor and normal force per metre, N/m; None where
+    /// there is no friction.
     pub floor_friction: Option<(f64, f64)>,
     /// The way it is first laid, m (empty: straight from support to support, lifted over what is in
     /// the way).
@@ -213,7 +214,7 @@ impl Problem {
             |name: &str| bodies.iter().any(|b| b.friction > 0.0 && self.world.obstacle_name(b.obstacle) == name);
         let given = self.cable.friction_mobilised.is_default();
         given
-            && (self.floor_friction.is_some_and(|(friction, _)| friction > 0.0)
+            && (self.floor_friction.is_some()
                 || self.supports.iter().any(|s| s.friction > 0.0)
                 || answer.contacts.iter().any(|c| touches(&c.obstacle)))
     }

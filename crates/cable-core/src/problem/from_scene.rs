@@ -98,7 +98,8 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
     let weight_per_m = cable.linear_density_kg_per_m * env.gravity_m_per_s2;
     let (weight, floor_friction) = match scene.view {
         View::Elevation => (Vec2::new(0.0, -weight_per_m), None),
-        View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m))),
+        // A floor that does not rub does nothing to the cable.
+        View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m)).filter(|(mu, weight)| mu * weight > 0.0)),
     };
     let supports: Vec<SupportPoint> = (0..cable.supports.len()).map(|k| support_point(scene, cable, k)).collect();
     let mut loads: Vec<PointLoad> = scene
@@ -112,7 +113,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
     let mut cable = cable.clone();
     let rubs = world.geometry().bodies().iter().any(|b| b.friction > 0.0)
         || supports.iter().any(|s| s.friction > 0.0)
-        || floor_friction.is_some_and(|(friction, _)| friction > 0.0);
+        || floor_friction.is_some();
     // Of friction that is not there nothing can be mobilised.
     if !rubs {
         cable.friction_mobilised = FrictionMobilised::default();

@@ -16,7 +16,7 @@ pub fn robot_outline(scene: &Scene, cable_friction: f64) -> Option<Outline> {
     let (robot, pose) = (scene.robot.as_ref()?, scene.robot_pose()?);
     let preset = robot_preset(&robot.preset)?;
     let corners = preset.meets_cable_m(robot.heading);
-    let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
+    let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset, View::Elevation));
     let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, OUTLINE_NAME.to_owned());
     outline.filter(|_| scene.view == View::Elevation)
 }

@@ -31,6 +31,9 @@
 //! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
 //! does to the outline is that of the end of the step.
 //!
+//! Seen from above (plan view) it drives along x on the level floor: N = m g, because the cable
+//! pulls level, and its tracks hold any pull across its way.
+//!
 //! The work of the ground where it tips the vehicle over a corner does not change its speed: on
 //! such ground its weight and the force on the hitch do work that is not along the way, and
 //! `RobotWork::ground_j` holds that work.
@@ -89,6 +92,7 @@ pub struct Vehicle {
     robot: Arc<Robot>,
     preset: &'static RobotPreset,
     ground: Arc<Ground>,
+    view: View,
     /// m g, N.
     weight: f64,
     track_friction: f64,
@@ -112,16 +116,13 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// The robot of a scene, at rest; `None` if the scene has no robot, is a plan view, or has no
-    /// ground.
+    /// The robot of a scene, at rest; `None` if the scene has no robot, or its terrain ends below
+    /// the robot's tracks.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         let robot = scene.robot.as_ref()?;
         let preset = robot_preset(&robot.preset)?;
-        let ground = Arc::new(Ground::of(scene));
-        if scene.view == View::Plan {
-            return None;
-        }
+        let ground = Arc::new(scene.robot_ground());
         let pose = robot.pose_on(&ground, preset, robot.at_m[0])?;
         let mut vehicle = Self {
             weight: preset.mass_kg.value * scene.environment.gravity_m_per_s2,
@@ -130,6 +131,7 @@ impl Vehicle {
             robot: Arc::new(robot.clone()),
             preset,
             ground,
+            view: scene.view,
             pose,
             speed: 0.0,
             by_hand: None,
@@ -193,7 +195,7 @@ impl Vehicle {
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
         self.report.pitch_deg = self.pose.pitch.to_degrees();
         (self.report.speed_m_per_s, self.report.governor_m_per_s2) = (0.0, 0.0);
-        Some(vec2(self.pose.hitch_m(self.preset)))
+        Some(self.hitch())
     }
 
     /// Returns how it stands.
@@ -217,7 +219,7 @@ impl Vehicle {
     /// Returns where its hitch is when it stands so, m.
     #[must_use]
     pub(crate) fn hitch_at(&self, pose: Pose) -> Vec2 {
-        vec2(pose.hitch_m(self.preset))
+        vec2(pose.hitch_m(self.preset, self.view))
     }
 
     /// The robot came only this far in its last step, because the cable was in its way.
@@ -285,7 +287,11 @@ impl Vehicle {
     pub fn balance(&self, drive: Drive, pulls: Pulls) -> SpeedBalance {
         let (sin, cos) = self.pose.pitch.sin_cos();
         let felt = self.mean(pulls) + pulls.outline;
-        let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
+        let lift = match self.view {
+            View::Elevation => felt.y * cos - felt.x * sin,
+            View::Plan => 0.0,
+        };
+        let normal = self.weight * cos - lift;
         // Tracks that are lifted off the ground have no grip.
         let normal = if normal > 0.0 { normal } else { 0.0 };
         let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);

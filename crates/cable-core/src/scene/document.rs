@@ -44,23 +44,31 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Returns the pose of the robot at the start: on the ground in a side view, and as given in a
-    /// plan view or if there is no ground.
+    /// Returns the pose of the robot at the start: on its ground, or as given where the terrain
+    /// ends below its tracks.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {
         let robot = self.robot.as_ref()?;
         let as_put = Pose { at_m: robot.at_m, pitch: 0.0, heading: robot.heading };
         let preset = robot_preset(&robot.preset)?;
-        match self.view {
-            View::Plan => Some(as_put),
-            View::Elevation => Some(robot.pose_on(&Ground::of(self), preset, robot.at_m[0]).unwrap_or(as_put)),
-        }
+        Some(robot.pose_on(&self.robot_ground(), preset, robot.at_m[0]).unwrap_or(as_put))
     }
 
     /// Returns where a cable hangs on the robot at the start, m.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
-        Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))
+        Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?, self.view))
+    }
+
+    /// Returns the ground on which the robot drives: the terrains of a side view; level ground at
+    /// the robot's own place where the scene has none, and in a plan view, whose floor is the page.
+    #[must_use]
+    pub fn robot_ground(&self) -> Ground {
+        let terrains = Ground::of(self);
+        match &self.robot {
+            Some(robot) if self.view == View::Plan || terrains.is_empty() => Ground::level(robot.at_m[1]),
+            _ => terrains,
+        }
     }
 }
 

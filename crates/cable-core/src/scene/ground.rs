@@ -1,4 +1,5 @@
-//! The ground is the highest terrain of a scene; a rigid track rests on it.
+//! The ground is the highest terrain of a scene; a rigid track rests on it. The ground under a
+//! robot is level where the scene shows none: seen from above, and without terrain.
 
 use super::obstacle::{Obstacle, Shape};
 use crate::math::Point;
@@ -8,6 +9,8 @@ use crate::math::Point;
 pub struct Ground {
     stretches: Vec<[Point; 2]>,
     columns: Columns,
+    /// Height of ground that is level everywhere and no obstacle, m.
+    level: Option<f64>,
 }
 
 /// Lists of the stretches over each part of x, so that one place asks a few of them and not a
@@ -112,12 +115,25 @@ impl Ground {
     fn of_lines<'a>(lines: impl Iterator<Item = &'a [Point]>) -> Self {
         let stretches: Vec<[Point; 2]> =
             lines.flat_map(|points| points.windows(2)).filter_map(|w| w.try_into().ok()).collect();
-        Self { columns: Columns::of(&stretches), stretches }
+        Self { columns: Columns::of(&stretches), stretches, level: None }
+    }
+
+    /// Level ground of this height (m), or of this place across the way of what is seen from above.
+    pub(super) fn level(height_m: f64) -> Self {
+        Self { level: Some(height_m), ..Self::default() }
+    }
+
+    /// Returns whether there is none anywhere.
+    pub(super) fn is_empty(&self) -> bool {
+        self.stretches.is_empty() && self.level.is_none()
     }
 
     /// The height of the highest terrain at `x` (m), m; `None` if there is no terrain at `x`.
     #[must_use]
     pub fn height(&self, x: f64) -> Option<f64> {
+        if self.level.is_some() {
+            return self.level;
+        }
         let near = self.columns.over(x, x).iter().filter_map(|k| self.stretches.get(*k));
         let heights = near.filter_map(|&[[ax, ay], [bx, by]]| {
             if !(ax.min(bx) <= x && x <= ax.max(bx)) {
@@ -136,6 +152,9 @@ impl Ground {
     /// its middle. `None` if the ground ends below the rod.
     #[must_use]
     pub fn stand(&self, x: f64, half: f64) -> Option<Stand> {
+        if let Some(height) = self.level {
+            return Some(Stand { height, pitch: 0.0 });
+        }
         let (low, high) = (x - half, x + half);
         let mut points = vec![[low, self.height(low)?], [high, self.height(high)?]];
         let near = self.columns.over(low, high).iter().filter_map(|k| self.stretches.get(*k)).flatten();

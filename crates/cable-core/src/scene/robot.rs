@@ -3,18 +3,20 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::environment::View;
 use super::ground::Ground;
 use super::library::preset::{RobotPreset, robot_preset};
 use crate::math::{Point, RigidPose, vec2};
 
-/// A tracked vehicle standing on the terrain.
+/// A tracked vehicle that stands on the terrain, or on level ground where a scene has none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Robot {
     /// Preset its numbers come from.
     pub preset: String,
     /// Point at which its tracks' middle touches the ground, m. In a side view it stands on the
-    /// highest terrain at this x; the height counts where there is none.
+    /// highest terrain at this x; its height is that of level ground in a scene without terrain. In
+    /// a plan view it drives along x on the floor, and y is its place across that way.
     pub at_m: Point,
     /// Its heading.
     #[serde(default)]
@@ -94,12 +96,13 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Returns the position of the hitch on level ground, m; `None` for an unknown preset.
-    /// [`Scene::robot_pose`](crate::scene::Scene::robot_pose) takes the ground of a scene into
-    /// account.
+    /// Returns the position of the hitch on level ground in a side view, m; `None` for an unknown
+    /// preset. [`Scene::robot_pose`](crate::scene::Scene::robot_pose) takes the ground of a scene
+    /// into account.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
-        Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
+        let pose = Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading };
+        Some(pose.hitch_m(robot_preset(&self.preset)?, View::Elevation))
     }
 
     /// Returns the pose of the robot with the middle of its tracks at `x_m` (m); `None` if the
@@ -133,10 +136,14 @@ impl Pose {
         [self.at_m[0] + x * cos - p[1] * sin, self.at_m[1] + x * sin + p[1] * cos]
     }
 
-    /// Returns the position of the hitch, m.
+    /// Returns the position of the hitch, m; seen from above it is in the middle of the rear.
     #[must_use]
-    pub fn hitch_m(&self, preset: &RobotPreset) -> Point {
-        self.place([-preset.hitch_back_m.value, preset.hitch_up_m.value])
+    pub fn hitch_m(&self, preset: &RobotPreset, view: View) -> Point {
+        let up_m = match view {
+            View::Elevation => preset.hitch_up_m.value,
+            View::Plan => 0.0,
+        };
+        self.place([-preset.hitch_back_m.value, up_m])
     }
 }
 

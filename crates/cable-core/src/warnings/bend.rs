@@ -45,6 +45,10 @@ const MIN_TURN: f64 = 0.01;
 /// round cable bent to less than its own width flattens.
 const KINK_DIAMETERS: f64 = 1.0;
 
+/// Radius of a bend from which the cable is straight, in lengths of the cable, which turns by less
+/// than a billionth of a radian then: that is rounding of its nodes.
+const STRAIGHT_LENGTHS: f64 = 1e9;
+
 /// The sharpest bends of an answer, and the greatest pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Bends {
@@ -126,7 +130,8 @@ impl Bends {
         };
         let bend = |radius_m: f64| Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
         let keep = |kept: &mut Option<Bend>, radius_m: f64| {
-            if radius_m.is_finite() && radius_m > 0.0 && kept.is_none_or(|b| radius_m < b.radius_m) {
+            let bends = radius_m > 0.0 && radius_m < STRAIGHT_LENGTHS * problem.length;
+            if bends && kept.is_none_or(|b| radius_m < b.radius_m) {
                 *kept = Some(bend(radius_m));
             }
         };

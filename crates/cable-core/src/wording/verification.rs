@@ -18,7 +18,9 @@ impl Sentence for Finding {
         if !self.with.is_empty() {
             text += &format!(" at `{}`", self.with);
         }
-        if self.at_m.iter().all(|c| c.is_finite()) && self.arc_length_m.is_finite() {
+        if self.law.is_of_whole() {
+            text += &format!(", of `{}`", self.cable);
+        } else if self.at_m.iter().all(|c| c.is_finite()) && self.arc_length_m.is_finite() {
             let along = f.length(self.arc_length_m, 3);
             text += &format!(", {along} along `{}` at {}", self.cable, f.point(self.at_m, 3));
         }

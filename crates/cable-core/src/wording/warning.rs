@@ -168,6 +168,10 @@ impl Sentence for Warning {
                 f.length(value, 4),
                 self.at_m.map_or_else(String::new, |at| format!(", at {}", f.point(at, 4)))
             ),
+            Cause::RobotWithoutGround => format!(
+                "The robot stands still and does not drive its path: the terrain ends below its tracks{}",
+                self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3)))
+            ),
             Cause::RobotIgnored { model } => {
                 format!("`{cable}` lies through the robot: {model} knows nothing of it")
             }

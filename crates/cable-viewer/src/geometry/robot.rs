@@ -2,7 +2,7 @@
 
 use cable_core::math::Point;
 use cable_core::scene::preset::{RobotPreset, robot_preset};
-use cable_core::scene::{Ground, Pose, RobotTask};
+use cable_core::scene::{Pose, RobotTask};
 
 use crate::state::AppState;
 use crate::units::labels;
@@ -30,7 +30,7 @@ pub fn robot_outline(state: &AppState) -> Vec<Point> {
 #[must_use]
 pub fn path_flags(state: &AppState) -> Vec<(usize, Point, String)> {
     let Some(robot) = state.document.scene.robot.as_ref().filter(|r| !r.path.is_empty()) else { return Vec::new() };
-    let ground = Ground::of(&state.document.scene);
+    let ground = state.document.scene.robot_ground();
     let mut out: Vec<(usize, Point, String)> = Vec::new();
     for (k, task) in robot.path.iter().enumerate() {
         match (task, out.last_mut()) {

@@ -14,7 +14,6 @@ use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
 use crate::problem::robot_outline::OUTLINE_NAME;
 use crate::robot;
-use crate::scene::ground::Ground;
 use crate::scene::preset::robot_preset;
 use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
@@ -130,7 +129,7 @@ pub fn robot_reach(
     if cables.is_empty() {
         return Err(unsupported(UnsupportedReach::RobotWithoutCable));
     }
-    let ground = Ground::of(scene);
+    let ground = scene.robot_ground();
     let start_x_m = vehicle.at_m[0];
     let mut map = ReachMap {
         start_x_m,

@@ -80,8 +80,11 @@ pub struct FemModel {
     meshes: TwoMeshes,
     /// Pose to which the outline of the robot was moved.
     robot_pose: Option<RigidPose>,
-    /// The equilibrium of a stiff cable in contact as an elastica, until something moves.
+    /// The equilibrium of a stiff cable in contact as an elastica, or of a cable on a smooth floor
+    /// that stands for that on the rubbing one, until something moves.
     elastica_answer: Option<CableSolution>,
+    /// True if the first equilibrium on a rubbing floor is that on a smooth floor.
+    on_smooth_floor: bool,
     /// Error of the mesh's equilibrium of a stiff cable by neglected bending, relative to the
     /// greatest tension, until something moves.
     bending_error: Option<f64>,
@@ -113,6 +116,7 @@ impl FemModel {
             settings,
             robot_pose: problem.outline.as_ref().map(|o| o.placement),
             elastica_answer: None,
+            on_smooth_floor: false,
             bending_error: None,
             problem,
         })
@@ -290,11 +294,13 @@ impl Mechanics for FemModel {
 
     fn fall_back(&mut self, why: &SolveError) -> bool {
         let finer = if matches!(why, SolveError::Unsound { .. }) { self.on_finer_mesh() } else { None };
-        let found = finer.is_some();
         if let Some(finer) = finer {
             *self = finer;
+            return true;
         }
-        found
+        let begins = !self.on_smooth_floor && self.time_s() <= 0.0;
+        self.on_smooth_floor |= begins && self.problem.floor_friction.is_some();
+        begins && self.on_smooth_floor
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {

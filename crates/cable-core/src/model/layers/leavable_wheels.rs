@@ -13,7 +13,7 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
 use crate::model::mechanics::Constructor;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Mechanics, Settings, StepReport};
+use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::wheels_as_posts::WheelPost;
 use crate::problem::{Problem, StandingWheels, WheelsAsPosts};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
@@ -272,7 +272,8 @@ impl Layer for LeavableWheels {
     }
 
     fn reason(&self) -> Option<&ModelReason> {
-        self.inner.reason().or(self.left.as_ref().and(Some(&ModelReason::Obstacles)))
+        let as_posts = self.left.as_ref().filter(|_| self.inner.model() == Model::Spans);
+        self.inner.reason().or(as_posts.and(Some(&ModelReason::Obstacles)))
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
@@ -332,6 +333,22 @@ impl Layer for LeavableWheels {
     fn set_robot_pose(&mut self, to: RigidPose) {
         self.robot_pose = Some(to);
         self.inner.set_robot_pose(to);
+    }
+
+    /// A wheel that stands acts on the cable as a post does: where no answer over wheels is sound,
+    /// one over posts is asked for.
+    fn fall_back(&mut self, why: &SolveError) -> bool {
+        if self.inner.fall_back(why) {
+            return true;
+        }
+        let all = self.wheels.standing.clone();
+        if self.inner.time_s() > 0.0 || self.replaced() == all {
+            return false;
+        }
+        let Some(posts) = self.posts(&all) else { return false };
+        let Ok(inner) = self.built(Some(&posts), None) else { return false };
+        (self.inner, self.left) = (inner, Some(posts));
+        true
     }
 
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {

@@ -79,6 +79,11 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
         self.inner_mut().set_robot_pose(to);
     }
 
+    /// See [`Mechanics::fall_back`].
+    fn fall_back(&mut self, why: &SolveError) -> bool {
+        self.inner_mut().fall_back(why)
+    }
+
     /// Translates a time of the inner model, s.
     fn outer_time(&self, time_s: f64) -> f64 {
         time_s
@@ -198,7 +203,7 @@ impl<L: Layer> Mechanics for Layered<L> {
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {
-        let fell = self.0.inner_mut().fall_back(why);
+        let fell = self.0.fall_back(why);
         self.0.observe();
         fell
     }

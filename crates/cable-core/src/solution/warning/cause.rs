@@ -163,6 +163,8 @@ pub enum WarningCause {
         /// The obstacle's name.
         obstacle: String,
     },
+    /// The robot does not drive its path, because the terrain ends below its tracks.
+    RobotWithoutGround,
     /// The cable lies through the robot.
     RobotIgnored {
         /// The model, which knows nothing of the robot.
@@ -300,7 +302,9 @@ impl WarningCause {
             Self::Weightless | Self::Unstable | Self::Loose { .. } | Self::ManyEquilibria { .. } => {
                 WarningKind::NotUnique
             }
-            Self::Blocked { .. } | Self::Lags { .. } | Self::HandLags { .. } => WarningKind::SupportHeld,
+            Self::Blocked { .. } | Self::Lags { .. } | Self::HandLags { .. } | Self::RobotWithoutGround => {
+                WarningKind::SupportHeld
+            }
             Self::RouteBuried { .. } | Self::SupportOnSurface { .. } => WarningKind::InitialPenetration,
             Self::ClearOfWheel { .. } => WarningKind::ClearOfWheel,
             Self::RobotIgnored { .. } => WarningKind::ThroughRobot,

@@ -35,7 +35,7 @@ pub enum WarningKind {
     Snag,
     /// With friction a resting place is not unique.
     NotUnique,
-    /// A support was stopped by an obstacle, or its speed was capped.
+    /// A support was stopped by an obstacle, its speed was capped, or its robot cannot drive.
     SupportHeld,
     /// The scene puts a support or the route into an obstacle: it was put outside.
     InitialPenetration,

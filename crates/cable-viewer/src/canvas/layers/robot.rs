@@ -52,7 +52,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.add(egui::Shape::closed_line(body, line));
     tracks(view, &pose, preset);
     touched(view, state, &pose, preset);
-    let hitch = view.at(pose.hitch_m(preset));
+    let hitch = view.at(pose.hitch_m(preset, state.document.scene.view));
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
 

@@ -100,7 +100,9 @@ pub fn solution(elastica: &Elastica, problem: &Problem) -> CableSolution {
 fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::new();
     let area = problem.cable.area_m2();
-    for piece in &elastica.pieces {
+    for (k, piece) in elastica.pieces.iter().enumerate() {
+        let before = k.checked_sub(1).and_then(|j| elastica.joints.get(j));
+        let clamped = matches!(before, Some(Joint::Held { angle: Some(_), .. }));
         for u in drawn(elastica, problem, piece) {
             let t = tension(&u);
             let node = Node {
@@ -116,12 +118,16 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
             };
             match out.last_mut() {
                 // At the joint of two pieces, the greater tension and the force of the second piece
-                // count.
+                // count, and the sharper of two bends between which a clamp is.
                 Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
+                    let bends = [l.curvature_per_m, node.curvature_per_m];
                     if node.tension_n > l.tension_n {
                         *l = node;
                     }
                     l.force_n = node.force_n;
+                    if clamped {
+                        l.curvature_per_m = if bends[0].abs() > bends[1].abs() { bends[0] } else { bends[1] };
+                    }
                 }
                 _ => out.push(node),
             }

@@ -1,8 +1,9 @@
 //! This module controls the search for an equilibrium: it chooses the solver and the start, and
 //! checks the answer.
 
+use std::sync::Arc;
+
 use crate::error::SolveError;
-use crate::model::StepReport;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::equilibrium_search::easier_start::SpansStart;
 use crate::model::fem::equilibrium_search::mesh_error::Refinement;
@@ -10,7 +11,9 @@ use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
-use crate::solution::{Cost, Warning, WarningCause};
+use crate::model::{Mechanics, StepReport};
+use crate::problem::Problem;
+use crate::solution::{Cost, Histories, ShownEquilibrium, Warning, WarningCause, WarningKind};
 use crate::state::State;
 
 impl FemModel {
@@ -21,6 +24,9 @@ impl FemModel {
         }
         self.elastica_answer = None;
         self.bending_error = None;
+        if self.on_smooth_floor {
+            return self.equilibrium_on_smooth_floor();
+        }
         if let Some(report) = self.elastica_from_flexible() {
             return Ok(report);
         }
@@ -28,6 +34,22 @@ impl FemModel {
         let found = self.equilibrium_in_contact();
         self.stepper.solver.work_left = WorkBudget::Unlimited;
         found
+    }
+
+    /// Finds the equilibrium of a cable on a floor without friction. On a rubbing floor it is one,
+    /// too: where nothing slides, friction is anything up to its limit, and zero will do.
+    fn equilibrium_on_smooth_floor(&mut self) -> Result<StepReport, SolveError> {
+        let smooth = Arc::new(Problem { floor_friction: None, ..Problem::clone(&self.problem) });
+        let mut model = Self::with_tuning(smooth, self.settings, self.tuning().clone())?;
+        model.dragged.clone_from(&self.dragged);
+        model.starts_from_spans = self.starts_from_spans;
+        let mut report = model.settle()?;
+        report.warnings.retain(|w| w.kind != WarningKind::NotUnique);
+        let shown = ShownEquilibrium::Frictionless;
+        let cause = WarningCause::ManyEquilibria { shown, histories: Histories::NotSought };
+        report.warnings.push(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]));
+        self.elastica_answer = Some(model.solution());
+        Ok(report)
     }
 
     /// Finds the equilibrium of a cable that can touch nothing. The continuation in EI of a stiff

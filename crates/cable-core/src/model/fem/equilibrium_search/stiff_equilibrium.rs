@@ -3,8 +3,9 @@
 
 use crate::model::fem::elastica::{self, Elastica};
 use crate::model::fem::{FemModel, PresentPart, results};
-use crate::model::initial_equilibrium::initial_equilibrium;
+use crate::model::initial_equilibrium::{initial_equilibrium, meets_itself};
 use crate::model::{Mechanics, StepReport};
+use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
@@ -19,15 +20,20 @@ const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 impl FemModel {
     /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None if
-    /// none is found.
+    /// none is found. A cable that can touch itself, and does not, has the equilibrium of one that
+    /// could pass through itself.
     pub(in crate::model::fem) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose).ok()?;
+        let passing = Problem::without_self_contact(self.problem.clone());
+        let lay = initial_equilibrium(&passing, self.settings, &self.dragged, self.robot_pose).ok()?;
         let (time_s, tolerance) = (self.stepper.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
-        let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
+        let (answer, cost) = elastica::rest(&passing, time_s, &self.dragged, flexible, tolerance)?;
+        if meets_itself(&self.problem, &answer.nodes) {
+            return None;
+        }
         self.elastica_answer = Some(answer);
         let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
         warnings.extend(self.elastica_warning());
@@ -41,7 +47,8 @@ impl FemModel {
         }
         let answer = self.stepper.solution();
         let bar = self.stepper.cable.even();
-        let found = Elastica::from_mesh(&self.problem, self.stepper.cable.time(), &self.dragged, &answer, bar)?;
+        let passing = Problem::without_self_contact(self.problem.clone());
+        let found = Elastica::from_mesh(&passing, self.stepper.cable.time(), &self.dragged, &answer, bar)?;
         let cost = self.accept_elastica(found)?;
         // A shape that differs by more than the error of a mesh is another equilibrium.
         let near = |n: &Node| {
@@ -49,7 +56,8 @@ impl FemModel {
                 self.elastica_answer.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
             at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
         };
-        if !answer.nodes.iter().all(near) {
+        let touches = |found: &CableSolution| meets_itself(&self.problem, &found.nodes);
+        if !answer.nodes.iter().all(near) || self.elastica_answer.as_ref().is_some_and(touches) {
             self.elastica_answer = None;
             return None;
         }
@@ -105,8 +113,8 @@ impl FemModel {
             }
             statics.buckled_shapes()
         };
-        let histories =
-            elastica::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
+        let passing = Problem::without_self_contact(self.problem.clone());
+        let histories = elastica::other_equilibria(&passing, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }

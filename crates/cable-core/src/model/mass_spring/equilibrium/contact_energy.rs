@@ -80,13 +80,7 @@ impl Contacts {
         // Those of the floor come first, one a node.
         let on_floor = anchors.iter().filter(|a| a.surface == Surface::Floor).count();
         if mesh.problem.floor_friction.is_some() && on_floor != mesh.position.len() {
-            let others = anchors.iter().copied().filter(|a| a.surface != Surface::Floor);
-            let floor = mesh.arc_length.iter().zip(&mesh.position).map(|(&s, &at)| Anchor {
-                surface: Surface::Floor,
-                arc_length: s,
-                at,
-            });
-            anchors = floor.chain(others).collect();
+            anchors = with_floor(&anchors, mesh);
         }
         let stiffness = mesh.problem.force_scale() / tuning.offset_m;
         let mut this = Self { tuning, stiffness, anchors, friction: Vec::new(), pairs: Vec::new() };
@@ -96,6 +90,13 @@ impl Contacts {
             this.anchors.extend(laid);
         }
         this
+    }
+
+    /// Follows a mesh that has got or lost nodes: the floor holds the material, not the node.
+    pub(in crate::model::mass_spring) fn follow_nodes(&mut self, mesh: &Mesh) {
+        if mesh.problem.floor_friction.is_some() {
+            self.anchors = with_floor(&self.anchors, mesh);
+        }
     }
 
     /// Stiffness of a contact, N/m; 0 where there is nothing to touch.
@@ -292,6 +293,23 @@ impl Contacts {
         }
         impulses
     }
+}
+
+/// The anchors with one on the floor for each node, first: where its material has its anchor, or
+/// where it is if none is known.
+fn with_floor(anchors: &[Anchor], mesh: &Mesh) -> Vec<Anchor> {
+    let known: Vec<&Anchor> = anchors.iter().filter(|a| a.surface == Surface::Floor).collect();
+    let anchor_of = |(&s, &at): (&f64, &Vec2)| {
+        let k = known.partition_point(|a| a.arc_length < s);
+        let at = match (k.checked_sub(1).and_then(|k| known.get(k)), known.get(k)) {
+            (Some(a), Some(b)) => a.at + (b.at - a.at) * ((s - a.arc_length) / (b.arc_length - a.arc_length)),
+            (Some(one), None) | (None, Some(one)) => one.at,
+            (None, None) => at,
+        };
+        Anchor { surface: Surface::Floor, arc_length: s, at }
+    };
+    let floor = mesh.arc_length.iter().zip(&mesh.position).map(anchor_of);
+    floor.chain(anchors.iter().copied().filter(|a| a.surface != Surface::Floor)).collect()
 }
 
 /// Curvature of the gap of a node that lies nearest to a corner or a circle, 1/m.

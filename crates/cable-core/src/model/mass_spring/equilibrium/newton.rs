@@ -119,6 +119,7 @@ impl<'a> EquilibriumSolver<'a> {
                 self.system.fade *= tuning.first_stiffness_fade;
                 let remeshed = !self.mesh.wheels.pulleys.is_empty() && remesh(self.mesh, self.time_s);
                 if remeshed {
+                    self.contacts.follow_nodes(self.mesh);
                     self.system = System { fade: self.system.fade, ..System::new(self.mesh)? };
                 }
                 let due = k < tuning.eager_friction_steps

@@ -20,6 +20,11 @@ const PLACE_SPACING: f64 = 1e-6;
 /// that is left.
 const PEAK_HALVINGS: usize = 30;
 
+/// Of two curvatures or moments the sharper.
+fn greater(before: f64, after: f64) -> f64 {
+    if before.abs() > after.abs() { before } else { after }
+}
+
 impl Beam {
     /// Moments that balance bar `e` at both nodes, N·m.
     fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
@@ -33,21 +38,25 @@ impl Beam {
         [-pull[0], pull[1]]
     }
 
-    /// Curvature at node `v`, 1/m. At a station it follows from the moment that balances the bar
-    /// beside it (the greater one at a clamp between two bars), elsewhere from the slope of the
-    /// quartic through the angles of both bars.
-    fn curvature(&self, v: usize, starts: &[Vec2]) -> f64 {
+    /// Curvatures just before and just after node `v`, 1/m, which differ at a clamp between two
+    /// bars. At a station they follow from the moment that balances the bar beside it, elsewhere
+    /// from the slope of the quartic through the angles of both bars.
+    fn curvatures(&self, v: usize, starts: &[Vec2]) -> [f64; 2] {
         let (before, after) = (v.checked_sub(1).and_then(|e| self.bars.get(e)), self.bars.get(v));
         if let (Some(a), Some(b)) = (before, after)
             && a.stretch == b.stretch
         {
             let places = [-a.ds, -0.5 * a.ds, 0.0, 0.5 * b.ds, b.ds];
-            return slope_at_zero(&places, &self.angles[2 * v - 2..2 * v + 3]);
+            return [slope_at_zero(&places, &self.angles[2 * v - 2..2 * v + 3]); 2];
         }
         let per_moment = self.material.thermal_stretch / self.bending;
         let left = if before.is_some() { self.moments(v - 1, starts)[1] } else { 0.0 };
         let right = if after.is_some() { self.moments(v, starts)[0] } else { 0.0 };
-        per_moment * if left.abs() > right.abs() { left } else { right }
+        let station = before.and_then(|b| self.layout.stations.get(b.stretch + 1));
+        match station.filter(|_| after.is_some()).and_then(|s| s.clamp) {
+            Some(_) => [per_moment * left, per_moment * right],
+            None => [per_moment * greater(left, right); 2],
+        }
     }
 
     /// The greatest tension, at nodes or between them, N.
@@ -75,7 +84,7 @@ impl Beam {
     pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
         let (starts, forces) = (self.stretch_starts(), self.station_forces());
-        let curvatures: Vec<f64> = (0..=n).map(|v| self.curvature(v, &starts)).collect();
+        let curvatures: Vec<[f64; 2]> = (0..=n).map(|v| self.curvatures(v, &starts)).collect();
         let chord =
             |e: usize| self.samples(e, &starts).iter().map(|p| p.tangent * (p.length * (1.0 + p.tau))).sum::<Vec2>();
         let first = self.layout.stations.iter().position(Station::anchors).unwrap_or(0);
@@ -101,10 +110,11 @@ impl Beam {
                 larger(before.dot(&t), after.dot(&t))
             };
             let force = if v == n { before } else { after };
-            out.push(Point { arc_length, at, tension, curvature: curvatures[v], force });
+            let [bent_before, bent_after] = curvatures[v];
+            out.push(Point { arc_length, at, tension, curvature: greater(bent_before, bent_after), force });
             if v < n {
                 if smooth {
-                    self.between(v, at, [curvatures[v], curvatures[v + 1]], &starts, &mut out);
+                    self.between(v, at, [curvatures[v][1], curvatures[v + 1][0]], &starts, &mut out);
                 }
                 at += chord(v);
             }
