@@ -7,7 +7,7 @@ mod segments;
 
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
-use cable_core::solution::ModelReason;
+use cable_core::solution::{ModelReason, WarningKind};
 use cable_core::{Model, Settings, Simulation};
 use segments::cross_properly;
 
@@ -251,7 +251,11 @@ fn the_catalogue_has_a_scene_that_piles_up() {
     sim.settle().unwrap();
     for frame in 0..150 {
         sim.step(1.0 / 60.0).unwrap();
-        assert!(!crosses(&sim), "crossed in frame {frame}");
+        assert!(own_gap(&sim) > 0.0, "{} m in frame {frame}", own_gap(&sim));
+        // Bars nearer along the cable than half a turn takes may cross where it curls up, and that
+        // is told.
+        let curls = sim.solution().warnings.iter().any(|w| w.kind == WarningKind::Curl);
+        assert!(curls || !crosses(&sim), "crossed in frame {frame}");
     }
     println!("{} m high after 2.5 s", top(&sim));
     // Laid flat its middle is half a diameter up.

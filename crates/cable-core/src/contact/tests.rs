@@ -399,7 +399,8 @@ fn a_way_is_blocked_by_what_it_crosses_and_not_by_what_its_ends_touch() {
     let points_m = vec![[-6.0, 0.3], [-5.0, 0.3], [-5.0, 3.0], [-6.0, 3.0]];
     let world = World::new(&[ground, obstacle(Shape::Polygon { points_m })], 0.5, RADIUS);
     let between = |a: [f64; 2], b: [f64; 2]| {
-        let ways = [(a, b), (b, a)].map(|(a, b)| world.geometry().bodies_between([a.into(), b.into()], [WayEnd::Support; 2]));
+        let ways =
+            [(a, b), (b, a)].map(|(a, b)| world.geometry().bodies_between([a.into(), b.into()], [WayEnd::Support; 2]));
         assert_eq!(ways[0], ways[1], "{a:?} to {b:?}");
         ways[0].clone()
     };

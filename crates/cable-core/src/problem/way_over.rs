@@ -60,7 +60,8 @@ pub(crate) fn hull_over(world: &World, bodies: &[usize], a: Vec2, b: Vec2) -> Ve
 fn hull(world: &World, bodies: &[usize], [a, b]: [Vec2; 2], clearance: impl Fn(&Body) -> f64) -> Vec<Vec2> {
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
     let bodies = bodies.iter().filter_map(|k| world.geometry().bodies().get(*k));
-    let mut corners: Vec<Vec2> = bodies.flat_map(|body| tops(body, clearance(body))).filter(|p| p.x > low && p.x < high).collect();
+    let mut corners: Vec<Vec2> =
+        bodies.flat_map(|body| tops(body, clearance(body))).filter(|p| p.x > low && p.x < high).collect();
     corners.extend([a, b]);
     corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
     let mut hull: Vec<Vec2> = Vec::new();

@@ -153,13 +153,7 @@ impl ContactSet {
     }
 
     /// Sets up friction of contacts with obstacles only.
-    fn find_friction_contacts(
-        &mut self,
-        barrier: Barrier,
-        problem: &Problem,
-        mesh: &Mesh,
-        [now, start]: [&[Vec2]; 2],
-    ) {
+    fn find_friction_contacts(&mut self, barrier: Barrier, problem: &Problem, mesh: &Mesh, [now, start]: [&[Vec2]; 2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
         self.friction_contacts.clear();
