@@ -162,3 +162,28 @@ fn issue_016_an_end_let_go_without_inertia_lies_there_or_slides_away() {
         }
     }
 }
+
+/// Friction acted by the normal forces of a barrier that followed the tension, so it rose with the
+/// rate of the tension and fed vibrations: a pull of 122 N swung between 72 and 174 N.
+#[test]
+fn issue_016_a_cable_drawn_slowly_does_not_chatter() {
+    const DIAMETER_M: f64 = 0.02;
+    let at = [9.41, 0.5 * DIAMETER_M];
+    let mut end = Support::fixed("end", at);
+    end.motion = Some(Motion { times_s: vec![0.0, 20.0], points_m: vec![at, [at[0] + 1.05, at[1]]] });
+    let mut scene = catalog::cable_alone([11.0, 1.8, 2.34e5], vec![Support::fixed("riser", [0.0, 1.51]), end]);
+    let ground = Shape::Terrain { points_m: vec![[-9.0, 0.0], [30.0, 0.0]] };
+    scene.obstacles = vec![Obstacle { name: "ground".to_owned(), shape: ground, friction: Some(0.72) }];
+    let c = &mut scene.cables[0];
+    (c.preset, c.diameter_m, c.damping_ratio, c.segments) = (None, DIAMETER_M, 0.02, Some(737));
+    let mut sim = begin(scene, Model::Fem);
+    let mut pulls = Vec::new();
+    while sim.time_s() < 6.3 {
+        sim.step(STEP_S).expect("it is drawn");
+        let reaction = sim.solution().cables[0].supports[1].reaction_x_n;
+        pulls.extend((sim.time_s() > 5.5).then_some(-reaction));
+    }
+    let (least, most) = pulls.iter().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(*p), b.max(*p)));
+    println!("the pull is {least:.2} to {most:.2} N");
+    assert!(most - least < 0.05 * most, "{least} to {most} N");
+}
