@@ -286,6 +286,7 @@ impl Simulation {
             self.warning_monitor.at_rest(&observed, time_s)
         }
         self.warn_through_robot();
+        self.warn_robot_in_obstacle();
         self.warn_without_ground();
         self.verification = self.verify(&self.answers);
         self.next_cheaper = None;
@@ -309,6 +310,22 @@ impl Simulation {
                 self.warnings.push(Warning::new(cause, &answer.name, problem.length, [0.0; 2]));
             }
         }
+    }
+
+    /// Warns where the robot stands in an obstacle that is no terrain: only terrain stops it.
+    fn warn_robot_in_obstacle(&mut self) {
+        self.warnings.retain(|w| w.kind != WarningKind::RobotInObstacle);
+        let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
+        let Some(problem) = self.cables.first().map(SimulatedCable::problem) else { return };
+        let Some(outline) = &problem.outline else { return };
+        let met = self.scene.obstacles.iter().filter(|o| outline.meets(at, &o.shape));
+        let place = [at.at.x, at.at.y];
+        let warnings = met.map(|o| {
+            let cause = WarningCause::RobotInObstacle { obstacle: o.name.clone() };
+            Warning::new(cause, &problem.cable.name, problem.length, [0.0; 2]).at(place)
+        });
+        let warnings: Vec<Warning> = warnings.collect();
+        self.warnings.extend(warnings);
     }
 
     /// Warns where a robot has a path that it cannot drive from the start on.

@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, missing_docs)] // a failing test is meant to panic
 
 use cable_core::scene::{Obstacle, Shape, View, catalog};
-use cable_core::solution::WarningCause;
+use cable_core::solution::{WarningCause, WarningKind};
 use cable_core::{Model, Scene, Simulation};
 
 /// Coefficient of friction of the cable with the floor.
@@ -78,4 +78,31 @@ fn where_the_terrain_ends_below_it_the_answer_says_so() {
     assert!(s.warnings().any(|w| w.cause == WarningCause::RobotWithoutGround));
     s.step_quasi_static(0.1).unwrap();
     assert!(s.warnings().any(|w| w.cause == WarningCause::RobotWithoutGround) && s.solution().robot.is_none());
+}
+
+/// Boxes and pipes do not stop a robot, and it drove through them without a word.
+#[test]
+fn issue_016_a_robot_in_an_obstacle_is_told() {
+    let mut scene = catalog::robot_drive();
+    let told = |s: &Simulation| s.warnings().any(|w| w.kind == WarningKind::RobotInObstacle);
+    let begin = |scene: Scene| {
+        let mut s = Simulation::new(scene, Model::Auto).unwrap();
+        s.settle().unwrap();
+        s
+    };
+    assert!(!told(&begin(scene.clone())));
+    let [x, y] = scene.robot_pose().unwrap().at_m;
+    let beside = |dx: f64| vec![[x + dx, y - 1.0], [x + dx + 0.3, y - 1.0], [x + dx + 0.3, y + 0.4], [x + dx, y + 0.4]];
+    let shapes = [
+        (Shape::Polygon { points_m: beside(-0.1) }, true),
+        (Shape::Polygon { points_m: beside(4.0) }, false),
+        (Shape::Circle { center_m: [x, y + 0.3], radius_m: 0.1 }, true),
+        (Shape::Circle { center_m: [x, y + 5.0], radius_m: 0.1 }, false),
+        (Shape::Polyline { points_m: vec![[x - 3.0, y + 0.3], [x + 3.0, y + 0.3]], thickness_m: 0.05 }, true),
+    ];
+    for (shape, is_in) in shapes {
+        scene.obstacles.truncate(1);
+        scene.obstacles.push(Obstacle { name: "thing".to_owned(), shape, friction: Some(0.3) });
+        assert_eq!(told(&begin(scene.clone())), is_in, "{:?}", scene.obstacles[1]);
+    }
 }

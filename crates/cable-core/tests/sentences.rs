@@ -117,6 +117,7 @@ fn warnings() -> Vec<Warning> {
         (Cause::RouteBuried { obstacle: name("ground") }, [0.25, 0.0]),
         (Cause::SupportOnSurface { support: name("grip"), obstacle: name("beam") }, [0.014, 0.014]),
         (Cause::RobotWithoutGround, [0.0; 2]),
+        (Cause::RobotInObstacle { obstacle: name("box") }, [0.0; 2]),
         (Cause::RobotIgnored { model: Model::Spans }, [0.0; 2]),
         (Cause::SlidFromRoute { why: SlideReason::UnheldForce { left_n: 12.0, loads_n: 120.0 } }, [0.0; 2]),
         (Cause::SlidOn, [0.0; 2]),

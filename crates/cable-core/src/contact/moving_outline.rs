@@ -3,8 +3,13 @@
 //! In a `Geometry` it is an additional body, the last one. It is moved to its pose before every
 //! step, and stands still while the step is solved.
 
-use super::distance::{point_segment, segment_segment};
-use crate::math::{RigidPose, Vec2, cross, larger};
+use super::distance::{cross_properly, point_segment, segment_segment};
+use crate::math::{Point, RigidPose, Vec2, cross, larger, vec2};
+use crate::scene::Shape;
+
+/// Depth to which a round or thick obstacle may reach into an outline that it touches, m. Smaller:
+/// rounding of what stands on it counts; larger: shallow overlaps are not spoken of.
+const TOUCHING_DEPTH_M: f64 = 1e-3;
 
 /// A closed outline, solid inside.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +70,29 @@ impl Outline {
             }
         }
         true
+    }
+
+    /// Returns whether an obstacle other than terrain reaches into the outline at a placement.
+    #[must_use]
+    pub(crate) fn meets(&self, placement: RigidPose, shape: &Shape) -> bool {
+        let line = |points: &[Point]| points.iter().map(|p| vec2(*p)).collect::<Vec<_>>();
+        let (ring, radius) = match shape {
+            Shape::Terrain { .. } => return false,
+            Shape::Polygon { points_m } => {
+                let mut ring = line(points_m);
+                ring.extend(points_m.first().map(|p| vec2(*p)));
+                (ring, 0.0)
+            }
+            Shape::Polyline { points_m, thickness_m } => (line(points_m), 0.5 * thickness_m),
+            Shape::Circle { center_m, radius_m } => (line(&[*center_m]), *radius_m),
+        };
+        let crosses = |a: Vec2, b: Vec2| self.edges(placement).filter(|[p, q]| cross_properly(a, b, *p, *q)).count();
+        // A ray from a point inside leaves the outline once more than it enters it.
+        let beyond = self.corners.iter().map(|c| c.norm()).fold(1.0, larger) * 4.0;
+        let is_inside = |p: Vec2| crosses(p, placement.at + Vec2::new(beyond, 0.6 * beyond)) % 2 == 1;
+        ring.first().is_some_and(|p| is_inside(*p))
+            || ring.windows(2).any(|w| crosses(w[0], w[1]) > 0)
+            || (radius > TOUCHING_DEPTH_M && !self.is_clear(placement, ring.into_iter(), radius - TOUCHING_DEPTH_M))
     }
 
     /// The largest distance that a point of the outline moves between two placements, m.

@@ -175,6 +175,10 @@ impl Sentence for Warning {
             Cause::RobotIgnored { model } => {
                 format!("`{cable}` lies through the robot: {model} knows nothing of it")
             }
+            Cause::RobotInObstacle { obstacle } => format!(
+                "The robot stands in `{obstacle}`{}: it drives on terrain alone, and nothing else stops it; lead its path clear of it",
+                self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3)))
+            ),
             Cause::SlidFromRoute { why } => format!(
                 "This is not where the cable was laid: from there there is no resting place: {}. How it moved there is not shown",
                 NoEquilibrium::from(*why).sentence(units)

@@ -78,6 +78,7 @@ fn no_line_of_a_warning_is_cut_and_each_ends_with_its_place() {
             Kind::InitialPenetration,
             Kind::ClearOfWheel,
             Kind::ThroughRobot,
+            Kind::RobotInObstacle,
             Kind::Stabilised,
             Kind::EnergyGrows,
             Kind::NotUnique,

@@ -170,6 +170,11 @@ pub enum WarningCause {
         /// The model, which knows nothing of the robot.
         model: Model,
     },
+    /// The robot drives through an obstacle: only terrain stops it.
+    RobotInObstacle {
+        /// The obstacle's name.
+        obstacle: String,
+    },
     /// The cable slid from where it was laid to where it rests.
     SlidFromRoute {
         /// The reason why it did.
@@ -308,6 +313,7 @@ impl WarningCause {
             Self::RouteBuried { .. } | Self::SupportOnSurface { .. } => WarningKind::InitialPenetration,
             Self::ClearOfWheel { .. } => WarningKind::ClearOfWheel,
             Self::RobotIgnored { .. } => WarningKind::ThroughRobot,
+            Self::RobotInObstacle { .. } => WarningKind::RobotInObstacle,
             Self::SlidFromRoute { .. } | Self::SlidOn | Self::SpeedCut | Self::EnergyCut | Self::StiffPreview => {
                 WarningKind::Stabilised
             }

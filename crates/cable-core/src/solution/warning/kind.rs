@@ -43,6 +43,8 @@ pub enum WarningKind {
     ClearOfWheel,
     /// The cable passes through the robot, because the model does not include the robot's outline.
     ThroughRobot,
+    /// The robot drives through an obstacle, because only terrain stops it.
+    RobotInObstacle,
     /// Damping or velocity was raised to keep the motion stable.
     Stabilised,
     /// It has more energy than what moves it can have given; value and limit in J.
@@ -53,7 +55,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -71,6 +73,7 @@ impl WarningKind {
         Self::InitialPenetration,
         Self::ClearOfWheel,
         Self::ThroughRobot,
+        Self::RobotInObstacle,
         Self::Stabilised,
         Self::EnergyGrows,
         Self::Accuracy,
@@ -97,6 +100,7 @@ impl WarningKind {
             Self::InitialPenetration => "initial-penetration",
             Self::ClearOfWheel => "clear-of-wheel",
             Self::ThroughRobot => "through-robot",
+            Self::RobotInObstacle => "robot-in-obstacle",
             Self::Stabilised => "stabilised",
             Self::EnergyGrows => "energy-grows",
             Self::Accuracy => "accuracy",
@@ -117,6 +121,7 @@ impl WarningKind {
             | Self::SupportHeld
             | Self::ClearOfWheel
             | Self::ThroughRobot
+            | Self::RobotInObstacle
             | Self::Stabilised
             | Self::Accuracy => Quantity::Number,
         }

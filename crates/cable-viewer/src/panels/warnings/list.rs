@@ -258,6 +258,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Warning
         WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
         WarningKind::ClearOfWheel => (Severity::Note, "Clear of a wheel"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
+        WarningKind::RobotInObstacle => (Severity::Caution, "Robot in an obstacle"),
         WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
         WarningKind::NotUnique => (Severity::Note, "Depends on how it was laid"),
