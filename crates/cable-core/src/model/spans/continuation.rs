@@ -497,8 +497,9 @@ impl CableEquilibrium {
                 let next = smaller(done + tuned.runaway_step_fraction, 1.0);
                 at.between(from, to, next);
                 let slid = self.pseudo_transient_continuation(layout, at, workspace);
-                let slid = slid.map_err(|held_back| {
-                    AdvanceFailure { failure: self.failure_to_report(failure, held_back), done }
+                let slid = slid.map_err(|held_back| AdvanceFailure {
+                    failure: self.failure_to_report(failure, held_back),
+                    done,
                 })?;
                 (taken, done) = (taken.and(slid), next);
                 taken.runaways += 1;
