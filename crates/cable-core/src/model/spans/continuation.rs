@@ -64,13 +64,13 @@ struct StepSize<'a> {
     /// True if the next step is shortened for that.
     shortens: bool,
     /// The step that was solved before it was shortened for that.
-    whole: Option<f64>,
+    whole_step: Option<f64>,
 }
 
 impl<'a> StepSize<'a> {
     fn new(tuned: &'a ContinuationSettings, first: f64) -> Self {
         let is_history = first >= 1.0;
-        Self { tuned, step: first, halvings: 0, short_halvings: 0, is_history, shortens: is_history, whole: None }
+        Self { tuned, step: first, halvings: 0, short_halvings: 0, is_history, shortens: is_history, whole_step: None }
     }
 
     /// True if a solved step has to be shorter: a contact has no friction in the step in which it
@@ -83,21 +83,21 @@ impl<'a> StepSize<'a> {
 
     /// Shortens a step that was solved.
     fn shorten(&mut self) {
-        self.whole = self.whole.or(Some(self.step));
+        self.whole_step = self.whole_step.or(Some(self.step));
         self.step *= 0.5;
     }
 
     /// Returns to the step that was solved before it was shortened, because that is better than
     /// none; returns whether there was one.
     fn restore_whole_step(&mut self) -> bool {
-        let Some(whole) = self.whole.take() else { return false };
-        (self.shortens, self.step) = (false, whole);
+        let Some(step) = self.whole_step.take() else { return false };
+        (self.shortens, self.step) = (false, step);
         true
     }
 
     /// Grows after a step that was accepted.
     fn grow(&mut self) {
-        (self.shortens, self.whole) = (self.is_history, None);
+        (self.shortens, self.whole_step) = (self.is_history, None);
         if self.halvings > 0 || self.step < self.tuned.grown_step {
             self.halvings = self.halvings.saturating_sub(1);
             self.step *= 2.0;

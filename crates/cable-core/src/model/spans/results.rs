@@ -33,11 +33,11 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
     let context = &cable_equilibrium.context;
     let mut nodes = Nodes::new(&layout.problem, greatest_tension(cable_equilibrium));
     nodes.turned = layout.is_reversed();
-    let mut found = ReportInProgress { layout, context, nodes, contacts: Vec::new() };
+    let mut unfinished = ReportInProgress { layout, context, nodes, contacts: Vec::new() };
     for section in &cable_equilibrium.sections {
-        found.add_section(section);
+        unfinished.add_section(section);
     }
-    let (mut nodes, mut contacts) = (found.nodes.out, found.contacts);
+    let (mut nodes, mut contacts) = (unfinished.nodes.out, unfinished.contacts);
     let mut supports = supports(layout, cable_equilibrium, &nodes);
     let hint = cable_equilibrium.instant.hint;
     if hint > 0.0 {

@@ -65,19 +65,19 @@ impl SlackSolver<'_> {
         begins: f64,
     ) -> Option<StretchTensions> {
         let n = stretches.len();
-        let found = StretchTensions {
+        let tensions = StretchTensions {
             stretches: stretches.to_vec(),
             enters: vec![0.0; n],
             spans: vec![None; n],
             leaves: begins,
         };
-        let mut sweep = TensionSweep { solver: self, given: stretches, walls, side, found };
+        let mut sweep = TensionSweep { solver: self, whole_stretches: stretches, walls, side, tensions };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
             sweep.slide_along(k)?;
             sweep.cross_gap(k)?;
         }
-        Some(sweep.found)
+        Some(sweep.tensions)
     }
 
     /// The least tension (N) that friction allows at p of a stretch that is entered on a side with
@@ -195,12 +195,12 @@ impl SlackSolver<'_> {
 /// The computation of tensions along stretches from one end.
 struct TensionSweep<'a> {
     solver: &'a SlackSolver<'a>,
-    /// Stretches as they are without spans over kinks.
-    given: &'a [LyingStretch],
+    /// Stretches before spans over kinks shorten them.
+    whole_stretches: &'a [LyingStretch],
     walls: &'a [Option<f64>],
     /// The end from which it goes: 0 for the start.
     side: usize,
-    found: StretchTensions,
+    tensions: StretchTensions,
 }
 
 impl TensionSweep<'_> {
@@ -212,20 +212,20 @@ impl TensionSweep<'_> {
     /// Computes the tension where stretch k is left. None if it is in tension, and a shape without
     /// is sought.
     fn slide_along(&mut self, k: usize) -> Option<()> {
-        let (s, enters) = (self.found.stretches[k], self.found.leaves);
-        self.found.enters[k] = enters;
-        self.found.leaves = self.solver.least(&s, self.side, enters, s.coordinates[1 - self.side]);
-        let in_tension = self.found.leaves > self.solver.most;
+        let (s, enters) = (self.tensions.stretches[k], self.tensions.leaves);
+        self.tensions.enters[k] = enters;
+        self.tensions.leaves = self.solver.least(&s, self.side, enters, s.coordinates[1 - self.side]);
+        let in_tension = self.tensions.leaves > self.solver.most;
         (self.solver.sought != LooseShapes::NoTension || !in_tension).then_some(())
     }
 
     /// Goes from stretch k to the next, over a kink or along a wall. None if no cable can.
     fn cross_gap(&mut self, k: usize) -> Option<()> {
         let (solver, side, gap) = (self.solver, self.side, self.gap_beyond(k));
-        let stretch = |i: usize| self.found.stretches.get(i).copied();
+        let stretch = |i: usize| self.tensions.stretches.get(i).copied();
         let (Some(a), Some(b)) = (stretch(gap), stretch(gap.wrapping_add(1))) else { return Some(()) };
         let ([from, to], way) = if side == 0 { ([&a, &b], 1.0) } else { ([&b, &a], -1.0) };
-        let in_tension = self.found.leaves > solver.most;
+        let in_tension = self.tensions.leaves > solver.most;
         match self.walls.get(gap).copied().flatten() {
             Some(height) if in_tension && height * way > 0.0 => {
                 let (left, span) = self.climb_wall(k, to, way)?;
@@ -234,13 +234,14 @@ impl TensionSweep<'_> {
             Some(height) => {
                 // It hangs plumb from the round; the tension at the foot is that at the round less
                 // its weight.
-                self.found.leaves = larger(self.found.leaves + solver.context.law.load.norm() * height * way, 0.0);
-                if self.found.leaves > solver.most {
+                self.tensions.leaves =
+                    larger(self.tensions.leaves + solver.context.law.load.norm() * height * way, 0.0);
+                if self.tensions.leaves > solver.most {
                     return None;
                 }
             }
             None if in_tension && solver.bends_in(&a, &b) => {
-                let enters = self.found.enters[k];
+                let enters = self.tensions.enters[k];
                 let span = solver.over([from, to], way, &|p| solver.least(from, side, enters, p))?;
                 self.add_span(k, gap, &span);
             }
@@ -255,20 +256,20 @@ impl TensionSweep<'_> {
         let (solver, side) = (self.solver, self.side);
         let mut left = k;
         loop {
-            let enters_at = self.found.stretches[left].coordinates[side];
-            let coordinates = bounds(side, enters_at, self.given[left].coordinates[1 - side]);
-            let from = LyingStretch { coordinates, ..self.given[left] };
-            let enters = self.found.enters[left];
+            let enters_at = self.tensions.stretches[left].coordinates[side];
+            let coordinates = bounds(side, enters_at, self.whole_stretches[left].coordinates[1 - side]);
+            let from = LyingStretch { coordinates, ..self.whole_stretches[left] };
+            let enters = self.tensions.enters[left];
             if let Some(span) = solver.climb([&from, to], way, &|p| solver.least(&from, side, enters, p))? {
                 return Some((left, span));
             }
             // The span has to begin on an earlier stretch.
             left = if side == 0 { left.checked_sub(1)? } else { left + 1 };
             let between = self.gap_beyond(left);
-            if left >= self.given.len() || self.walls[between].is_some() {
+            if left >= self.whole_stretches.len() || self.walls[between].is_some() {
                 return None;
             }
-            self.found.spans[between] = None;
+            self.tensions.spans[between] = None;
         }
     }
 
@@ -277,13 +278,13 @@ impl TensionSweep<'_> {
         let side = self.side;
         let (before, after) = if side == 0 { (left, gap + 1) } else { (gap, left) };
         let [p, ends] = [span.coordinates, span.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
-        let stretches = &mut self.found.stretches;
+        let stretches = &mut self.tensions.stretches;
         (stretches[before].coordinates[1], stretches[after].coordinates[0]) = (p[0], p[1]);
         let place = stretches[before].place(self.solver.context, p[0]);
         let form = SlackForm::Spans { from: place.at, force: place.tangent * ends[0] };
         let part = SlackPart { arc_lengths: [0.0, span.material], tension: ends, form };
-        self.found.spans[before] = Some((part, after));
-        self.found.leaves = span.tension[1];
+        self.tensions.spans[before] = Some((part, after));
+        self.tensions.leaves = span.tension[1];
     }
 }
 
