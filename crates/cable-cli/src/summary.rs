@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use cable_core::analysis::{EndStiffness, NeglectedBending};
-use cable_core::summary::{CablePlace, CableSummary, EndForce, TouchKind};
+use cable_core::solution::JudgedBend;
+use cable_core::summary::{CablePlace, CableSummary, EndForce, ForceBalance, FrictionUse, TouchKind, Utilisation};
 
 use crate::answer_json::Figures;
 
@@ -45,7 +46,18 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
     }
     out.push(("Lowest", format!("{:.4} m {}", s.lowest.y_m, at(s.lowest))));
     out.push(("Highest", format!("{:.4} m {}", s.highest.y_m, at(s.highest))));
-    let u = &s.utilisation;
+    out.push(("Used of limits", used_of_limits(&s.utilisation)));
+    if let Some(j) = &s.judged_bend {
+        out.push(("Sharpest led bend", judged_bend(j)));
+    }
+    if let Some(f) = &s.friction {
+        out.push(("Friction used", friction_used(f)));
+    }
+    out.push(("Balance", balance(s.balance.as_ref())));
+    out
+}
+
+fn used_of_limits(u: &Utilisation) -> String {
     let mut used = format!(
         "service tension {}, breaking tension {}",
         percent(u.service_tension_ratio),
@@ -56,38 +68,32 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
             let _ = write!(used, ", {name} {}", percent(ratio));
         }
     }
-    out.push(("Used of limits", used));
-    if let Some(j) = s.judged_bend {
-        let by = match j.bending_stiffness_n_m2 {
-            e if e > 0.0 => format!("with a bending stiffness of {e} N·m²"),
-            _ => "its bending stiffness is not known".to_owned(),
-        };
-        let b = j.bend;
-        let place = CablePlace { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m };
-        out.push(("Sharpest led bend", format!("radius {:.4} m {}, {by}", b.radius_m, at(place))));
+    used
+}
+
+fn judged_bend(j: &JudgedBend) -> String {
+    let by = match j.bending_stiffness_n_m2 {
+        e if e > 0.0 => format!("with a bending stiffness of {e} N·m²"),
+        _ => "its bending stiffness is not known".to_owned(),
+    };
+    let b = &j.bend;
+    let place = CablePlace { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m };
+    format!("radius {:.4} m {}, {by}", b.radius_m, at(place))
+}
+
+fn friction_used(f: &FrictionUse) -> String {
+    let most = percent(f.greatest_ratio);
+    format!("{:.4} of {:.4} N, most by `{}` at {:.4} m: {most}", f.used_n, f.available_n, f.obstacle, f.arc_length_m)
+}
+
+fn balance(b: Option<&ForceBalance>) -> String {
+    match b {
+        Some(b) => format!(
+            "{:.2e} N right, {:.2e} N up are left of all forces: {:.1e} of the largest",
+            b.residual_n[0], b.residual_n[1], b.relative_residual
+        ),
+        None => "not known: the floor of a plan view rubs".to_owned(),
     }
-    if let Some(f) = &s.friction {
-        let text = format!(
-            "{:.4} of {:.4} N, most by `{}` at {:.4} m: {}",
-            f.used_n,
-            f.available_n,
-            f.obstacle,
-            f.arc_length_m,
-            percent(f.greatest_ratio)
-        );
-        out.push(("Friction used", text));
-    }
-    out.push((
-        "Balance",
-        match &s.balance {
-            Some(b) => format!(
-                "{:.2e} N right, {:.2e} N up are left of all forces: {:.1e} of the largest",
-                b.residual_n[0], b.residual_n[1], b.relative_residual
-            ),
-            None => "not known: the floor of a plan view rubs".to_owned(),
-        },
-    ));
-    out
 }
 
 fn force(e: &EndForce) -> String {

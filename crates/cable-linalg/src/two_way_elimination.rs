@@ -56,7 +56,20 @@ pub(super) fn meet_in_the_middle<const B: usize>(
             substitute(&top.lower[(r + B) * B..][..B], &mut x[r], &mut above);
         }
     }
-    // This is the upper triangle of S; row t of the middle is row B − 1 − t counted from below.
+    schur_complement::<B>(values, halves, middle, [first, second]);
+    factor_middle::<B>(middle, first)?;
+    solve_middle([first, second], halves, middle, [above, below], x);
+    Ok(())
+}
+
+/// Sets the upper triangle of the middle to S, from both parts with their numbers of rows.
+#[inline(always)]
+fn schur_complement<const B: usize>(
+    values: &[f64],
+    [top, bottom]: &mut [FactorRows; 2],
+    middle: &mut [[f64; WIDEST]; WIDEST],
+    [first, second]: [usize; 2],
+) {
     for t in 0..B {
         let column = &values[(first + t) * (B + 1)..][..B + 1];
         for u in 0..=t {
@@ -69,12 +82,18 @@ pub(super) fn meet_in_the_middle<const B: usize>(
         for u in 0..=t {
             middle[u][t] -= share(&scaled, t, &top.lower[(first + u + B) * B..][..B], u);
         }
+        // Row t of the middle is row B − 1 − t counted from below.
         let j = first + B - 1 - t;
         let scaled = eliminate_middle::<B>(second, t, &column_from_below::<B>(values, j), bottom);
         for u in 0..=t {
             middle[B - 1 - t][B - 1 - u] -= share(&scaled, t, &bottom.lower[(second + u + B) * B..][..B], u);
         }
     }
+}
+
+/// Factorises S in place into D and D Lᵀ; `first` is the number of rows before the middle.
+#[inline(always)]
+fn factor_middle<const B: usize>(middle: &mut [[f64; WIDEST]; WIDEST], first: usize) -> Result<(), FactorError> {
     for t in 0..B {
         for u in 0..=t {
             let mut v = middle[u][t];
@@ -87,7 +106,6 @@ pub(super) fn meet_in_the_middle<const B: usize>(
             return Err(FactorError::NotPositive { row: first + t, pivot: middle[t][t] });
         }
     }
-    solve_middle([first, second], halves, middle, [above, below], x);
     Ok(())
 }
 

@@ -18,19 +18,18 @@ impl Simulation {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
             let name = &problem.cable.name;
+            let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
+            let many_equilibria = |histories: Histories| {
+                let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
+                Warning::new(cause, name, 0.0, [0.0; 2])
+            };
             if !problem.rubs(answer) {
-                let told = self.warnings.iter().any(|w| w.kind == WarningKind::NotUnique && w.cable == *name);
-                if told || !cable.breaks().is_empty() {
-                    continue;
+                if !self.warnings.iter().any(of_cable) && cable.breaks().is_empty() {
+                    let others = other_equilibria(problem, answer, cable.time_s());
+                    self.warnings.extend(others.map(many_equilibria));
                 }
-                let others = other_equilibria(problem, answer, cable.time_s());
-                self.warnings.extend(others.map(|histories| {
-                    let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
-                    Warning::new(cause, name, 0.0, [0.0; 2])
-                }));
                 continue;
             }
-            let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
             let laid = |problem: &Arc<Problem>| {
                 let laid = initial_equilibrium(problem, Settings::default(), &[], None).ok()??;
                 laid.warnings.into_iter().find(of_cable)
@@ -49,11 +48,7 @@ impl Simulation {
             }
             // A model that has chosen says which it shows; what others there are is asked here.
             let at = known.unwrap_or_else(|| {
-                let cause = WarningCause::ManyEquilibria {
-                    shown: ShownEquilibrium::FromRoute,
-                    histories: Histories::NotSought,
-                };
-                self.warnings.push(Warning::new(cause, name, 0.0, [0.0; 2]));
+                self.warnings.push(many_equilibria(Histories::NotSought));
                 self.warnings.len() - 1
             });
             let unknown = self.warnings[at].cause.histories() == Some(&Histories::NotSought);

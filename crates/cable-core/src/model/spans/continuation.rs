@@ -5,7 +5,7 @@
 //! continues the path, the cable slides under a drag to the next one that holds it.
 
 use crate::contact::swept_corners;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::acceptance::{clearance, equilibrium, tunnelling};
 use crate::model::spans::boundary::{LooseSection, Mode};
 use crate::model::spans::changes;
@@ -13,6 +13,7 @@ use crate::model::spans::contact::{point_load, slack_pocket};
 use crate::model::spans::newton::{Converged, Workspace, predict_slip};
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure, tension_loss};
 use crate::model::spans::section_layout::{SectionLayout, place_ends};
+use crate::model::spans::settings::ContinuationSettings;
 use crate::model::spans::slack::{self, LooseShapes};
 
 /// Relative difference below which two forces are the same.
@@ -45,6 +46,80 @@ pub(in crate::model::spans) struct StepStats {
     /// Friction that contacts lacked in the step in which they came down, as a fraction of the
     /// force there.
     pub missing_friction: f64,
+}
+
+/// The size of the steps of a path to an instant, as fractions of it.
+#[derive(Clone, Copy, Debug)]
+struct StepSize<'a> {
+    tuned: &'a ContinuationSettings,
+    step: f64,
+    /// Number of halvings of failed steps that no growth has undone.
+    halvings: u32,
+    /// Number of successive halvings of steps shorter than those with which a cable that runs away
+    /// is followed.
+    short_halvings: u32,
+    /// True for a history, which needs short steps when a contact comes down; the path to a first
+    /// equilibrium does not.
+    is_history: bool,
+    /// True if the next step is shortened for that.
+    shortens: bool,
+    /// The step that was solved before it was shortened for that.
+    whole_step: Option<f64>,
+}
+
+impl<'a> StepSize<'a> {
+    fn new(tuned: &'a ContinuationSettings, first: f64) -> Self {
+        let is_history = first >= 1.0;
+        Self { tuned, step: first, halvings: 0, short_halvings: 0, is_history, shortens: is_history, whole_step: None }
+    }
+
+    /// True if a solved step has to be shorter: a contact has no friction in the step in which it
+    /// comes down.
+    fn is_too_long(&self, taken: &StepStats) -> bool {
+        self.shortens
+            && taken.missing_friction > self.tuned.missing_friction_fraction
+            && self.step > self.tuned.landing_step_fraction
+    }
+
+    /// Shortens a step that was solved.
+    fn shorten(&mut self) {
+        self.whole_step = self.whole_step.or(Some(self.step));
+        self.step *= 0.5;
+    }
+
+    /// Returns to the step that was solved before it was shortened, because that is better than
+    /// none; returns whether there was one.
+    fn restore_whole_step(&mut self) -> bool {
+        let Some(step) = self.whole_step.take() else { return false };
+        (self.shortens, self.step) = (false, step);
+        true
+    }
+
+    /// Grows after a step that was accepted.
+    fn grow(&mut self) {
+        (self.shortens, self.whole_step) = (self.is_history, None);
+        if self.halvings > 0 || self.step < self.tuned.grown_step {
+            self.halvings = self.halvings.saturating_sub(1);
+            self.step *= 2.0;
+        }
+    }
+
+    /// Halves a step that failed.
+    fn halve(&mut self) {
+        self.halvings += 1;
+        self.short_halvings = if self.step < self.tuned.runaway_step_fraction { self.short_halvings + 1 } else { 0 };
+        self.step *= 0.5;
+    }
+
+    /// True if no shorter step is tried.
+    fn is_exhausted(&self) -> bool {
+        self.halvings > self.tuned.max_halvings || self.short_halvings > self.tuned.max_short_step_halvings
+    }
+
+    /// Begins anew after a cable was followed that ran away.
+    fn restart(&mut self) {
+        (self.halvings, self.short_halvings, self.step) = (0, 0, self.tuned.runaway_step_fraction);
+    }
 }
 
 /// The result of a continuation that did not reach its instant.
@@ -391,63 +466,44 @@ impl CableEquilibrium {
         workspace: &mut Workspace,
     ) -> Result<StepStats, AdvanceFailure> {
         let tuned = &layout.settings.continuation;
-        let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
-        let mut halvings: u32 = 0;
-        // This counts halvings of steps shorter than those with which a cable that runs away is
-        // followed.
-        let mut short_halvings: u32 = 0;
-        // A history needs short steps when a contact comes down; the path to a first equilibrium
-        // does not. `whole` is the step that was solved before it was shortened for that.
-        let (mut shortens, mut whole) = (first >= 1.0, None);
+        let (mut done, mut taken) = (0.0, StepStats::default());
+        let mut size = StepSize::new(tuned, first);
         while done < 1.0 {
-            let next = if done + END_ROUNDING * step >= 1.0 { 1.0 } else { done + step };
+            let next = if done + END_ROUNDING * size.step >= 1.0 { 1.0 } else { done + size.step };
             at.between(from, to, next);
             let failure = match self.step(layout, at, workspace) {
-                // A contact has no friction in the step in which it comes down, so that step must
-                // be short.
-                Ok(t)
-                    if shortens
-                        && t.missing_friction > tuned.missing_friction_fraction
-                        && step > tuned.landing_step_fraction =>
-                {
+                Ok(t) if size.is_too_long(&t) => {
                     self.undo(layout, workspace);
-                    whole = whole.or(Some(step));
-                    (step, taken.halvings) = (0.5 * step, taken.halvings + 1);
+                    size.shorten();
+                    taken.halvings += 1;
                     continue;
                 }
                 Ok(t) => {
-                    (shortens, whole) = (first >= 1.0, None);
-                    taken = taken.and(t);
-                    done = next;
-                    if halvings > 0 || step < tuned.grown_step {
-                        halvings = halvings.saturating_sub(1);
-                        step *= 2.0;
+                    size.grow();
+                    (taken, done) = (taken.and(t), next);
+                    continue;
+                }
+                Err(failure) => {
+                    if size.restore_whole_step() {
+                        continue;
                     }
-                    continue;
+                    failure
                 }
-                // The long step was solved, and it is better than none.
-                Err(_) if whole.is_some() => {
-                    (shortens, step) = (false, whole.take().unwrap_or(step));
-                    continue;
-                }
-                Err(failure) => failure,
             };
-            halvings += 1;
-            short_halvings = if step < tuned.runaway_step_fraction { short_halvings + 1 } else { 0 };
-            step *= 0.5;
+            size.halve();
             taken.halvings += 1;
-            if halvings > tuned.max_halvings || short_halvings > tuned.max_short_step_halvings {
+            if size.is_exhausted() {
                 // No nearby equilibrium holds the cable: it runs away to the next one that does.
-                let next =
-                    if done + tuned.runaway_step_fraction < 1.0 { done + tuned.runaway_step_fraction } else { 1.0 };
+                let next = smaller(done + tuned.runaway_step_fraction, 1.0);
                 at.between(from, to, next);
-                let t = match self.pseudo_transient_continuation(layout, at, workspace) {
-                    Ok(t) => t,
-                    Err(other) => return Err(AdvanceFailure { failure: self.failure_to_report(failure, other), done }),
-                };
-                (taken, done, halvings, step) = (taken.and(t), next, 0, tuned.runaway_step_fraction);
-                short_halvings = 0;
+                let slid = self.pseudo_transient_continuation(layout, at, workspace);
+                let slid = slid.map_err(|held_back| AdvanceFailure {
+                    failure: self.failure_to_report(failure, held_back),
+                    done,
+                })?;
+                (taken, done) = (taken.and(slid), next);
                 taken.runaways += 1;
+                size.restart();
             }
         }
         Ok(taken)

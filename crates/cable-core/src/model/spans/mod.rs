@@ -184,6 +184,20 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
+    /// Places dragged supports on their straight way to their hands; others follow their motion.
+    fn move_dragged_supports(
+        &self,
+        [first, last]: [&BoundaryConditions; 2],
+        done: f64,
+        instant: &mut BoundaryConditions,
+    ) {
+        for (i, dragged) in self.dragged.iter().enumerate() {
+            if dragged.is_some() {
+                instant.places[i] = first.places[i] + (last.places[i] - first.places[i]) * done;
+            }
+        }
+    }
+
     /// A failure as an error: a loss of tension if the last state, `stopped` or the present one,
     /// shows one.
     fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
@@ -343,6 +357,25 @@ impl SpansModel {
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 
+    /// The warning of other equilibria that another history of the cable would have left.
+    fn history_warning(&self, taken: StepStats, histories: Histories) -> Option<Warning> {
+        let cable_equilibrium = self.cable_equilibrium.as_ref()?;
+        if let Some([material_m, ground_m]) = cable_equilibrium.loose_lengths() {
+            // For any history, only friction on the loose cable can hold more.
+            let held_n = cable_equilibrium.friction_of_loose();
+            return Some(self.warning(WarningCause::Loose { material_m, ground_m, held_n }));
+        }
+        let mobilised = self.layout.problem.cable.friction_mobilised;
+        if !self.rubs() || !mobilised.is_default() || self.is_history_independent(&histories) {
+            return None;
+        }
+        let shown = match taken.found_without_friction {
+            true => ShownEquilibrium::Frictionless,
+            false => ShownEquilibrium::LeastSliding,
+        };
+        Some(self.warning(WarningCause::ManyEquilibria { shown, histories }))
+    }
+
     /// True if some of the cable is held by friction alone.
     fn hangs_by_friction(&self) -> bool {
         self.layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none))
@@ -439,12 +472,13 @@ impl Mechanics for SpansModel {
         let needed =
             if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut workspace) } else { None };
         let loose = self.cable_equilibrium.as_ref().and_then(CableEquilibrium::loose_lengths);
-        let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
-        let start = match &found {
-            Ok(taken) if taken.found_without_friction => SearchStart::Rubbing,
-            _ => SearchStart::Either,
+        let histories = match &found {
+            Ok(taken) if self.histories && loose.is_none() && self.rubs() => {
+                let start = if taken.found_without_friction { SearchStart::Rubbing } else { SearchStart::Either };
+                self.histories(start, &mut workspace)
+            }
+            _ => Histories::NotSought,
         };
-        let histories = if seeks { self.histories(start, &mut workspace) } else { Histories::NotSought };
         self.workspace = workspace;
         let others = if found.is_ok() && stable { self.other_equilibria() } else { None };
         if let Some(part) = needed {
@@ -459,20 +493,7 @@ impl Mechanics for SpansModel {
         if !stable {
             report.warnings.push(self.warning(WarningCause::Unstable));
         }
-        let mobilised = self.layout.problem.cable.friction_mobilised;
-        if let Some([material, ground]) = loose {
-            // For any history, only friction on the loose cable can hold more.
-            let held_n = self.cable_equilibrium.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
-            let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
-            report.warnings.push(self.warning(cause));
-        } else if self.rubs() && mobilised.is_default() && !self.is_history_independent(&histories) {
-            let shown = if taken.found_without_friction {
-                ShownEquilibrium::Frictionless
-            } else {
-                ShownEquilibrium::LeastSliding
-            };
-            report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
-        }
+        report.warnings.extend(self.history_warning(taken, histories));
         report.warnings.extend(others);
         if instant.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.present_report().nodes));
@@ -500,24 +521,17 @@ impl Mechanics for SpansModel {
         let length = self.layout.problem.length;
         let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
         self.layout.instant(&self.dragged, end, &mut last);
-        let pieces = (Self::travel(&cable_equilibrium.instant, &last)
-            / (self.layout.settings.continuation.max_move_fraction * length))
-            .ceil()
-            .clamp(1.0, 1000.0);
+        let longest_move = self.layout.settings.continuation.max_move_fraction * length;
+        let moves = (Self::travel(&cable_equilibrium.instant, &last) / longest_move).ceil().clamp(1.0, 1000.0);
         let mut workspace = std::mem::take(&mut self.workspace);
         let mut sum = StepReport::default();
         first.clone_from(&cable_equilibrium.instant);
         let (mut failed, mut ran) = (None, 0);
-        for k in 1..=pieces as usize {
-            let f = k as f64 / pieces;
-            let time_s = if k == pieces as usize { end } else { start + dt_s * f };
-            // Dragged supports move straight to their hands; others follow their motion.
+        for k in 1..=moves as usize {
+            let f = k as f64 / moves;
+            let time_s = if k == moves as usize { end } else { start + dt_s * f };
             self.layout.instant(&self.dragged, time_s, &mut instant);
-            for (i, dragged) in self.dragged.iter().enumerate() {
-                if dragged.is_some() {
-                    instant.places[i] = first.places[i] + (last.places[i] - first.places[i]) * f;
-                }
-            }
+            self.move_dragged_supports([&first, &last], f, &mut instant);
             match cable_equilibrium.advance_load(&self.layout, &instant, 1.0, &mut workspace) {
                 Ok(taken) => {
                     let one = self.report_of(taken).cost;

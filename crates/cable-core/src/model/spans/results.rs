@@ -31,6 +31,25 @@ pub(in crate::model::spans) struct Report {
 /// Makes the report of a cable equilibrium.
 pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> Report {
     let context = &cable_equilibrium.context;
+    let mut nodes = Nodes::new(&layout.problem, greatest_tension(cable_equilibrium));
+    nodes.turned = layout.is_reversed();
+    let mut unfinished = ReportInProgress { layout, context, nodes, contacts: Vec::new() };
+    for section in &cable_equilibrium.sections {
+        unfinished.add_section(section);
+    }
+    let (mut nodes, mut contacts) = (unfinished.nodes.out, unfinished.contacts);
+    let mut supports = supports(layout, cable_equilibrium, &nodes);
+    let hint = cable_equilibrium.instant.hint;
+    if hint > 0.0 {
+        remove_auxiliary_weight(&mut nodes, &mut supports, hint);
+        contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
+    }
+    Report { nodes: nodes.into(), supports, contacts }
+}
+
+/// The greatest tension at an end of a span, a contact or a loose section, N.
+fn greatest_tension(cable_equilibrium: &CableEquilibrium) -> f64 {
+    let context = &cable_equilibrium.context;
     let mut greatest = 0.0;
     for section in &cable_equilibrium.sections {
         for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
@@ -47,51 +66,58 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
             greatest = [0, 1].iter().map(|side| loose.end_force(context, *side).norm()).fold(greatest, larger);
         }
     }
-    let mut nodes = Nodes::new(&layout.problem, greatest);
-    nodes.turned = layout.is_reversed();
-    let mut contacts = Vec::new();
-    for section in &cable_equilibrium.sections {
+    greatest
+}
+
+/// The nodes and contacts of the sections that have been reported.
+struct ReportInProgress<'a> {
+    layout: &'a SectionLayout,
+    context: &'a SolveContext,
+    nodes: Nodes<'a>,
+    contacts: Vec<ContactReport>,
+}
+
+impl ReportInProgress<'_> {
+    fn add_section(&mut self, section: &CableSection) {
         if let Some(loose) = &section.loose {
-            let found = loose.report(context, &mut nodes, layout.problem.radius).into_iter();
-            contacts.extend(found.map(|(obstacle, report)| {
-                let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
+            let problem = &self.layout.problem;
+            let found = loose.report(self.context, &mut self.nodes, problem.radius).into_iter();
+            self.contacts.extend(found.map(|(obstacle, report)| {
+                let obstacle = problem.world.obstacle_name(obstacle).to_owned();
                 ContactReport { obstacle, ..report }
             }));
-            continue;
+            return;
         }
         for k in 0..section.spans() {
             if section.has_span(k) {
-                section.shapes(context, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+                section.shapes(self.context, k, |s0, at, shape| self.nodes.catenary(s0, at, shape));
             }
             if let Some(c) = section.contacts.get(k) {
-                let contact_path = context.contact_path(c).with_cached_piece(c.ends.place[0]);
-                let stretches = stretches(&contact_path, layout.problem.radius, &c.history, c.ends.place);
-                if c.is_load() {
-                    load_nodes(&mut nodes, section, context, k, &contact_path);
-                } else {
-                    contact_nodes(&mut nodes, &contact_path, c, &stretches);
-                }
-                if let Some(obstacle) = contact_path.curve.obstacle {
-                    let name = layout.problem.world.obstacle_name(obstacle);
-                    contacts.push(match c.is_load() {
-                        true => load(section, context, k, &contact_path, name),
-                        false => contact(&contact_path, name, c, &stretches),
-                    });
-                    if c.next == Connection::Pocket {
-                        contacts.extend(heap(section, context, k, name));
-                    }
-                }
+                self.add_contact(section, k, c);
             }
         }
     }
-    let mut nodes = nodes.out;
-    let mut supports = supports(layout, cable_equilibrium, &nodes);
-    let hint = cable_equilibrium.instant.hint;
-    if hint > 0.0 {
-        remove_auxiliary_weight(&mut nodes, &mut supports, hint);
-        contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
+
+    /// Adds contact k.
+    fn add_contact(&mut self, section: &CableSection, k: usize, c: &Contact) {
+        let (context, problem) = (self.context, &self.layout.problem);
+        let contact_path = context.contact_path(c).with_cached_piece(c.ends.place[0]);
+        let stretches = stretches(&contact_path, problem.radius, &c.history, c.ends.place);
+        if c.is_load() {
+            load_nodes(&mut self.nodes, section, context, k, &contact_path);
+        } else {
+            contact_nodes(&mut self.nodes, &contact_path, c, &stretches);
+        }
+        let Some(obstacle) = contact_path.curve.obstacle else { return };
+        let name = problem.world.obstacle_name(obstacle);
+        self.contacts.push(match c.is_load() {
+            true => load(section, context, k, &contact_path, name),
+            false => contact(&contact_path, name, c, &stretches),
+        });
+        if c.next == Connection::Pocket {
+            self.contacts.extend(heap(section, context, k, name));
+        }
     }
-    Report { nodes: nodes.into(), supports, contacts }
 }
 
 /// A stretch of a contact on which tension has one law and the boundary one form.

@@ -78,6 +78,69 @@ impl CableEnd {
     }
 }
 
+/// An error for a cable with a feature that the model lacks.
+fn refuse_unsupported(p: &Problem) -> Result<(), SolveError> {
+    if p.bending_stiffness > 0.0 {
+        return Err(unsupported(Unsupported::BendingStiffness));
+    }
+    if p.floor_friction.is_some() {
+        return Err(unsupported(Unsupported::PlanView));
+    }
+    if p.cable.self_contact {
+        return Err(unsupported(Unsupported::SelfContact));
+    }
+    if p.supports.iter().any(|s| s.release.is_some()) {
+        return Err(unsupported(Unsupported::Release));
+    }
+    Ok(())
+}
+
+/// The loads along a cable, in order.
+fn dead_loads(p: &Problem) -> Vec<SectionLoad> {
+    let own = p.loads.iter().enumerate();
+    let mut loads: Vec<SectionLoad> =
+        own.map(|(load, l)| SectionLoad { arc_length: l.arc_length, support: None, load }).collect();
+    for (k, s) in p.supports.iter().enumerate() {
+        if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
+            loads.push(SectionLoad { arc_length: s.arc_length.unwrap_or(0.0), support: Some(k), load: k });
+        }
+    }
+    loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+    loads
+}
+
+/// The sections into which its supports divide a cable.
+fn sections_of(p: &Problem) -> Result<Vec<SectionBounds>, SolveError> {
+    let mut sections: Vec<SectionBounds> = Vec::new();
+    let mut part = SectionBounds { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
+    let mut next_wheel = 2 * p.world.geometry().bodies().len();
+    for (k, s) in p.supports.iter().enumerate() {
+        match s.kind {
+            SupportKind::Load | SupportKind::Free => {}
+            SupportKind::Pulley => {
+                part.pulleys.push(Pulley { support: k, curve: next_wheel, facing: 0.0 });
+                next_wheel += 2;
+            }
+            SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
+                let Some(arc_length) = s.arc_length else {
+                    return Err(unsupported(Unsupported::SupportWithoutPlace));
+                };
+                if arc_length > part.material[0] {
+                    part.material[1] = arc_length;
+                    part.supports[1] = Some(k);
+                    sections.push(part);
+                }
+                part =
+                    SectionBounds { material: [arc_length, p.length], supports: [Some(k), None], pulleys: Vec::new() };
+            }
+        }
+    }
+    if part.material[1] > part.material[0] {
+        sections.push(part);
+    }
+    Ok(sections)
+}
+
 impl SectionLayout {
     /// True if its problem is that of the scene reversed.
     pub fn is_reversed(&self) -> bool {
@@ -93,62 +156,12 @@ impl SectionLayout {
         counted_from: CableEnd,
         settings: Arc<SpansSettings>,
     ) -> Result<Self, SolveError> {
-        let p = problem;
-        if p.bending_stiffness > 0.0 {
-            return Err(unsupported(Unsupported::BendingStiffness));
-        }
-        if p.floor_friction.is_some() {
-            return Err(unsupported(Unsupported::PlanView));
-        }
-        if p.cable.self_contact {
-            return Err(unsupported(Unsupported::SelfContact));
-        }
-        if p.supports.iter().any(|s| s.release.is_some()) {
-            return Err(unsupported(Unsupported::Release));
-        }
-        let mut loads = Vec::new();
-        for (load, l) in p.loads.iter().enumerate() {
-            loads.push(SectionLoad { arc_length: l.arc_length, support: None, load });
-        }
-        let mut sections: Vec<SectionBounds> = Vec::new();
-        let start = SectionBounds { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
-        let mut part = start.clone();
-        let bodies = p.world.geometry().bodies().len();
-        let mut wheels = 0;
-        for (k, s) in p.supports.iter().enumerate() {
-            match s.kind {
-                SupportKind::Load | SupportKind::Free => {
-                    let arc_length = s.arc_length.unwrap_or(0.0);
-                    loads.push(SectionLoad { arc_length, support: Some(k), load: k });
-                }
-                SupportKind::Pulley => {
-                    part.pulleys.push(Pulley { support: k, curve: 2 * (bodies + wheels), facing: 0.0 });
-                    wheels += 1;
-                }
-                SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
-                    let Some(arc_length) = s.arc_length else {
-                        return Err(unsupported(Unsupported::SupportWithoutPlace));
-                    };
-                    if arc_length > part.material[0] {
-                        part.material[1] = arc_length;
-                        part.supports[1] = Some(k);
-                        sections.push(part.clone());
-                    }
-                    part = SectionBounds {
-                        material: [arc_length, p.length],
-                        supports: [Some(k), None],
-                        pulleys: Vec::new(),
-                    };
-                }
-            }
-        }
-        if part.material[1] > part.material[0] {
-            sections.push(part);
-        }
-        if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
+        refuse_unsupported(problem)?;
+        let sections = sections_of(problem)?;
+        if problem.supports.iter().all(|s| s.at.is_none()) && problem.world.is_empty() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
-        loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+        let loads = dead_loads(problem);
         let corners = swept_corners::corners(&problem.world).into();
         let mut layout = Self { problem: problem.clone(), settings, counted_from, loads, corners, sections };
         layout.face_wheels();
@@ -260,7 +273,8 @@ impl SectionLayout {
 
 /// Moves the ends of a section to their positions at an instant.
 ///
-/// # Errors An error if a support is inside an obstacle.
+/// # Errors
+/// An error if a support is inside an obstacle.
 pub(in crate::model::spans) fn place_ends(
     layout: &SectionLayout,
     index: usize,

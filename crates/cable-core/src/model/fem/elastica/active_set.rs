@@ -175,32 +175,10 @@ impl Elastica {
     /// Changes one contact that violates the contact law. Returns whether there was one, and None
     /// if no change can mend it.
     fn change_one_contact(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
-        let size = self.scale + self.bending / (self.length * self.length);
-        for j in 0..self.joints.len() {
-            let Joint::PointContact(k) = self.joints[j] else { continue };
-            let c = self.contacts[k];
-            let u = *self.pieces[j].nodes.last()?;
-            let pulley = matches!(c.owner, Owner::Pulley(_));
-            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
-                self.release(j);
-                return Some(true);
-            }
-            if c.is_point() {
-                continue;
-            }
-            let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
-            let least = 1.0 / self.length;
-            let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
-            let slack = if points.contains(&k) { POINT_CURVATURE_TOLERANCE } else { CONTACT_CURVATURE_TOLERANCE };
-            if bent > slack * limit {
-                self.make_stretch(j, k);
-                return Some(true);
-            }
-            if !pulley && let Some(other) = self.deeper_contact(problem, &c, place(&u), tangent(&u)) {
-                self.contacts[k] = other;
-                return Some(true);
-            }
+        if self.change_one_point_contact(problem, points)? {
+            return Some(true);
         }
+        let size = self.force_size();
         // Look for a stretch that would have to pull where it begins or ends.
         for j in 0..self.joints.len() {
             let (Joint::ContactBegin(k) | Joint::ContactEnd(k)) = self.joints[j] else { continue };
@@ -234,6 +212,43 @@ impl Elastica {
             }
         }
         self.add_deepest_contact(problem)
+    }
+
+    /// The force relative to which one counts as zero, N.
+    fn force_size(&self) -> f64 {
+        self.scale + self.bending / (self.length * self.length)
+    }
+
+    /// Changes one contact in a point that pulls, that is bent more than what it touches, or that
+    /// lies inside another obstacle. Returns as [`Self::change_one_contact`].
+    fn change_one_point_contact(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
+        let size = self.force_size();
+        for j in 0..self.joints.len() {
+            let Joint::PointContact(k) = self.joints[j] else { continue };
+            let c = self.contacts[k];
+            let u = *self.pieces[j].nodes.last()?;
+            let pulley = matches!(c.owner, Owner::Pulley(_));
+            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
+                self.release(j);
+                return Some(true);
+            }
+            if c.is_point() {
+                continue;
+            }
+            let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
+            let least = 1.0 / self.length;
+            let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
+            let slack = if points.contains(&k) { POINT_CURVATURE_TOLERANCE } else { CONTACT_CURVATURE_TOLERANCE };
+            if bent > slack * limit {
+                self.make_stretch(j, k);
+                return Some(true);
+            }
+            if !pulley && let Some(other) = self.deeper_contact(problem, &c, place(&u), tangent(&u)) {
+                self.contacts[k] = other;
+                return Some(true);
+            }
+        }
+        Some(false)
     }
 
     /// Distance of the centre line from an obstacle in contact, m.

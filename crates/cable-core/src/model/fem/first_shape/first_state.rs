@@ -89,21 +89,7 @@ fn cable_at_rest(
     input.stopping.tolerance = tolerance(&problem, whole);
     CableState {
         contacts: ContactSet::new(barrier, contact, n),
-        motion: NodalMotion {
-            positions: place_nodes(&mesh, route),
-            velocities: vec![Vec2::zeros(); n],
-            previous_positions: vec![Vec2::zeros(); n],
-            previous_velocities: vec![Vec2::zeros(); n],
-            older_positions: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-            older_velocities: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-            previous_arc_length: mesh.arc_length.clone(),
-            slide_rates: vec![0.0; n],
-            previous_slide_rates: vec![0.0; n],
-            followers: vec![None; problem.supports.len()],
-            hands: vec![None; problem.supports.len()],
-            placement: problem.outline.as_ref().map(|o| o.placement),
-            ..NodalMotion::default()
-        },
+        motion: motion_at_rest(&problem, &mesh, place_nodes(&mesh, route)),
         meshing: Meshing {
             // A sliding node scales the energy of all that lies beyond it; a cable in contact with
             // itself needs one scale.
@@ -129,6 +115,27 @@ fn cable_at_rest(
         mesh,
         input,
         problem,
+    }
+}
+
+/// Nodes at rest, without a history.
+fn motion_at_rest(problem: &Problem, mesh: &Mesh, positions: Vec<Vec2>) -> NodalMotion {
+    let n = mesh.nodes();
+    let older = if mesh.spread.is_lumped() { 0 } else { n };
+    NodalMotion {
+        positions,
+        velocities: vec![Vec2::zeros(); n],
+        previous_positions: vec![Vec2::zeros(); n],
+        previous_velocities: vec![Vec2::zeros(); n],
+        older_positions: vec![Vec2::zeros(); older],
+        older_velocities: vec![Vec2::zeros(); older],
+        previous_arc_length: mesh.arc_length.clone(),
+        slide_rates: vec![0.0; n],
+        previous_slide_rates: vec![0.0; n],
+        followers: vec![None; problem.supports.len()],
+        hands: vec![None; problem.supports.len()],
+        placement: problem.outline.as_ref().map(|o| o.placement),
+        ..NodalMotion::default()
     }
 }
 

@@ -214,13 +214,7 @@ impl Statics {
         }
         self.time = time;
         self.segments = segments;
-        for station in &network.layout.stations {
-            if let (Some(k), Restraint::Pulley(_)) = (station.support, station.restraint)
-                && let Some(slid) = self.slid.get_mut(k)
-            {
-                *slid = Some(station.arc_length + 0.5 * station.material_on_wheel);
-            }
-        }
+        self.remember_material_on_pulleys(&network.layout);
         results::points(&network, self.problem.radius, &mut self.points);
         self.estimate = Some(estimate);
         self.shape_error = Some(dual_weighted_residual::position_error(&mut network));
@@ -228,6 +222,17 @@ impl Statics {
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
         Ok(StepReport { cost, warnings: self.warnings(has_auxiliary_weight) })
+    }
+
+    /// Remembers the material at the middle of each pulley, from which the next search begins.
+    fn remember_material_on_pulleys(&mut self, layout: &StationLayout) {
+        for station in &layout.stations {
+            if let (Some(k), Restraint::Pulley(_)) = (station.support, station.restraint)
+                && let Some(slid) = self.slid.get_mut(k)
+            {
+                *slid = Some(station.arc_length + 0.5 * station.material_on_wheel);
+            }
+        }
     }
 
     /// Balances pulleys with friction from their memory, or else from the route. Returns whether it

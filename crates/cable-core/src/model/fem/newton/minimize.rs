@@ -112,7 +112,8 @@ impl Workspace {
 
     /// Minimises Φ from `unknowns`, which becomes the answer; on failure it holds the last iterate.
     ///
-    /// # Errors The worst node and its unbalanced force.
+    /// # Errors
+    /// The worst node and its unbalanced force.
     pub(in crate::model::fem) fn minimise_by_line_search(
         &mut self,
         step: &StepContext<'_>,
@@ -130,51 +131,32 @@ impl Workspace {
             if !value.is_finite() || !residual.is_finite() {
                 return failed(FailureCause::EnergyNotFinite);
             }
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
-            // A support that squeezes the cable beyond round-off has come as far as it can.
-            let squeezed = left && input.supports.may_lag && self.rounding.noise > input.stopping.tolerance;
-            if squeezed {
-                self.goal.clone_from(&unknowns.positions);
-            }
-            let left = left && !squeezed;
+            let supports_move = self.supports_move(mesh, input, unknowns);
             done.residual = residual;
-            if excess <= 1.0 && !left {
+            let stalled_residual = mesh.tuning.newton.stalled_residual * input.stopping.tolerance;
+            let enough = larger(residual, drift) <= stalled_residual && !supports_move;
+            let last = done.iterations >= input.stopping.max_iterations;
+            if excess <= 1.0 && !supports_move || last && enough {
                 return Ok(done);
             }
-            let enough =
-                larger(residual, drift) <= mesh.tuning.newton.stalled_residual * input.stopping.tolerance && !left;
-            if done.iterations >= input.stopping.max_iterations && enough {
-                return Ok(done);
-            }
-            if done.iterations >= input.stopping.max_iterations {
-                return failed(FailureCause::TooManyIterations);
-            }
-            if self.work_left.is_spent() {
-                return failed(FailureCause::WorkSpent);
+            if last || self.work_left.is_spent() {
+                return failed(if last { FailureCause::TooManyIterations } else { FailureCause::WorkSpent });
             }
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
-            // Fixing the held nodes overwrites the Hessian only, so the gradient stays valid.
-            if !self.solve(mesh, input, &unknowns.positions, shift) && !self.solve_shifted(step, unknowns, &mut shift) {
+            if !self.find_direction(step, unknowns, &mut shift) {
                 return failed(FailureCause::TangentIndefinite);
             }
-            if input.inertial.moves {
-                self.predict_contacts(step, unknowns);
-            }
-            let mut slope = self.slope();
-            if !(slope < 0.0) && !left {
-                slope = 0.0;
-            }
-            match self.search(step, unknowns, Descent { value, slope, supports_move: left }) {
+            let slope = self.slope();
+            let slope = if slope < 0.0 || supports_move { slope } else { 0.0 };
+            match self.search(step, unknowns, Descent { value, slope, supports_move }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
                     shift = shift_after(fraction, shift, input);
-                    if left && fraction < SHORT_PUSH_FRACTION {
+                    if supports_move && fraction < SHORT_PUSH_FRACTION {
                         pushes += 1;
-                        if pushes > mesh.tuning.newton.max_pushes && !input.supports.may_lag {
+                        if pushes > mesh.tuning.newton.max_pushes && !self.stop_supports(input, unknowns) {
                             return failed(FailureCause::SupportShort);
-                        } else if pushes > mesh.tuning.newton.max_pushes {
-                            self.goal.clone_from(&unknowns.positions);
                         }
                     }
                 }
@@ -191,6 +173,34 @@ impl Workspace {
                 }
             }
         }
+    }
+
+    /// True if held nodes are still on their way to their targets. A support that squeezes the
+    /// cable beyond round-off has come as far as it can: it stops here if it may lag.
+    fn supports_move(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &Unknowns) -> bool {
+        let moves = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
+        let squeezed = self.rounding.noise > input.stopping.tolerance;
+        moves && !(squeezed && self.stop_supports(input, unknowns))
+    }
+
+    /// Lets held nodes stay where they are if they may lag; returns whether they may.
+    fn stop_supports(&mut self, input: &StepInput, unknowns: &Unknowns) -> bool {
+        if input.supports.may_lag {
+            self.goal.clone_from(&unknowns.positions);
+        }
+        input.supports.may_lag
+    }
+
+    /// Sets `direction` to a Newton step, with a greater `shift` if it needs one; false if the
+    /// matrix does not become positive definite.
+    fn find_direction(&mut self, step: &StepContext<'_>, unknowns: &Unknowns, shift: &mut f64) -> bool {
+        // Fixing the held nodes overwrites the Hessian only, so the gradient stays valid.
+        let found =
+            self.solve(step.mesh, step.input, &unknowns.positions, *shift) || self.solve_shifted(step, unknowns, shift);
+        if found && step.input.inertial.moves {
+            self.predict_contacts(step, unknowns);
+        }
+        found
     }
 
     /// Solves without the terms of the Hessian that can be negative, and with a growing `shift`;

@@ -3,7 +3,7 @@
 
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
-use crate::model::fem::mesh::{BarEnd, StraightPart};
+use crate::model::fem::mesh::{BarEnd, Mesh, StraightPart};
 use crate::model::fem::newton::step_potential::Workspace;
 use crate::model::fem::system::{StepContext, StepInput, Unknowns, longest};
 
@@ -31,14 +31,7 @@ impl Workspace {
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
             if slides != [false, false] {
-                let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { direction[2 * k] } else { 0.0 });
-                let change = go[1] - go[0];
-                let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slides[e + 1] - unknowns.slides[e];
-                let straight = mesh.path(e, &unknowns.positions).straight;
-                let length = if straight > 0.0 && straight < whole { straight } else { whole };
-                if change < 0.0 && -change * free > (1.0 - mesh.tuning.newton.kept_cable_fraction) * length {
-                    free = (1.0 - mesh.tuning.newton.kept_cable_fraction) * length / -change;
-                }
+                free = self.kept_cable_bound(mesh, unknowns, e, free);
             }
             if problem.world.is_empty() || slides == [true, true] {
                 continue;
@@ -77,6 +70,18 @@ impl Workspace {
             limits,
             &mut self.self_contact.order,
         )
+    }
+
+    /// The greatest part of the direction, at most `free`, that leaves some cable in bar e, which
+    /// has a sliding node.
+    fn kept_cable_bound(&self, mesh: &Mesh, unknowns: &Unknowns, e: usize, free: f64) -> f64 {
+        let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { self.direction[2 * k] } else { 0.0 });
+        let change = go[1] - go[0];
+        let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slides[e + 1] - unknowns.slides[e];
+        let straight = mesh.path(e, &unknowns.positions).straight;
+        let length = if straight > 0.0 && straight < whole { straight } else { whole };
+        let spare = (1.0 - mesh.tuning.newton.kept_cable_fraction) * length;
+        if change < 0.0 && -change * free > spare { spare / -change } else { free }
     }
 
     /// The same bound, from the positions of the last assembly. A step shorter than the smallest

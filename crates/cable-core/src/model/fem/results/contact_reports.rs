@@ -7,7 +7,7 @@ use crate::model::fem::mesh::{BalancedTensions, SlideOver, SlidingNodeLoad};
 use crate::model::fem::results::forces::LyingEnd;
 use crate::model::fem::results::self_contact;
 use crate::model::fem::state::CableState;
-use crate::model::fem::system::{ContactPair, RoundFloorFriction};
+use crate::model::fem::system::{ContactPair, FrictionContact, RoundFloorFriction};
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
@@ -35,42 +35,47 @@ pub(super) fn contacts(
         out.push(report(d, x, tension, lying_ends, &stretch));
     }
     for end in lying_ends.iter().flatten() {
-        let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
-        let name = d.problem.world.obstacle_name(end.obstacle);
-        let holds = |c: &&mut ContactReport| c.obstacle == name && c.begins_m <= at && c.ends_m >= at;
-        if let Some(c) = out.iter_mut().find(holds) {
-            c.normal_n += end.force.dot(&end.normal);
-            c.friction_n += end.force.dot(&end.along);
-            let mut samples = std::mem::take(&mut c.samples);
-            samples.insert(if tip < at { 0 } else { samples.len() }, ContactSample::new(0.5 * (tip + at), end.force));
-            c.set_samples(samples);
-            (c.begins_m, c.ends_m) = (c.begins_m.min(tip), c.ends_m.max(tip));
-            c.arc_length_m += 0.5 * (tip - at);
-            let half = (x[end.node] - x[end.next]) * 0.5;
-            (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
-        } else {
-            // Only the end of the cable lies there.
-            let mut c = ContactReport {
-                obstacle: name.to_owned(),
-                x_m: x[end.node].x,
-                y_m: x[end.node].y,
-                arc_length_m: tip,
-                normal: [end.normal.x, end.normal.y],
-                normal_n: end.force.dot(&end.normal),
-                friction_n: end.force.dot(&end.along),
-                begins_m: tip,
-                ends_m: tip,
-                ..ContactReport::default()
-            };
-            c.set_samples(vec![ContactSample::new(tip, end.force)]);
-            out.push(c);
-        }
+        add_lying_end(d, x, end, &mut out);
     }
     rounds(d, x, &mut out);
     self_contact::reports(d, x, tension, &mut out);
     out.retain(|c| c.normal_n > 0.0);
     out.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out
+}
+
+/// Adds the force on a lying end of the cable to the contact beside it.
+fn add_lying_end(d: &CableState, x: &[Vec2], end: &LyingEnd, out: &mut Vec<ContactReport>) {
+    let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
+    let name = d.problem.world.obstacle_name(end.obstacle);
+    let holds = |c: &&mut ContactReport| c.obstacle == name && c.begins_m <= at && c.ends_m >= at;
+    if let Some(c) = out.iter_mut().find(holds) {
+        c.normal_n += end.force.dot(&end.normal);
+        c.friction_n += end.force.dot(&end.along);
+        let mut samples = std::mem::take(&mut c.samples);
+        samples.insert(if tip < at { 0 } else { samples.len() }, ContactSample::new(0.5 * (tip + at), end.force));
+        c.set_samples(samples);
+        (c.begins_m, c.ends_m) = (c.begins_m.min(tip), c.ends_m.max(tip));
+        c.arc_length_m += 0.5 * (tip - at);
+        let half = (x[end.node] - x[end.next]) * 0.5;
+        (c.x_m, c.y_m) = (c.x_m + half.x, c.y_m + half.y);
+    } else {
+        // Only the end of the cable lies there.
+        let mut c = ContactReport {
+            obstacle: name.to_owned(),
+            x_m: x[end.node].x,
+            y_m: x[end.node].y,
+            arc_length_m: tip,
+            normal: [end.normal.x, end.normal.y],
+            normal_n: end.force.dot(&end.normal),
+            friction_n: end.force.dot(&end.along),
+            begins_m: tip,
+            ends_m: tip,
+            ..ContactReport::default()
+        };
+        c.set_samples(vec![ContactSample::new(tip, end.force)]);
+        out.push(c);
+    }
 }
 
 /// One report for each corner, post or circle with sliding nodes.
@@ -143,79 +148,128 @@ fn round_force(load: &SlidingNodeLoad, momentum_flux: f64) -> Vec2 {
     (after - before) * momentum_flux - load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
+/// Neighbouring contacts with one obstacle, and the state that they are read from.
+struct ContactStretch<'a> {
+    state: &'a CableState,
+    positions: &'a [Vec2],
+    lying_ends: &'a [Option<LyingEnd>; 2],
+    pairs: &'a [ContactPair],
+    first: &'a ContactPair,
+    last: &'a ContactPair,
+}
+
+/// The friction along a stretch.
+struct StretchFriction {
+    /// Force along the cable, N.
+    force_n: f64,
+    /// Limits of the contacts that slide, N.
+    sliding_n: f64,
+}
+
+impl ContactStretch<'_> {
+    /// The part of a contact's force that is reported here: that on a sliding node or on a lying
+    /// end is reported with that round or end.
+    fn part(&self, t: &ContactPair) -> f64 {
+        let ends = self.lying_ends.iter().flatten();
+        let stays = |k: usize| self.state.mesh.sliding[k].is_some() || ends.clone().any(|l| l.node == k);
+        let [a, b] = t.shares();
+        (if stays(t.node) { 0.0 } else { a }) + (if b != 0.0 && !stays(t.node + 1) { b } else { 0.0 })
+    }
+
+    /// The contacts of the stretch that have friction.
+    fn friction_contacts(&self) -> impl Iterator<Item = &FrictionContact> {
+        self.state.contacts.friction_contacts.iter().filter(|r| {
+            r.touch.pair.gap.obstacle == self.first.pair.gap.obstacle
+                && (self.first.node..=self.last.node).contains(&r.touch.node)
+        })
+    }
+
+    fn friction(&self) -> StretchFriction {
+        let (d, x) = (self.state, self.positions);
+        let mut out = StretchFriction { force_n: 0.0, sliding_n: 0.0 };
+        for rub in self.friction_contacts() {
+            let e = rub.touch.node.min(x.len() - 2);
+            let along = d.mesh.direction(e, x);
+            out.force_n += d.contacts.friction_force(rub, x).dot(&along) * self.part(&rub.touch);
+            if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
+                out.sliding_n += rub.limit;
+            }
+        }
+        out
+    }
+
+    /// Turn of the cable from one bar to another, rad; it is summed bar by bar, because a wrap may
+    /// go round more than once.
+    fn turn(&self, [before, after]: [usize; 2]) -> f64 {
+        let (mesh, x) = (&self.state.mesh, self.positions);
+        (before..after)
+            .filter(|&e| mesh.sliding[e + 1].is_none())
+            .map(|e| turn(mesh.direction(e, x), mesh.direction(e + 1, x)))
+            .sum()
+    }
+
+    fn arc_length(&self, t: &ContactPair) -> f64 {
+        let s = &self.state.mesh.arc_length;
+        s[t.node] + if t.on_segment { t.pair.gap.fraction * (s[t.node + 1] - s[t.node]) } else { 0.0 }
+    }
+
+    /// The forces along it, in order.
+    fn samples(&self) -> Vec<ContactSample> {
+        let contacts = &self.state.contacts;
+        let press = |t: &ContactPair| t.pair.gap.normal * (t.load(&contacts.barrier) * self.part(t));
+        let mut samples: Vec<ContactSample> =
+            self.pairs.iter().map(|t| ContactSample::new(self.arc_length(t), press(t))).collect();
+        for rub in self.friction_contacts() {
+            let force = contacts.friction_force(rub, self.positions) * self.part(&rub.touch);
+            samples.push(ContactSample::new(self.arc_length(&rub.touch), force));
+        }
+        samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
+        samples
+    }
+}
+
 fn report(
     d: &CableState,
     x: &[Vec2],
     tension: &[f64],
     lying_ends: &[Option<LyingEnd>; 2],
-    stretch: &[ContactPair],
+    pairs: &[ContactPair],
 ) -> ContactReport {
-    let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {
+    let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
         return ContactReport::default();
     };
-    let bars = tension.len();
+    let stretch = ContactStretch { state: d, positions: x, lying_ends, pairs, first, last };
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
-    let after = last.node.min(bars - 1);
-    let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // The contact force on a sliding node or on a lying end is reported with that round or end.
-    let stays = |k: usize| d.mesh.sliding[k].is_some() || lying_ends.iter().flatten().any(|l| l.node == k);
-    let part = |t: &ContactPair| {
-        let [a, b] = t.shares();
-        (if stays(t.node) { 0.0 } else { a }) + (if b != 0.0 && !stays(t.node + 1) { b } else { 0.0 })
-    };
-    for t in stretch {
-        let load = t.load(&d.contacts.barrier) * part(t);
+    let after = last.node.min(tension.len() - 1);
+    let (mut normal, mut normal_n, mut limit_n) = (Vec2::zeros(), 0.0, 0.0);
+    for t in pairs {
+        let pressed = t.load(&d.contacts.barrier);
+        let load = pressed * stretch.part(t);
         normal_n += load;
         normal += t.pair.gap.normal * load;
+        limit_n += pressed * t.pair.gap.friction;
     }
-    let mut slips = 0.0;
-    let rubs = d.contacts.friction_contacts.iter().filter(|r| {
-        r.touch.pair.gap.obstacle == first.pair.gap.obstacle && (first.node..=last.node).contains(&r.touch.node)
-    });
-    for rub in rubs.clone() {
-        let e = rub.touch.node.min(bars - 1);
-        let along = d.mesh.direction(e, x);
-        friction_n += d.contacts.friction_force(rub, x).dot(&along) * part(&rub.touch);
-        if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
-            slips += rub.limit;
-        }
-    }
-    let limit: f64 = stretch.iter().map(|t| t.load(&d.contacts.barrier) * t.pair.gap.friction).sum();
-    let (a, b) = (first.interpolate(x), last.interpolate(x));
-    let arc = |t: &ContactPair| {
-        let s = &d.mesh.arc_length;
-        s[t.node] + if t.on_segment { t.pair.gap.fraction * (s[t.node + 1] - s[t.node]) } else { 0.0 }
-    };
+    let friction = stretch.friction();
+    let slips = first.pair.gap.friction == 0.0 || friction.sliding_n > 0.5 * limit_n;
     let unit = if normal.norm() > 0.0 { normal.normalize() } else { first.pair.gap.normal };
-    let middle = (a + b) * 0.5;
-    // The turn is summed bar by bar, because a wrap may go round more than once.
-    let turned: f64 = (before..after)
-        .filter(|&e| d.mesh.sliding[e + 1].is_none())
-        .map(|e| turn(d.mesh.direction(e, x), d.mesh.direction(e + 1, x)))
-        .sum();
-    let frictionless = first.pair.gap.friction == 0.0;
+    let middle = (first.interpolate(x) + last.interpolate(x)) * 0.5;
+    let [begins_m, ends_m] = [first, last].map(|t| stretch.arc_length(t));
     let mut out = ContactReport {
         obstacle: d.problem.world.obstacle_name(first.pair.gap.obstacle).to_owned(),
         x_m: middle.x,
         y_m: middle.y,
-        arc_length_m: 0.5 * (arc(first) + arc(last)),
+        arc_length_m: 0.5 * (begins_m + ends_m),
         normal: [unit.x, unit.y],
         normal_n,
-        friction_n,
-        state: if frictionless || slips > 0.5 * limit { ContactState::Slip } else { ContactState::Stick },
-        turn_deg: turned.to_degrees(),
+        friction_n: friction.force_n,
+        state: if slips { ContactState::Slip } else { ContactState::Stick },
+        turn_deg: stretch.turn([before, after]).to_degrees(),
         tension_before_n: tension[before],
         tension_after_n: tension[after],
-        begins_m: arc(first),
-        ends_m: arc(last),
+        begins_m,
+        ends_m,
         ..ContactReport::default()
     };
-    let press = |t: &ContactPair| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
-    let mut samples: Vec<ContactSample> = stretch.iter().map(|t| ContactSample::new(arc(t), press(t))).collect();
-    for rub in rubs {
-        samples.push(ContactSample::new(arc(&rub.touch), d.contacts.friction_force(rub, x) * part(&rub.touch)));
-    }
-    samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
-    out.set_samples(samples);
+    out.set_samples(stretch.samples());
     out
 }

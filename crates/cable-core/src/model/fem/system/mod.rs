@@ -26,6 +26,7 @@ pub(in crate::model::fem) use contact::contact_energy::{add_barrier, add_floor, 
 pub(in crate::model::fem) use contact::contact_pair::ContactPair;
 pub(in crate::model::fem) use contact::contact_set::ContactSet;
 pub(in crate::model::fem) use contact::floor_friction::RoundFloorFriction;
+pub(in crate::model::fem) use contact::friction_contact::FrictionContact;
 pub(in crate::model::fem) use contact::friction_contact::slip_at_rest;
 pub(in crate::model::fem) use contact::friction_limits::FrictionLimits;
 pub(in crate::model::fem) use contact::outline_motion::OutlineMotion;

@@ -117,11 +117,7 @@ impl<'a> EquilibriumSolver<'a> {
                 curvature = Curvature::Exact;
                 (energy, worst) = (new, left);
                 self.system.fade *= tuning.first_stiffness_fade;
-                let remeshed = !self.mesh.wheels.pulleys.is_empty() && remesh(self.mesh, self.time_s);
-                if remeshed {
-                    self.contacts.follow_nodes(self.mesh);
-                    self.system = System { fade: self.system.fade, ..System::new(self.mesh)? };
-                }
+                let remeshed = self.remesh_at_pulleys()?;
                 let due = k < tuning.eager_friction_steps
                     || left.force_n <= tolerance
                     || frozen >= tuning.max_frozen_steps
@@ -132,12 +128,8 @@ impl<'a> EquilibriumSolver<'a> {
                     worst = self.residual();
                 }
             } else {
-                self.mesh.position.copy_from_slice(&self.system.position);
-                self.mesh.arc_length.copy_from_slice(&self.system.arc_length);
-                self.mesh.update_pulley_elements();
-                if solved {
-                    shift *= tuning.shift_increase;
-                } else if curvature == Curvature::Exact {
+                self.undo_step();
+                if !solved && curvature == Curvature::Exact {
                     curvature = Curvature::Clipped;
                 } else {
                     shift *= tuning.shift_increase;
@@ -148,16 +140,34 @@ impl<'a> EquilibriumSolver<'a> {
                 energy = self.assemble(curvature);
             }
         }
-        Err(SolveError::NotConverged {
+        Err(self.not_converged(iterations, worst))
+    }
+
+    /// Adds and removes nodes beside pulleys; returns whether there were any.
+    fn remesh_at_pulleys(&mut self) -> Result<bool, SolveError> {
+        let remeshed = !self.mesh.wheels.pulleys.is_empty() && remesh(self.mesh, self.time_s);
+        if remeshed {
+            self.contacts.follow_nodes(self.mesh);
+            self.system = System { fade: self.system.fade, ..System::new(self.mesh)? };
+        }
+        Ok(remeshed)
+    }
+
+    /// Returns to the state before the last step.
+    fn undo_step(&mut self) {
+        self.mesh.position.copy_from_slice(&self.system.position);
+        self.mesh.arc_length.copy_from_slice(&self.system.arc_length);
+        self.mesh.update_pulley_elements();
+    }
+
+    fn not_converged(&self, iterations: usize, worst: Residual) -> SolveError {
+        let (s, at) = (self.mesh.arc_length[worst.node], self.mesh.position[worst.node]);
+        SolveError::NotConverged {
             model: Model::MassSpring,
             iterations,
             residual_n: worst.force_n,
-            place: self.mesh.problem.place(
-                self.mesh.arc_length[worst.node],
-                self.mesh.position[worst.node],
-                self.time_s,
-            ),
-        })
+            place: self.mesh.problem.place(s, at, self.time_s),
+        }
     }
 
     /// Unbalanced force at equilibrium, N: a part of the forces here, but never below the round-off

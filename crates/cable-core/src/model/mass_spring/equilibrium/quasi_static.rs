@@ -14,32 +14,9 @@ const JOINED_FRACTION: f64 = 0.5;
 /// Follows the supports through equilibria for `dt_s`.
 pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, dt_s: f64) -> Result<(), SolveError> {
     let (begin, end) = (chain.clock.time_s, chain.clock.time_s + dt_s);
-    let tuning = chain.mesh.tuning.quasi_static;
     let from = chain.mesh.position.clone();
     let nodes: Vec<(usize, usize)> = chain.mesh.support_node.iter().copied().enumerate().collect();
-    let mut path: f64 = 0.0;
-    for &(k, node) in &nodes {
-        let support = &chain.mesh.problem.supports[k];
-        // The path of a motion within the step may be longer than the distance.
-        let mut last = from[node];
-        for j in 1..=tuning.path_samples {
-            let time = begin + dt_s * f64::from(j) / f64::from(tuning.path_samples);
-            let Some((at, _)) = support.position_at(time) else { break };
-            let at = chain.drives.targets[k].unwrap_or(at);
-            path += (at - last).norm();
-            last = at;
-        }
-    }
-    let within = if chain.mesh.problem.world.is_empty() {
-        chain.mesh.even_length
-    } else {
-        chain.mesh.even_length.min(chain.mesh.problem.radius)
-    };
-    let parts = if chain.mesh.can_touch() || !chain.mesh.wheels.pulleys.is_empty() {
-        (path / (tuning.max_path_lengths * within)).ceil().clamp(1.0, tuning.max_parts)
-    } else {
-        1.0
-    };
+    let parts = first_parts(chain, dt_s);
     let targets = chain.drives.targets.clone();
     let starts: Vec<Vec2> = nodes.iter().map(|&(_, n)| from[n]).collect();
     let mut steps = HalvedSteps::new(1.0, 1.0 / parts, MAX_HALVINGS, JOINED_FRACTION);
@@ -74,4 +51,34 @@ pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, d
     }
     chain.drives.targets = targets;
     Ok(())
+}
+
+/// Number of equal parts in which a step is first tried.
+fn first_parts(chain: &ChainState, dt_s: f64) -> f64 {
+    let (mesh, tuning) = (&chain.mesh, &chain.mesh.tuning.quasi_static);
+    if !mesh.can_touch() && mesh.wheels.pulleys.is_empty() {
+        return 1.0;
+    }
+    let within =
+        if mesh.problem.world.is_empty() { mesh.even_length } else { mesh.even_length.min(mesh.problem.radius) };
+    (support_path_m(chain, dt_s) / (tuning.max_path_lengths * within)).ceil().clamp(1.0, tuning.max_parts)
+}
+
+/// Length of the paths of all supports in a step, m: that of a motion within the step may be longer
+/// than the distance.
+fn support_path_m(chain: &ChainState, dt_s: f64) -> f64 {
+    let samples = chain.mesh.tuning.quasi_static.path_samples;
+    let mut path = 0.0;
+    for (k, &node) in chain.mesh.support_node.iter().enumerate() {
+        let support = &chain.mesh.problem.supports[k];
+        let mut last = chain.mesh.position[node];
+        for j in 1..=samples {
+            let time = chain.clock.time_s + dt_s * f64::from(j) / f64::from(samples);
+            let Some((at, _)) = support.position_at(time) else { break };
+            let at = chain.drives.targets[k].unwrap_or(at);
+            path += (at - last).norm();
+            last = at;
+        }
+    }
+    path
 }

@@ -41,6 +41,13 @@ pub(in crate::model::spans) struct Breakpoint {
     pub mobilised: f64,
 }
 
+impl Breakpoint {
+    /// A breakpoint from which no friction is mobilised.
+    pub fn frictionless(coordinate: f64, arc_length: f64, tension: f64) -> Self {
+        Self { coordinate, arc_length, tension, mobilised: 0.0 }
+    }
+}
+
 /// Tension and material along a contact after the last step.
 #[derive(Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct TensionProfile {
@@ -56,6 +63,20 @@ pub(in crate::model::spans) struct Ends {
 }
 
 impl Ends {
+    /// The ends at two points.
+    pub fn at([a, b]: [Breakpoint; 2]) -> Self {
+        Self {
+            place: [a.coordinate, b.coordinate],
+            material: [a.arc_length, b.arc_length],
+            tension: [a.tension, b.tension],
+        }
+    }
+
+    /// The breakpoint at an end, from which no friction is mobilised.
+    pub fn breakpoint(&self, side: usize) -> Breakpoint {
+        Breakpoint::frictionless(self.place[side], self.material[side], self.tension[side])
+    }
+
     /// The end towards which a contact that slides with m is drawn; without friction the one with
     /// the greater tension.
     pub fn drawn_side(&self, m: f64) -> usize {
@@ -127,6 +148,11 @@ impl TensionProfile {
     /// A profile with one tension law between two points.
     pub fn new(start: Breakpoint, end: Breakpoint) -> Self {
         Self { breakpoints: if end.coordinate > start.coordinate { vec![start, end] } else { vec![start] } }
+    }
+
+    /// A profile between the ends of a contact, from which no friction is mobilised.
+    pub fn of_ends(ends: &Ends) -> Self {
+        Self::new(ends.breakpoint(0), ends.breakpoint(1))
     }
 
     /// A profile through these breakpoints, as near as the fraction `within` of the friction cone

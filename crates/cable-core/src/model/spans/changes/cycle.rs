@@ -56,23 +56,13 @@ fn are_alike(a: &Contact, b: &Contact, within: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::spans::boundary::{ChainRange, Ends, TensionProfile};
-    use crate::model::spans::section::Connection;
+    use crate::model::spans::boundary::{ChainRange, Ends};
 
     /// A section of 10 m with a contact that begins at each arc length, m.
     fn section(from: &[f64]) -> CableSection {
-        let contact = |s: &f64| Contact {
-            curve: 0,
-            chain_range: ChainRange { first: 0, last: 0 },
-            ends: Ends { place: [0.0; 2], material: [*s, s + 0.1], tension: [1.0; 2] },
-            mode: Mode::Stick,
-            held: None,
-            history: TensionProfile::default(),
-            wheel: None,
-            mode_changes: 0,
-            next: Connection::Span,
-            load: None,
-            smooth: false,
+        let contact = |s: &f64| {
+            let ends = Ends { place: [0.0; 2], material: [*s, s + 0.1], tension: [1.0; 2] };
+            Contact::new(0, ChainRange { first: 0, last: 0 }, ends, Mode::Stick)
         };
         CableSection { from: 0.0, to: 10.0, contacts: from.iter().map(contact).collect(), ..CableSection::default() }
     }

@@ -4,13 +4,13 @@ use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::acceptance::tunnelling;
-use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, TensionProfile};
+use crate::model::spans::boundary::{ChainRange, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, TensionProfile};
 use crate::model::spans::changes::edge_crossing::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::changes::load_landing;
 use crate::model::spans::changes::obstacle_search::{Penetration, deepest};
 use crate::model::spans::contact::release_below;
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::{CableSection, Connection, Contact, EndCondition, Failure, SolveContext};
+use crate::model::spans::section::{CableSection, Contact, EndCondition, Failure, SolveContext};
 
 /// Depth inside an obstacle from which a span touches it, as a fraction of the section.
 const DEPTH_FRACTION: f64 = 1e-9;
@@ -198,19 +198,10 @@ fn insert_contact(
 ) {
     let NewContact { curve_index, chain_range, place: p, force } = new;
     let curve = &context.curves[curve_index];
-    let mut contact = Contact {
-        curve: curve_index,
-        chain_range,
-        ends: Ends { place: [p, p], material: [hit.arc_length, hit.arc_length], tension: [force, force] },
-        mode: if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Stick } else { Mode::Slip(0.0) },
-        history: TensionProfile::default(),
-        wheel: None,
-        mode_changes: 0,
-        held: None,
-        next: Connection::Span,
-        load: None,
-        smooth: purpose == Purpose::FirstEquilibrium,
-    };
+    let ends = Ends { place: [p, p], material: [hit.arc_length, hit.arc_length], tension: [force, force] };
+    let mode = if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Stick } else { Mode::Slip(0.0) };
+    let mut contact = Contact::new(curve_index, chain_range, ends, mode);
+    contact.smooth = purpose == Purpose::FirstEquilibrium;
     let contact_path = context.contact_path(&contact);
     let mut held_ends = [None, None];
     for side in 0..2 {
@@ -229,13 +220,7 @@ fn insert_contact(
             }
         }
     }
-    let breakpoint = |side: usize| Breakpoint {
-        coordinate: contact.ends.place[side],
-        arc_length: contact.ends.material[side],
-        tension: force,
-        mobilised: 0.0,
-    };
-    contact.history = TensionProfile::new(breakpoint(0), breakpoint(1));
+    contact.history = TensionProfile::of_ends(&contact.ends);
     let g = section.forces[k];
     section.contacts.insert(k, contact);
     section.forces.insert(k, g);

@@ -3,11 +3,9 @@
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
-use crate::model::spans::boundary::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::{Ends, Mode, TensionProfile};
 use crate::model::spans::contact::LIFT_FRACTION;
-use crate::model::spans::section::{
-    CableSection, Connection, Contact, EndCondition, Failure, RestingLoad, SolveContext,
-};
+use crate::model::spans::section::{CableSection, Contact, EndCondition, Failure, RestingLoad, SolveContext};
 
 /// A load of span k, or the tip of it, that is deeper than `deep` (m) inside an obstacle.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +66,6 @@ pub(in crate::model::spans) fn touch(
     k: usize,
     l: &Landing,
 ) -> Result<(), Failure> {
-    let impossible = Failure::ContactImpossible { s: l.arc_length, at: l.at };
     let drawn = match l.tip.map(|side| section.end_conditions[side]) {
         Some(EndCondition::Hangs(force)) => force,
         _ => Vec2::zeros(),
@@ -78,63 +75,64 @@ pub(in crate::model::spans) fn touch(
     let load = context.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
+    let tension = section.force(context, k, l.arc_length).norm();
+    let Some(mut c) = load_contact(context, l, along, tension) else {
+        return Err(Failure::ContactImpossible { s: l.arc_length, at: l.at });
+    };
+    if let Some(side) = l.tip {
+        c.ends.material = [l.arc_length; 2];
+        if !pressed {
+            lay_hanging_length(&mut c, context, l, side)?;
+            let inner = c.ends.breakpoint(1 - side);
+            let tangent = context.curves[c.curve].place(inner.coordinate, c.chain_range).tangent;
+            section.forces[k] = tangent * inner.tension + context.load_between(section.from, inner.arc_length);
+        }
+        section.end_conditions[side] = EndCondition::Loose(drawn);
+        section.forces.insert(k + side, Vec2::zeros());
+    } else {
+        section.forces.insert(k + 1, section.forces[k]);
+    }
+    section.contacts.insert(k, c);
+    Ok(())
+}
+
+/// The contact of a load that has landed, on the side of the boundary on which the cable goes
+/// `along` it; None if the boundary has no place for it.
+fn load_contact(context: &SolveContext, l: &Landing, along: Vec2, tension: f64) -> Option<Contact> {
     let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
-    let Some(curve) = context.curves.get(index) else { return Err(impossible) };
+    let curve = context.curves.get(index)?;
     // A kink has no piece of its own, only its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
-    let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
-    let Some((i, chain_range)) = found else { return Err(impossible) };
+    let piece = curve.piece_of(l.gap.feature, l.at).or_else(kink)?;
+    let (i, chain_range) = curve.chain(piece, context.law.load)?;
     let p = curve.project(i, l.at);
-    let tension = section.force(context, k, l.arc_length).norm();
-    let breakpoint =
-        |p: f64, s: f64, tension: f64| Breakpoint { coordinate: p, arc_length: s, tension, mobilised: 0.0 };
-    let mut c = Contact {
-        curve: index,
-        chain_range,
-        ends: Ends { place: [p; 2], material: [l.arc_length, l.arc_length.next_up()], tension: [tension; 2] },
-        mode: Mode::Slip(0.0),
-        held: None,
-        history: TensionProfile::new(breakpoint(p, l.arc_length, tension), breakpoint(p, l.arc_length, tension)),
-        wheel: None,
-        mode_changes: 0,
-        next: Connection::Span,
+    let ends = Ends { place: [p; 2], material: [l.arc_length, l.arc_length.next_up()], tension: [tension; 2] };
+    Some(Contact {
+        history: TensionProfile::of_ends(&ends),
         load: Some(RestingLoad::default()),
         smooth: true,
-    };
-    let Some(side) = l.tip else {
-        let g = section.forces[k];
-        section.contacts.insert(k, c);
-        section.forces.insert(k + 1, g);
-        return Ok(());
-    };
-    c.ends.material = [l.arc_length; 2];
-    if !pressed {
-        let place = curve.place(p, chain_range);
-        let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
-        let rate = pull - curve.friction * press;
-        if !(rate > 0.0) {
-            return Err(Failure::Compressed { s: l.arc_length, at: l.at, tension: 0.0 });
-        }
-        // This length hangs below the surface, and is laid along it.
-        let hangs = if l.along.norm() > 0.0 { l.along } else { load };
-        let steep = hangs.dot(&place.normal).abs() / hangs.norm();
-        let below = -l.gap.gap_m / larger(steep, 0.1);
-        let sign = if side == 0 { -1.0 } else { 1.0 };
-        let (inner, tension) = (1 - side, rate * below);
-        (c.load, c.smooth) = (None, false);
-        c.ends.place[side] += sign * below;
-        c.ends.material[inner] -= sign * below;
-        (c.ends.tension[side], c.ends.tension[inner]) = (0.0, tension);
-        c.mode = Mode::Slip(sign * curve.friction);
-        let e = c.ends;
-        c.history = TensionProfile::new(
-            breakpoint(e.place[0], e.material[0], e.tension[0]),
-            breakpoint(e.place[1], e.material[1], e.tension[1]),
-        );
-        section.forces[k] = place.tangent * tension + context.load_between(section.from, e.material[inner]);
+        ..Contact::new(index, chain_range, ends, Mode::Slip(0.0))
+    })
+}
+
+/// Lays the length that hangs below the surface along it: an end that nothing presses down slides.
+fn lay_hanging_length(c: &mut Contact, context: &SolveContext, l: &Landing, side: usize) -> Result<(), Failure> {
+    let (curve, load, inner) = (&context.curves[c.curve], context.law.load, 1 - side);
+    let place = curve.place(c.ends.place[inner], c.chain_range);
+    let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
+    let rate = pull - curve.friction * press;
+    if !(rate > 0.0) {
+        return Err(Failure::Compressed { s: l.arc_length, at: l.at, tension: 0.0 });
     }
-    section.end_conditions[side] = EndCondition::Loose(drawn);
-    section.contacts.insert(k, c);
-    section.forces.insert(k + side, Vec2::zeros());
+    let hangs = if l.along.norm() > 0.0 { l.along } else { load };
+    let steep = hangs.dot(&place.normal).abs() / hangs.norm();
+    let below = -l.gap.gap_m / larger(steep, 0.1);
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    (c.load, c.smooth) = (None, false);
+    c.ends.place[side] += sign * below;
+    c.ends.material[inner] -= sign * below;
+    (c.ends.tension[side], c.ends.tension[inner]) = (0.0, rate * below);
+    c.mode = Mode::Slip(sign * curve.friction);
+    c.history = TensionProfile::of_ends(&c.ends);
     Ok(())
 }

@@ -103,19 +103,11 @@ fn pass_eye_on_other_side(c: &mut Contact) {
     // Its boundary in the other sense: p → −p.
     c.curve ^= 1;
     c.ends.place = [-c.ends.place[0], -c.ends.place[1]];
-    let s = 0.5 * (c.ends.material[0] + c.ends.material[1]);
-    let breakpoint = |k: usize| Breakpoint {
-        coordinate: c.ends.place[k],
-        arc_length: s,
-        tension: c.ends.tension[k],
-        mobilised: 0.0,
-    };
+    let middle = || 0.5 * (c.ends.material[0] + c.ends.material[1]);
     // Its interval is a point: the friction memory keeps the material at it.
-    let held = c.history.breakpoints().first().map_or(s, |k| k.arc_length);
-    c.history = TensionProfile::new(
-        Breakpoint { arc_length: held, ..breakpoint(0) },
-        Breakpoint { arc_length: held, ..breakpoint(1) },
-    );
+    let arc_length = c.history.breakpoints().first().map_or_else(middle, |k| k.arc_length);
+    let [start, end] = [0, 1].map(|side| Breakpoint { arc_length, ..c.ends.breakpoint(side) });
+    c.history = TensionProfile::new(start, end);
     if let Mode::Slip(m) = c.mode
         && m != 0.0
     {

@@ -6,7 +6,7 @@
 //! on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::{Breakpoint, Mode, TensionProfile};
+use crate::model::spans::boundary::{Mode, TensionProfile};
 use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
 use crate::model::spans::section::{CableSection, Contact, Failure, Kink, RestingLoad, SolveContext};
 
@@ -69,14 +69,8 @@ pub(in crate::model::spans) fn enter(section: &mut CableSection, context: &Solve
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(context, c, kink) else { continue };
             if (c.ends.place[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
-                let breakpoint = Breakpoint {
-                    coordinate: p,
-                    arc_length: c.ends.material[0],
-                    tension: c.ends.tension[0],
-                    mobilised: 0.0,
-                };
                 c.ends.place = [p; 2];
-                c.history = TensionProfile::new(breakpoint, breakpoint);
+                c.history = TensionProfile::of_ends(&c.ends);
                 c.load = Some(RestingLoad { kink: Some(kink) });
                 (c.mode, c.smooth) = (Mode::Stick, false);
                 return true;
@@ -108,9 +102,8 @@ pub(in crate::model::spans) fn leave_kink(
         _ => c.ends.place[0],
     };
     let c = &mut section.contacts[j];
-    let breakpoint =
-        Breakpoint { coordinate: p, arc_length: c.ends.material[0], tension: c.ends.tension[0], mobilised: 0.0 };
-    (c.chain_range, c.ends.place, c.history) = (chain_range, [p; 2], TensionProfile::new(breakpoint, breakpoint));
+    (c.chain_range, c.ends.place) = (chain_range, [p; 2]);
+    c.history = TensionProfile::of_ends(&c.ends);
     c.load = Some(RestingLoad::default());
     c.mode = Mode::Slip(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {

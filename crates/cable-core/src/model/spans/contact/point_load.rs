@@ -16,7 +16,7 @@
 use crate::catenary::PointForce;
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::{ContactPath, Ends, Mode, TensionProfile};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_balance::load_balance;
@@ -217,13 +217,7 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
                 material: [a.material[1], b.material[0]],
                 tension: [tension; 2],
             };
-            let breakpoint = |side: usize| Breakpoint {
-                coordinate: ends.place[side],
-                arc_length: ends.material[side],
-                tension,
-                mobilised: 0.0,
-            };
-            let history = TensionProfile::new(breakpoint(0), breakpoint(1));
+            let history = TensionProfile::of_ends(&ends);
             let mode = Mode::Slip(0.0);
             let between = Contact { ends, history, mode, load: None, smooth: true, next: Connection::Joined, ..load };
             section.contacts[first].next = Connection::Joined;
@@ -393,14 +387,12 @@ impl FrictionPast {
 /// A load on the boundary of a contact.
 fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
     let fresh = past == FrictionPast::None;
+    let ends = Ends { place: [p; 2], material: s, tension: [tension; 2] };
     Contact {
-        ends: Ends { place: [p; 2], material: s, tension: [tension; 2] },
+        ends,
         mode: if fresh { Mode::Slip(0.0) } else { Mode::Stick },
         held: None,
-        history: TensionProfile::new(
-            Breakpoint { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
-            Breakpoint { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
-        ),
+        history: TensionProfile::of_ends(&ends),
         mode_changes: 0,
         next: Connection::Span,
         load: Some(RestingLoad::default()),

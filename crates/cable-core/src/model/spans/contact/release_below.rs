@@ -7,7 +7,7 @@
 //! bottom; the contact is parted there and replaced by a span. Two contacts of one post with a
 //! bottom between them remain separate until they meet.
 
-use crate::model::spans::boundary::{ContactPath, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, Mode, TensionProfile};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::section::{CableSection, Connection, Contact, SolveContext};
 
@@ -28,11 +28,21 @@ pub(in crate::model::spans) fn nearest_turn(p: f64, to: f64) -> f64 {
     p + std::f64::consts::TAU * ((to - p) / std::f64::consts::TAU).round()
 }
 
-/// Parts the contact with the greatest pull about the place where it pulls; returns whether there
-/// was one.
-pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveContext) -> bool {
-    let mut worst: Option<(f64, usize, f64, TensionProfile)> = None;
-    for (j, c) in section.contacts.iter().enumerate() {
+/// The place where a post pulls on a contact.
+struct Pull {
+    /// Index of the contact.
+    contact: usize,
+    bottom: f64,
+    /// Pressure there, N; negative.
+    pressure: f64,
+    /// The friction memory of the contact after the present state.
+    past: TensionProfile,
+}
+
+/// The place with the greatest pull.
+fn greatest_pull(section: &CableSection, context: &SolveContext) -> Option<Pull> {
+    let mut worst: Option<Pull> = None;
+    for (contact, c) in section.contacts.iter().enumerate() {
         let contact_path = context.contact_path(c);
         let [first, last] = c.ends.place;
         if c.is_load()
@@ -44,40 +54,56 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
         }
         let past = after(&contact_path, c);
         let most = -PULL_ROUNDING * (c.ends.tension[0].abs() + c.ends.tension[1].abs());
-        contact_path.bottoms(first, last, |p| {
-            let pressed = press(&contact_path, &past, p).0;
-            if pressed < most && worst.as_ref().is_none_or(|w| pressed < w.0) {
-                worst = Some((pressed, j, p, past.clone()));
+        contact_path.bottoms(first, last, |bottom| {
+            let pressure = press(&contact_path, &past, bottom).0;
+            if pressure < most && worst.as_ref().is_none_or(|w| pressure < w.pressure) {
+                worst = Some(Pull { contact, bottom, pressure, past: past.clone() });
             }
         });
     }
-    let Some((_, j, bottom, past)) = worst else { return false };
+    worst
+}
+
+impl Pull {
+    /// The ends of the stretch that pulls: within half a turn P has one zero on either side.
+    fn stretch(&self, contact_path: &ContactPath<'_>, e: &Ends) -> [f64; 2] {
+        let floor = TENSION_ROUNDING * (e.tension[0].abs() + e.tension[1].abs());
+        [0, 1].map(|side| {
+            let half = if side == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };
+            let far = self.bottom + half;
+            let far = if (e.place[side] - far) * half < 0.0 { e.place[side] } else { far };
+            if press(contact_path, &self.past, far).0 > 0.0 {
+                crossing(far, self.bottom, floor, None, |p| press(contact_path, &self.past, p))
+            } else {
+                far
+            }
+        })
+    }
+}
+
+/// Parts the contact with the greatest pull about the place where it pulls; returns whether there
+/// was one.
+pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveContext) -> bool {
+    let Some(pull) = greatest_pull(section, context) else { return false };
+    let j = pull.contact;
     let c = &section.contacts[j];
     let contact_path = context.contact_path(c);
-    let floor = TENSION_ROUNDING * (c.ends.tension[0].abs() + c.ends.tension[1].abs());
-    // Within half a turn P has one zero on either side.
-    let edges = [0, 1].map(|side| {
-        let half = if side == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };
-        let far = bottom + half;
-        let far = if (c.ends.place[side] - far) * half < 0.0 { c.ends.place[side] } else { far };
-        if press(&contact_path, &past, far).0 > 0.0 {
-            crossing(far, bottom, floor, None, |p| press(&contact_path, &past, p))
-        } else {
-            far
-        }
+    let edges = pull.stretch(&contact_path, &c.ends);
+    let [first, last] = edges.map(|p| {
+        let (tension, s) = pull.past.at(&contact_path, p);
+        Breakpoint::frictionless(p, s, tension)
     });
-    let [(t0, s0), (t1, s1)] = edges.map(|p| past.at(&contact_path, p));
-    let [before, behind] = [edges[0] > c.ends.place[0], edges[1] < c.ends.place[1]];
+    let before = Ends::at([c.ends.breakpoint(0), first]);
+    let behind = Ends::at([last, c.ends.breakpoint(1)]);
+    let touches = [edges[0] > c.ends.place[0], edges[1] < c.ends.place[1]];
     let mode = if context.friction(c) > 0.0 { Mode::Stick } else { c.mode };
-    let (e, history) = (c.ends, c.history.clone());
+    let history = c.history.clone();
     let c = &mut section.contacts[j];
     (c.mode, c.held) = (mode, None);
-    match (before, behind) {
-        (true, true) => {
+    match touches {
+        [true, true] => {
             let mut other = c.clone();
-            c.ends = Ends { place: [e.place[0], edges[0]], material: [e.material[0], s0], tension: [e.tension[0], t0] };
-            other.ends =
-                Ends { place: [edges[1], e.place[1]], material: [s1, e.material[1]], tension: [t1, e.tension[1]] };
+            (c.ends, other.ends) = (before, behind);
             c.history = history.split(&context.contact_path(c), edges[0]).0;
             other.history = history.split(&context.contact_path(&other), edges[1]).1;
             c.next = Connection::Span;
@@ -86,15 +112,15 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
             section.forces.insert(j + 1, g);
             section.resolve_span(context, j + 1);
         }
-        (true, false) => {
-            c.ends = Ends { place: [e.place[0], edges[0]], material: [e.material[0], s0], tension: [e.tension[0], t0] };
+        [true, false] => {
+            c.ends = before;
             section.resolve_span(context, j + 1);
         }
-        (false, true) => {
-            c.ends = Ends { place: [edges[1], e.place[1]], material: [s1, e.material[1]], tension: [t1, e.tension[1]] };
+        [false, true] => {
+            c.ends = behind;
             section.resolve_span(context, j);
         }
-        (false, false) => return false,
+        [false, false] => return false,
     }
     true
 }

@@ -96,10 +96,8 @@ impl WheelFriction {
 
     /// Begins the memory from angle (rad), material (m) and tension (N) at points in order.
     pub fn begin(&mut self, on: &CableProperties, points: &[[f64; 3]]) {
-        let breakpoints: Vec<Breakpoint> = points
-            .iter()
-            .map(|&[p, s, tension]| Breakpoint { coordinate: p, arc_length: s, tension, mobilised: 0.0 })
-            .collect();
+        let breakpoints: Vec<Breakpoint> =
+            points.iter().map(|&[p, s, tension]| Breakpoint::frictionless(p, s, tension)).collect();
         let friction = self.curve.friction;
         self.history = TensionProfile::through(&self.contact_path(on), &breakpoints, 1.0);
         self.held = None;

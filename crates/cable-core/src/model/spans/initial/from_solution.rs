@@ -11,7 +11,7 @@ use crate::model::spans::boundary::{
     Breakpoint, ChainRange, Curve, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, SweepDirection, TensionProfile,
 };
 use crate::model::spans::contact::LIFT_FRACTION;
-use crate::model::spans::section::{BoundaryConditions, CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::{BoundaryConditions, CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 
@@ -154,8 +154,9 @@ fn laid(
         {
             (k, reached) = (k + 1, p);
         }
-        let run = TouchingRun { curve: &context.curves[index], index, chain_range, first, last: k, within };
-        if let Some(c) = run.contact(&mut section, context, stations) {
+        let curve = &context.curves[index];
+        let run = TouchingRun { stations, curve, index, chain_range, first, last: k, within };
+        if let Some(c) = run.contact(&mut section, context) {
             section.contacts.push(c);
         }
         k += 1;
@@ -191,6 +192,7 @@ fn keep_apart(section: &mut CableSection) -> Option<()> {
 
 /// Successive stations that lie on one chain.
 struct TouchingRun<'a> {
+    stations: &'a [AnswerStation],
     curve: &'a Curve,
     index: usize,
     chain_range: ChainRange,
@@ -202,157 +204,138 @@ struct TouchingRun<'a> {
 
 impl TouchingRun<'_> {
     /// Makes the contact; the end conditions of the section on it become lying ends.
-    fn contact(
-        &self,
-        section: &mut CableSection,
-        context: &SolveContext,
-        stations: &[AnswerStation],
-    ) -> Option<Contact> {
-        let mut contact = Contact {
-            curve: self.index,
-            chain_range: self.chain_range,
-            ends: Ends { place: [0.0; 2], material: [0.0; 2], tension: [0.0; 2] },
-            mode: if self.curve.friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
-            history: TensionProfile::default(),
-            wheel: stations[self.first].wheel,
-            mode_changes: 0,
-            held: None,
-            smooth: false,
-            next: Connection::Span,
-            load: None,
-        };
-        for side in 0..2 {
-            let (p, s, t) = self.end(section, context, stations, side)?;
-            (contact.ends.place[side], contact.ends.material[side], contact.ends.tension[side]) = (p, s, t);
+    fn contact(&self, section: &mut CableSection, context: &SolveContext) -> Option<Contact> {
+        let mut ends = Ends::at([self.end(section, context, 0)?, self.end(section, context, 1)?]);
+        if ends.place[1] < ends.place[0] {
+            ends.place = [0.5 * (ends.place[0] + ends.place[1]); 2];
         }
-        if contact.ends.place[1] < contact.ends.place[0] {
-            let middle = 0.5 * (contact.ends.place[0] + contact.ends.place[1]);
-            contact.ends.place = [middle; 2];
-        }
-        let breakpoint = |side: usize| Breakpoint {
-            coordinate: contact.ends.place[side],
-            arc_length: contact.ends.material[side],
-            tension: contact.ends.tension[side],
-            mobilised: 0.0,
-        };
-        let mut breakpoints = vec![breakpoint(0)];
-        for pair in stations[self.first..=self.last].windows(2) {
-            let [a, b] = [&pair[0], &pair[1]];
-            let (Some((_, _, p)), Some((_, _, q))) = (a.boundary_point, b.boundary_point) else { continue };
-            if a.jumps() || b.jumps() {
-                let tension = 0.5 * (a.tension[1] + b.tension[0]);
-                breakpoints.push(Breakpoint {
-                    coordinate: 0.5 * (p + q),
-                    arc_length: 0.5 * (a.arc_length + b.arc_length),
-                    tension,
-                    mobilised: 0.0,
-                });
-            }
-            if !b.jumps() && q < contact.ends.place[1] {
-                breakpoints.push(Breakpoint {
-                    coordinate: q,
-                    arc_length: b.arc_length,
-                    tension: b.tension[0],
-                    mobilised: 0.0,
-                });
-            }
-        }
-        breakpoints.push(breakpoint(1));
-        let contact_path = context.contact_path(&contact);
-        // A difference beyond the friction cone is moved to the end where the tension is known
-        // without friction: away from a lying end, to a free one.
-        let tied = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Lies(_)));
-        let at_end = [self.first == 0, self.last + 1 == stations.len()];
-        let free = section.end_conditions.map(|t| matches!(t, EndCondition::Hangs(_) | EndCondition::Loose(_)));
-        let back = tied[1] && at_end[1] && !(tied[0] && at_end[0]) || free[0] && !free[1];
-        contact.history = if back {
-            TensionProfile::through_back(&contact_path, &breakpoints, self.within)
-        } else {
-            TensionProfile::through(&contact_path, &breakpoints, self.within)
+        let mode = if self.curve.friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) };
+        let mut contact = Contact::new(self.index, self.chain_range, ends, mode);
+        contact.wheel = self.stations[self.first].wheel;
+        self.remember_friction(section, context, &mut contact);
+        Some(contact)
+    }
+
+    /// Marks the ends of the cable's section that are on the contact.
+    fn is_tip(&self) -> [bool; 2] {
+        [self.first == 0, self.last + 1 == self.stations.len()]
+    }
+
+    /// Sets the friction memory of the contact from the tensions along it.
+    fn remember_friction(&self, section: &CableSection, context: &SolveContext, contact: &mut Contact) {
+        let contact_path = context.contact_path(contact);
+        let breakpoints = self.measured_tensions(&contact.ends);
+        let going = self.sweep_direction(section);
+        let (mut history, far_side) = match going {
+            SweepDirection::Right => (TensionProfile::through(&contact_path, &breakpoints, self.within), 1),
+            SweepDirection::Left => (TensionProfile::through_back(&contact_path, &breakpoints, self.within), 0),
         };
         // The material of other models' nodes follows from their bars, not from the strain between
         // nodes: the difference goes to the span beyond, if there is one.
-        if !at_end[usize::from(!back)] {
-            contact.history.measure(&contact_path, if back { SweepDirection::Left } else { SweepDirection::Right });
-            if let [first, .., last] = contact.history.breakpoints() {
+        if !self.is_tip()[far_side] {
+            history.measure(&contact_path, going);
+            if let [first, .., last] = history.breakpoints() {
                 contact.ends.material = [first.arc_length, last.arc_length];
             }
         }
         // The friction cone changes only the tension at a lying end.
-        if let (Some(k), EndCondition::Lies(_)) = (contact.history.breakpoints().last(), section.end_conditions[1]) {
+        if let (Some(k), EndCondition::Lies(_)) = (history.breakpoints().last(), section.end_conditions[1]) {
             contact.ends.tension[1] = k.tension;
         }
-        Some(contact)
+        contact.history = history;
     }
 
-    /// Boundary coordinate, material and tension at the start of the contact (side 0) or its end.
-    fn end(
-        &self,
-        section: &mut CableSection,
-        context: &SolveContext,
-        stations: &[AnswerStation],
-        side: usize,
-    ) -> Option<(f64, f64, f64)> {
-        let k = if side == 0 { self.first } else { self.last };
-        let station = &stations[k];
-        let (_, _, p) = station.boundary_point?;
-        let tension = station.tension[side];
-        let tip = if side == 0 { k == 0 } else { k + 1 == stations.len() };
-        if tip {
-            let s = if side == 0 { section.from } else { section.to };
-            match section.end_conditions[side] {
-                EndCondition::Fixed(at) => {
-                    match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
-                        Some(p) => {
-                            section.end_conditions[side] = EndCondition::Lies(p);
-                            return Some((p, s, tension));
-                        }
-                        // The end is held just above the boundary, so the next node is the first
-                        // that lies.
-                        None if self.first < self.last => {
-                            let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
-                            return Some((next.boundary_point?.2, next.arc_length, next.tension[side]));
-                        }
-                        None => return None,
-                    }
-                }
-                EndCondition::Hangs(force) => {
-                    section.end_conditions[side] = EndCondition::Loose(force);
-                    let place = self.curve.place(p, self.chain_range);
-                    let along = force.dot(&place.tangent);
-                    // An end that is pressed down has friction of its own.
-                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
-                    return Some((
-                        p,
-                        s,
-                        if pressed {
-                            tension
-                        } else if side == 0 {
-                            -along
-                        } else {
-                            along
-                        },
-                    ));
-                }
-                _ => return None,
+    /// The direction in which the tensions are followed: a difference beyond the friction cone is
+    /// moved to the end where the tension is known without friction, away from a lying end, to a
+    /// free one.
+    fn sweep_direction(&self, section: &CableSection) -> SweepDirection {
+        let tied = section.end_conditions.map(|t| matches!(t, EndCondition::Lies(_)));
+        let free = section.end_conditions.map(|t| matches!(t, EndCondition::Hangs(_) | EndCondition::Loose(_)));
+        let tip = self.is_tip();
+        if tied[1] && tip[1] && !(tied[0] && tip[0]) || free[0] && !free[1] {
+            SweepDirection::Left
+        } else {
+            SweepDirection::Right
+        }
+    }
+
+    /// The tensions of the answer between the ends of the contact, midway between stations at which
+    /// they jump and at the others.
+    fn measured_tensions(&self, ends: &Ends) -> Vec<Breakpoint> {
+        let mut breakpoints = vec![ends.breakpoint(0)];
+        for pair in self.stations[self.first..=self.last].windows(2) {
+            let [a, b] = [&pair[0], &pair[1]];
+            let (Some((_, _, p)), Some((_, _, q))) = (a.boundary_point, b.boundary_point) else { continue };
+            if a.jumps() || b.jumps() {
+                let (middle, arc_length) = (0.5 * (p + q), 0.5 * (a.arc_length + b.arc_length));
+                breakpoints.push(Breakpoint::frictionless(middle, arc_length, 0.5 * (a.tension[1] + b.tension[0])));
+            }
+            if !b.jumps() && q < ends.place[1] {
+                breakpoints.push(Breakpoint::frictionless(q, b.arc_length, b.tension[0]));
             }
         }
-        let i = self.curve.locate(p, self.chain_range);
-        if self.curve.place(p, self.chain_range).turn == 0.0 {
-            return Some((p, station.arc_length, tension));
+        breakpoints.push(ends.breakpoint(1));
+        breakpoints
+    }
+
+    /// The start of the contact (side 0) or its end.
+    fn end(&self, section: &mut CableSection, context: &SolveContext, side: usize) -> Option<Breakpoint> {
+        if self.is_tip()[side] {
+            return self.tip(section, side);
         }
-        let beside = if side == 0 { stations[k - 1].at } else { stations[k + 1].at };
+        let k = if side == 0 { self.first } else { self.last };
+        let station = &self.stations[k];
+        let (_, _, p) = station.boundary_point?;
+        let tension = station.tension[side];
+        let at_node = Breakpoint::frictionless(p, station.arc_length, tension);
+        if self.curve.place(p, self.chain_range).turn == 0.0 {
+            return Some(at_node);
+        }
+        let beside = if side == 0 { self.stations[k - 1].at } else { self.stations[k + 1].at };
         let tangent = self.tangent_from(beside, p, side)?;
-        let mut q = self.curve.with_tangent(i, tangent);
+        let mut q = self.curve.with_tangent(self.curve.locate(p, self.chain_range), tangent);
         if self.curve.is_round() {
             q += std::f64::consts::TAU * ((p - q) / std::f64::consts::TAU).round();
         }
         let beyond = if side == 0 { q < p } else { q > p };
         if !beyond {
-            return Some((p, station.arc_length, tension));
+            return Some(at_node);
         }
         let way = self.curve.length(p, q, self.chain_range) / context.law.stretch(tension);
-        Some((q, station.arc_length + way, tension))
+        Some(Breakpoint::frictionless(q, station.arc_length + way, tension))
+    }
+
+    /// The end of the contact at an end of the section, which becomes a lying end; None if it is
+    /// held above the boundary and nothing else lies.
+    fn tip(&self, section: &mut CableSection, side: usize) -> Option<Breakpoint> {
+        let k = if side == 0 { self.first } else { self.last };
+        let (_, _, p) = self.stations[k].boundary_point?;
+        let tension = self.stations[k].tension[side];
+        let s = if side == 0 { section.from } else { section.to };
+        match section.end_conditions[side] {
+            EndCondition::Fixed(at) => match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
+                Some(p) => {
+                    section.end_conditions[side] = EndCondition::Lies(p);
+                    Some(Breakpoint::frictionless(p, s, tension))
+                }
+                // The end is held just above the boundary, so the next node is the first that lies.
+                None if self.first < self.last => {
+                    let next = &self.stations[if side == 0 { k + 1 } else { k - 1 }];
+                    Some(Breakpoint::frictionless(next.boundary_point?.2, next.arc_length, next.tension[side]))
+                }
+                None => None,
+            },
+            EndCondition::Hangs(force) => {
+                section.end_conditions[side] = EndCondition::Loose(force);
+                let place = self.curve.place(p, self.chain_range);
+                // An end that is pressed down has friction of its own.
+                let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
+                let along = force.dot(&place.tangent);
+                let drawn = if side == 0 { -along } else { along };
+                Some(Breakpoint::frictionless(p, s, if pressed { tension } else { drawn }))
+            }
+            EndCondition::Lies(_) | EndCondition::Loose(_) => None,
+        }
     }
 
     /// Direction of travel of the line that touches the arc at p and goes through a point beside

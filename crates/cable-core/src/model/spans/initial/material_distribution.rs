@@ -1,7 +1,7 @@
 //! This module distributes the material of a cable along its taut string.
 
 use crate::math::smaller;
-use crate::model::spans::boundary::{Breakpoint, ContactPath, Ends, TensionProfile};
+use crate::model::spans::boundary::{ContactPath, Ends, TensionProfile};
 use crate::model::spans::section::{CableSection, Contact, EndCondition, SolveContext};
 
 /// Rounds of moving a free end to the end of the material. Each multiplies the error by the strain:
@@ -94,15 +94,9 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
 /// end, where its material is known; else from its middle. With two free ends it has the tension of
 /// the one that draws less.
 fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
-    let end = |side: usize| Breakpoint {
-        coordinate: e.place[side],
-        arc_length: e.material[side],
-        tension: e.tension[side],
-        mobilised: 0.0,
-    };
     let start = match (free, held) {
-        ([true, false], _) | ([false, false], [true, false]) => end(0),
-        ([false, true], _) | ([false, false], [false, true]) => end(1),
+        ([true, false], _) | ([false, false], [true, false]) => e.breakpoint(0),
+        ([false, true], _) | ([false, false], [false, true]) => e.breakpoint(1),
         ([true, true], _) => {
             return TensionProfile::laid_from_middle(contact_path, e, smaller(e.tension[0], e.tension[1]));
         }

@@ -3,13 +3,13 @@
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
-use crate::model::spans::boundary::{Breakpoint, ChainRange, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::{ChainRange, Ends, Mode, TensionProfile};
 use crate::model::spans::contact::LIFT_FRACTION;
 use crate::model::spans::initial::material_distribution::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::{shortest_path, tightening};
-use crate::model::spans::section::{BoundaryConditions, CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::{BoundaryConditions, CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
@@ -36,115 +36,227 @@ pub(in crate::model::spans) fn section_along_route(
     instant: &BoundaryConditions,
     ring: PostPolygon,
 ) -> Option<(CableSection, Vec<Vec2>)> {
-    let way = section_route(layout, layout.sections.get(index)?, instant);
-    Some((along(layout, index, context, instant, &way, ring)?, way.points))
-}
-
-fn along(
-    layout: &SectionLayout,
-    index: usize,
-    context: &SolveContext,
-    instant: &BoundaryConditions,
-    way: &RoutePolyline,
-    ring: PostPolygon,
-) -> Option<CableSection> {
-    let tuned = &layout.settings.initial;
     let part = layout.sections.get(index)?;
-    let [from, to] = part.material;
-    let total = way.total();
-    if !(total > 0.0) {
-        return bare(part, instant);
-    }
-    let end_conditions = [0, 1].map(|side| match part.supports[side] {
-        Some(k) => EndCondition::Fixed(instant.places[k]),
-        None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
-    });
-    let heads = lying_ends(layout, part, context, way, end_conditions);
-    let spread_along = SpreadAlongRoute::of(part, context, instant, way, end_conditions, &heads);
-    let (loose, stretch, slack) = (spread_along.loose, spread_along.stretch, spread_along.slack);
-    let at = |w: f64| spread_along.at(w);
-    let tension = spread_along.tension(context);
-    let mut section = CableSection { from, to, end_conditions, contacts: Vec::new(), forces: Vec::new(), loose: None };
-    if let [Some(a), Some(b)] = &heads
-        && (a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range)
-    {
-        return Some(lies_whole(section, context, [a, b], tension));
-    }
-    // A span from one lying stretch to the next needs some tension.
-    let least = tuned.laid_tension_weights * context.law.load.norm() * (to - from);
-    let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
-    let first = heads[0].as_ref().map_or(0, |h| h.count - 1);
-    let last = way.points.len() - heads[1].as_ref().map_or(1, |h| h.count);
-    if first > last {
-        return None;
-    }
-    let mut contacts = bends(
-        layout,
-        part,
-        context,
-        instant,
-        &TautString { way, first, last, ring },
-        &FirstMaterial { at: &at, tension },
-    )?;
-    let join = joint(context, &heads, first == last, tension);
-    for (side, h) in heads.iter().enumerate() {
-        let Some(h) = h else { continue };
-        let way_at = |k: usize| at(way.along[k]);
-        let join = smaller(join, 0.5 * (h.coordinates[1] - h.coordinates[0]));
-        let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
-        let p = if side == 0 {
-            [h.coordinates[0], h.coordinates[1] - join]
-        } else {
-            [h.coordinates[0] + join, h.coordinates[1]]
-        };
-        let c = contact(context, h.curve, h.chain_range, p, s, tension);
-        contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-        section.end_conditions[side] = end_tie(end_conditions[side], h.coordinates[side]);
-    }
-    section.forces = vec![Vec2::zeros(); contacts.len() + 1];
-    section.contacts = contacts;
-    if join == 0.0 && loose.contains(&true) {
-        measure(&mut section, context, loose, stretch);
-    }
-    spread(&mut section, context);
-    solve_spans(&mut section, context)?;
-    // Without a route the way is straight from support to support, and round a wheel from tangent
-    // to tangent.
-    let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
-    let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
-    if (slack > tuned.route_excess_fraction || tangent_ways)
-        && heads.iter().all(Option::is_none)
-        && !loose.contains(&true)
-    {
-        tightening::equalise_tensions(&mut section, context);
-    }
-    Some(section)
+    let way = section_route(layout, part, instant);
+    let section = FirstGuess { layout, part, context, instant, way: &way, ring }.section()?;
+    Some((section, way.points))
 }
 
-/// The ends that lie on a boundary; an end that a load lifts does not.
-fn lying_ends(
-    layout: &SectionLayout,
-    part: &SectionBounds,
-    context: &SolveContext,
-    way: &RoutePolyline,
-    end_conditions: [EndCondition; 2],
-) -> [Option<EndContact>; 2] {
-    let tuned = &layout.settings.initial;
-    [0, 1].map(|side| {
-        let near = if part.supports[side].is_none() {
-            [tuned.falling_end_radii; 2]
-        } else {
-            [tuned.lying_end_radii, tuned.route_contact_radii]
-        };
-        let near = near.map(|n| n * layout.problem.radius);
-        lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
-            EndCondition::Hangs(force) => {
-                let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
-                force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
+/// The given quantities of a section's first guess.
+#[derive(Clone, Copy)]
+struct FirstGuess<'a> {
+    layout: &'a SectionLayout,
+    part: &'a SectionBounds,
+    context: &'a SolveContext,
+    instant: &'a BoundaryConditions,
+    way: &'a RoutePolyline,
+    /// The outline about the corners.
+    ring: PostPolygon,
+}
+
+/// The part of a route along which a string is pulled taut, by the indices of the route's points at
+/// which it begins and ends.
+#[derive(Clone, Copy)]
+struct TautString {
+    first: usize,
+    last: usize,
+}
+
+impl FirstGuess<'_> {
+    /// The section laid along the route.
+    fn section(&self) -> Option<CableSection> {
+        let Self { layout, part, context, instant, way, .. } = *self;
+        if !(way.total() > 0.0) {
+            return bare(part, instant);
+        }
+        let end_conditions = [0, 1].map(|side| match part.supports[side] {
+            Some(k) => EndCondition::Fixed(instant.places[k]),
+            None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
+        });
+        let heads = self.lying_ends(end_conditions);
+        let mut material = SpreadAlongRoute::of(self, end_conditions, &heads);
+        let [from, to] = part.material;
+        let mut section = CableSection { from, to, end_conditions, ..CableSection::default() };
+        if let [Some(a), Some(b)] = &heads {
+            if a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range {
+                return Some(lies_whole(section, context, [a, b], material.tension));
             }
-            _ => true,
+            // A span from one lying stretch to the next needs some tension.
+            let least = layout.settings.initial.laid_tension_weights * context.law.load.norm() * (to - from);
+            if !(material.tension > least) {
+                material.tension = least;
+            }
+        }
+        let first = heads[0].as_ref().map_or(0, |h| h.inner_point(way));
+        let last = heads[1].as_ref().map_or(way.points.len() - 1, |h| h.inner_point(way));
+        if first > last {
+            return None;
+        }
+        section.contacts = self.bends(TautString { first, last }, &material)?;
+        let join = joint(context, &heads, first == last, material.tension);
+        for head in heads.iter().flatten() {
+            let contact = self.lying_end_contact(head, join, &material);
+            section.contacts.insert(if head.side == 0 { 0 } else { section.contacts.len() }, contact);
+            section.end_conditions[head.side] = end_tie(end_conditions[head.side], head.coordinates[head.side]);
+        }
+        section.forces = vec![Vec2::zeros(); section.contacts.len() + 1];
+        if join == 0.0 && material.has_free_end() {
+            measure(&mut section, context, material.loose, material.stretch);
+        }
+        spread(&mut section, context);
+        solve_spans(&mut section, context)?;
+        if self.strains_unevenly(&material) && heads.iter().all(Option::is_none) && !material.has_free_end() {
+            tightening::equalise_tensions(&mut section, context);
+        }
+        Some(section)
+    }
+
+    /// The contact at a lying end of the section; `join` is the length of the boundary (m) that it
+    /// leaves to a span beyond it.
+    fn lying_end_contact(&self, head: &EndContact, join: f64, material: &SpreadAlongRoute) -> Contact {
+        let [from, to] = self.part.material;
+        let [first, last] = head.coordinates;
+        let inner = material.at(self.way.along[head.inner_point(self.way)]);
+        let join = smaller(join, 0.5 * (last - first));
+        let (p, s) = if head.side == 0 {
+            ([first, last - join], [from, inner - join])
+        } else {
+            ([first + join, last], [inner + join, to])
+        };
+        contact(self.context, head.curve, head.chain_range, p, s, material.tension)
+    }
+
+    /// True if the material that is spread evenly along the route has uneven tensions: if the route
+    /// is longer than the cable, or if none is drawn, so that it leads straight from support to
+    /// support, but round a wheel from tangent to tangent.
+    fn strains_unevenly(&self, material: &SpreadAlongRoute) -> bool {
+        let problem = &self.layout.problem;
+        let wheel = |q: &Pulley| problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
+        material.slack > self.layout.settings.initial.route_excess_fraction
+            || problem.route.len() < 2 && self.part.pulleys.iter().any(wheel)
+    }
+
+    /// The ends that lie on a boundary; an end that a load lifts does not.
+    fn lying_ends(&self, end_conditions: [EndCondition; 2]) -> [Option<EndContact>; 2] {
+        let Self { layout, part, context, way, .. } = *self;
+        let tuned = &layout.settings.initial;
+        [0, 1].map(|side| {
+            let near = if part.supports[side].is_none() {
+                [tuned.falling_end_radii; 2]
+            } else {
+                [tuned.lying_end_radii, tuned.route_contact_radii]
+            };
+            let near = near.map(|n| n * layout.problem.radius);
+            lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
+                EndCondition::Hangs(force) => {
+                    let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
+                    force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
+                }
+                _ => true,
+            })
         })
-    })
+    }
+
+    /// Contacts where the taut string of the route bends.
+    fn bends(&self, string: TautString, material: &SpreadAlongRoute) -> Option<Vec<Contact>> {
+        let Self { context, way, .. } = *self;
+        let mut wraps = self.wraps(string)?;
+        let mut contacts = Vec::with_capacity(wraps.len() + 2);
+        let rounds = stretched(context, &mut wraps, [way.points[string.first], way.points[string.last]]);
+        for (k, wrap) in wraps.iter().enumerate() {
+            let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
+            let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
+            let curve = &context.curves[wrap.curve];
+            // The turn at a wheel is known from the rounds beside it; an eye turns the cable either
+            // way.
+            let turn = match (wrap.wheel, rounds[k + 1][0]) {
+                (Some(_), (centre, radius, sense)) if radius > 0.0 => {
+                    turn_through_centre(sense, centre - rounds[k][1].0, rounds[k + 2][0].0 - centre)
+                }
+                _ => wrap.turn,
+            };
+            let p1 = curve.with_tangent(wrap.pieces[0], arrive);
+            let p2 = curve.with_tangent(wrap.pieces[1], leave);
+            // The turn of the string is adjusted to the tangents.
+            let p2 = if curve.is_round() { p1 + angle_near(p2 - p1, turn) } else { p2 };
+            // An eye has no side of its own: the cable passes it on the side on which the string
+            // bends.
+            let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
+            let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
+            let curve = &context.curves[index];
+            // A wrap that the string passes without a bend touches in one point.
+            let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
+            let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / context.law.stretch(material.tension);
+            // Round a post the string's points are not those of the cable: its ends are taken from
+            // the route itself.
+            let seen = |p: f64, w: f64| {
+                let place = curve.place(p, wrap.chain_range);
+                if curve.is_round() {
+                    way.close(place.at, w, context.settings.initial.post_approach_radii * place.stretch)
+                } else {
+                    w
+                }
+            };
+            let s = material.at(0.5 * (seen(p1, wrap.way[0]) + seen(p2, wrap.way[1])));
+            let mut c = contact(context, index, wrap.chain_range, [p1, p2], [s - half, s + half], material.tension);
+            c.wheel = wrap.wheel;
+            contacts.push(c);
+        }
+        Some(contacts)
+    }
+
+    /// The bodies that the string bends round, with the pulleys; posts are represented by rings of
+    /// points.
+    fn wraps(&self, TautString { first, last }: TautString) -> Option<Vec<RouteWrap>> {
+        let Self { layout, part, context, instant, way, ring } = *self;
+        let world = &layout.problem.world;
+        let corners = shortest_path::corners(world, ring);
+        let mut out: Vec<RouteWrap> = Vec::new();
+        let mut reached = way.along[first];
+        let mut begin = (way.points[first], first);
+        for k in 0..=part.pulleys.len() {
+            let pulley: Option<&Pulley> = part.pulleys.get(k);
+            let (stop, w) = match pulley {
+                Some(q) => {
+                    let at = instant.places[q.support];
+                    (at, way.nearest(at, reached, Some(last.saturating_sub(1))))
+                }
+                None => (way.points[last], way.along[last]),
+            };
+            let leg = if pulley.is_some() { way.leg(w) } else { last.saturating_sub(1) };
+            let mut route = vec![begin.0];
+            for i in begin.1 + 1..=leg.min(way.points.len() - 1) {
+                route.push(way.points[i]);
+            }
+            route.push(stop);
+            let bends = shortest_path::taut_string(&route, &corners)?;
+            for (j, b) in bends.iter().enumerate() {
+                reached = way.nearest(b.corner.at, reached, Some(begin.1 + b.leg));
+                let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
+                let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
+                let (u, v) = (b.corner.at - before, after - b.corner.at);
+                push(&mut out, context, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
+            }
+            if let Some(q) = pulley {
+                let curve = q.curve + usize::from(q.facing < 0.0);
+                let chain_range = ChainRange { first: 0, last: 0 };
+                // The route may be drawn round it: these are its first and last points there.
+                let radius = context.curves[curve].place(0.0, chain_range).stretch;
+                let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
+                let round = way.beside(stop, w, near);
+                out.push(RouteWrap {
+                    curve,
+                    chain_range,
+                    pieces: [0, 0],
+                    wheel: Some(q.support),
+                    way: round,
+                    turn: 0.0,
+                });
+                (begin, reached) = ((stop, leg), w);
+            }
+        }
+        Some(out)
+    }
 }
 
 /// The material of a section spread along its route: evenly if both ends are held; otherwise from
@@ -155,23 +267,17 @@ struct SpreadAlongRoute {
     total: f64,
     /// True for free ends.
     loose: [bool; 2],
-    /// Force that draws the free end, N.
-    drawn: f64,
-    /// Stretched length of a metre of material under that force.
+    /// Stretched length of a metre of material under the force that draws the free end.
     stretch: f64,
     /// Strain with which the material is as long as the route; negative if it is longer.
     slack: f64,
+    /// The tension with which it is first laid, N.
+    tension: f64,
 }
 
 impl SpreadAlongRoute {
-    fn of(
-        part: &SectionBounds,
-        context: &SolveContext,
-        instant: &BoundaryConditions,
-        way: &RoutePolyline,
-        end_conditions: [EndCondition; 2],
-        heads: &[Option<EndContact>; 2],
-    ) -> Self {
+    fn of(guess: &FirstGuess<'_>, end_conditions: [EndCondition; 2], heads: &[Option<EndContact>; 2]) -> Self {
+        let FirstGuess { part, context, instant, way, .. } = *guess;
         let ([from, to], total) = (part.material, way.total());
         let loose = part.supports.map(|support| support.is_none());
         let drawn = |side: usize| match (&heads[side], end_conditions[side]) {
@@ -179,14 +285,19 @@ impl SpreadAlongRoute {
             _ => 0.0,
         };
         let drawn = if loose[0] && (!loose[1] || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
-        Self {
-            material: part.material,
-            total,
-            loose,
-            drawn,
-            stretch: context.law.stretch(drawn),
-            slack: total / ((to - from) * context.law.thermal) - 1.0,
-        }
+        let slack = total / ((to - from) * context.law.thermal) - 1.0;
+        let tension = if loose.contains(&true) {
+            drawn
+        } else if slack > 0.0 {
+            slack * context.law.stiffness
+        } else {
+            0.0
+        };
+        Self { material: part.material, total, loose, stretch: context.law.stretch(drawn), slack, tension }
+    }
+
+    fn has_free_end(&self) -> bool {
+        self.loose.contains(&true)
     }
 
     /// The material at a length of the route, m.
@@ -196,17 +307,6 @@ impl SpreadAlongRoute {
             [true, false] => to - (self.total - w) / self.stretch,
             [false, true] => from + w / self.stretch,
             _ => from + (to - from) * w / self.total,
-        }
-    }
-
-    /// The tension with which it is first laid, N.
-    fn tension(&self, context: &SolveContext) -> f64 {
-        if self.loose.contains(&true) {
-            self.drawn
-        } else if self.slack > 0.0 {
-            self.slack * context.law.stiffness
-        } else {
-            0.0
         }
     }
 }
@@ -269,82 +369,6 @@ fn joint(context: &SolveContext, heads: &[Option<EndContact>; 2], meet: bool, te
     }
 }
 
-/// The part of a route along which a string is pulled taut.
-#[derive(Clone, Copy)]
-struct TautString<'a> {
-    way: &'a RoutePolyline,
-    /// Index of the route's point at which it begins.
-    first: usize,
-    /// Index of the point at which it ends.
-    last: usize,
-    /// The outline about the corners.
-    ring: PostPolygon,
-}
-
-/// The material of the cable in its first shape.
-#[derive(Clone, Copy)]
-struct FirstMaterial<'a> {
-    /// Arc length (m) at a length along the route (m).
-    at: &'a dyn Fn(f64) -> f64,
-    /// Tension, N.
-    tension: f64,
-}
-
-/// Contacts where the taut string of the route bends.
-fn bends(
-    layout: &SectionLayout,
-    part: &SectionBounds,
-    context: &SolveContext,
-    instant: &BoundaryConditions,
-    string: &TautString<'_>,
-    material: &FirstMaterial<'_>,
-) -> Option<Vec<Contact>> {
-    let TautString { way, first, last, .. } = *string;
-    let FirstMaterial { at, tension } = *material;
-    let mut wraps = wraps(layout, part, context, instant, string)?;
-    let mut contacts = Vec::with_capacity(wraps.len() + 2);
-    let rounds = stretched(context, &mut wraps, [way.points[first], way.points[last]]);
-    for (k, wrap) in wraps.iter().enumerate() {
-        let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
-        let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
-        let curve = &context.curves[wrap.curve];
-        // The turn at a wheel is known from the rounds beside it; an eye turns the cable either
-        // way.
-        let turn = match (wrap.wheel, rounds[k + 1][0]) {
-            (Some(_), (centre, radius, sense)) if radius > 0.0 => {
-                turn_through_centre(sense, centre - rounds[k][1].0, rounds[k + 2][0].0 - centre)
-            }
-            _ => wrap.turn,
-        };
-        let p1 = curve.with_tangent(wrap.pieces[0], arrive);
-        let p2 = curve.with_tangent(wrap.pieces[1], leave);
-        // The turn of the string is adjusted to the tangents.
-        let p2 = if curve.is_round() { p1 + angle_near(p2 - p1, turn) } else { p2 };
-        // An eye has no side of its own: the cable passes it on the side on which the string bends.
-        let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
-        let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
-        let curve = &context.curves[index];
-        // A wrap that the string passes without a bend touches in one point.
-        let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
-        let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / context.law.stretch(tension);
-        // Round a post the string's points are not those of the cable: its ends are taken from the
-        // route itself.
-        let seen = |p: f64, w: f64| {
-            let place = curve.place(p, wrap.chain_range);
-            if curve.is_round() {
-                way.close(place.at, w, context.settings.initial.post_approach_radii * place.stretch)
-            } else {
-                w
-            }
-        };
-        let s = at(0.5 * (seen(p1, wrap.way[0]) + seen(p2, wrap.way[1])));
-        let mut c = contact(context, index, wrap.chain_range, [p1, p2], [s - half, s + half], tension);
-        c.wheel = wrap.wheel;
-        contacts.push(c);
-    }
-    Some(contacts)
-}
-
 /// A section whose ends are in one place: a single span.
 fn bare(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSection> {
     let [a, b] = part.supports;
@@ -394,29 +418,29 @@ fn contact(
     s: [f64; 2],
     tension: f64,
 ) -> Contact {
-    let breakpoint = |k: usize| Breakpoint { coordinate: p[k], arc_length: s[k], tension, mobilised: 0.0 };
-    Contact {
-        curve,
-        chain_range,
-        ends: Ends { place: p, material: s, tension: [tension; 2] },
-        mode: if context.curves[curve].friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
-        history: TensionProfile::new(breakpoint(0), breakpoint(1)),
-        wheel: None,
-        mode_changes: 0,
-        held: None,
-        next: Connection::Span,
-        load: None,
-        smooth: false,
-    }
+    let ends = Ends { place: p, material: s, tension: [tension; 2] };
+    let mode = if context.curves[curve].friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) };
+    let mut contact = Contact::new(curve, chain_range, ends, mode);
+    contact.history = TensionProfile::of_ends(&contact.ends);
+    contact
 }
 
 /// An end of a route that lies on a boundary.
 struct EndContact {
+    /// 0 for the start of the route, 1 for its end.
+    side: usize,
     curve: usize,
     chain_range: ChainRange,
     coordinates: [f64; 2],
     /// Number of points of the route that lie, with the end.
     count: usize,
+}
+
+impl EndContact {
+    /// Index of the last point of the route that lies, counted from the end.
+    fn inner_point(&self, way: &RoutePolyline) -> usize {
+        if self.side == 0 { self.count - 1 } else { way.points.len() - self.count }
+    }
 }
 
 /// The first points of a route (the last ones for side 1) that lie on one chain, within the
@@ -437,63 +461,12 @@ fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2],
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
     (on.len() > 1 && p[1] > p[0]).then_some(EndContact {
+        side,
         curve: curve_index,
         chain_range,
         coordinates: p,
         count: on.len(),
     })
-}
-
-/// The bodies that the string bends round, with the pulleys; posts are represented by rings of
-/// points.
-fn wraps(
-    layout: &SectionLayout,
-    part: &SectionBounds,
-    context: &SolveContext,
-    instant: &BoundaryConditions,
-    string: &TautString<'_>,
-) -> Option<Vec<RouteWrap>> {
-    let TautString { way, first, last, ring } = *string;
-    let world = &layout.problem.world;
-    let corners = shortest_path::corners(world, ring);
-    let mut out: Vec<RouteWrap> = Vec::new();
-    let mut reached = way.along[first];
-    let mut begin = (way.points[first], first);
-    for k in 0..=part.pulleys.len() {
-        let pulley: Option<&Pulley> = part.pulleys.get(k);
-        let (stop, w) = match pulley {
-            Some(q) => {
-                let at = instant.places[q.support];
-                (at, way.nearest(at, reached, Some(last.saturating_sub(1))))
-            }
-            None => (way.points[last], way.along[last]),
-        };
-        let leg = if pulley.is_some() { way.leg(w) } else { last.saturating_sub(1) };
-        let mut route = vec![begin.0];
-        for i in begin.1 + 1..=leg.min(way.points.len() - 1) {
-            route.push(way.points[i]);
-        }
-        route.push(stop);
-        let bends = shortest_path::taut_string(&route, &corners)?;
-        for (j, b) in bends.iter().enumerate() {
-            reached = way.nearest(b.corner.at, reached, Some(begin.1 + b.leg));
-            let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
-            let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
-            let (u, v) = (b.corner.at - before, after - b.corner.at);
-            push(&mut out, context, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
-        }
-        if let Some(q) = pulley {
-            let curve = q.curve + usize::from(q.facing < 0.0);
-            let chain_range = ChainRange { first: 0, last: 0 };
-            // The route may be drawn round it: these are its first and last points there.
-            let radius = context.curves[curve].place(0.0, chain_range).stretch;
-            let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
-            let round = way.beside(stop, w, near);
-            out.push(RouteWrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn: 0.0 });
-            (begin, reached) = ((stop, leg), w);
-        }
-    }
-    Some(out)
 }
 
 /// Adds a bend to the last wrap if it continues that, else as a new wrap.

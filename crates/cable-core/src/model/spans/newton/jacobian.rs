@@ -128,45 +128,64 @@ fn scale(section: &CableSection) -> f64 {
     LENGTH_UNITS / (section.to - section.from)
 }
 
+/// Adds the two rows of span k.
 fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
+    if k > 0 && section.is_joined(k, 0) {
+        joined_rows(section, context, k, system);
+    } else if let Some(force) = known_force(section, context, k) {
+        known_force_rows(section, context, k, force, system);
+    } else {
+        chord_rows(section, context, k, system);
+    }
+}
+
+/// Adds the rows between two contacts without a span: both are at one place, and the tension is
+/// stored in the place of the force.
+fn joined_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
     let (row, scale) = (6 * k, scale(section));
     let (r, band) = (&mut system.residual, &mut system.band);
-    let m = section.contacts.len();
-    if k > 0 && section.is_joined(k, 0) {
-        // Both are at one place; the tension is stored in the place of the force.
-        r[row] = (section.contacts[k - 1].ends.place[1] - section.contacts[k].ends.place[0]) * scale;
-        band.add(row, row - 2, scale);
-        band.add(row, row + 2, -scale);
-        let size = 1.0 / larger(section.forces[k].x.abs(), MIN_FORCE_LENGTH_M * context.law.load.norm());
-        r[row + 1] = section.forces[k].y * size;
-        band.add(row + 1, row + 1, size);
-        return;
-    }
-    let known = if !section.has_span(k) {
+    r[row] = (section.contacts[k - 1].ends.place[1] - section.contacts[k].ends.place[0]) * scale;
+    band.add(row, row - 2, scale);
+    band.add(row, row + 2, -scale);
+    let size = 1.0 / larger(section.forces[k].x.abs(), MIN_FORCE_LENGTH_M * context.law.load.norm());
+    r[row + 1] = section.forces[k].y * size;
+    band.add(row + 1, row + 1, size);
+}
+
+/// The force of span k if no equation of its shape determines it: of one that hangs free, or of
+/// none at a lying end.
+fn known_force(section: &CableSection, context: &SolveContext, k: usize) -> Option<Vec2> {
+    let hangs = |side: usize| matches!(section.end_conditions[side], EndCondition::Hangs(_));
+    if !section.has_span(k) {
         Some(section.forces[k])
-    } else if k == 0 && matches!(section.end_conditions[0], EndCondition::Hangs(_)) {
+    } else if k == 0 && hangs(0) {
         section.hanging(context, 0)
-    } else if k == m && matches!(section.end_conditions[1], EndCondition::Hangs(_)) {
+    } else if k == section.contacts.len() && hangs(1) {
         section.hanging(context, 1)
     } else {
         None
-    };
-    if let Some(g) = known {
-        let d = section.forces[k] - g;
-        let size = 1.0 / (g.norm() + context.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
-        (r[row], r[row + 1]) = (d.x * size, d.y * size);
-        band.add(row, row, size);
-        band.add(row + 1, row + 1, size);
-        return;
     }
+}
+
+fn known_force_rows(section: &CableSection, context: &SolveContext, k: usize, force: Vec2, system: &mut System) {
+    let (row, band) = (6 * k, &mut system.band);
+    let d = section.forces[k] - force;
+    let size = 1.0 / (force.norm() + context.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
+    (system.residual[row], system.residual[row + 1]) = (d.x * size, d.y * size);
+    band.add(row, row, size);
+    band.add(row + 1, row + 1, size);
+}
+
+/// Adds the rows that let span k reach from one of its ends to the other.
+fn chord_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
+    let (row, scale) = (6 * k, scale(section));
+    let (r, band) = (&mut system.residual, &mut system.band);
     let before = k.checked_sub(1).map(|j| &system.end_points[j].0[1]);
     let after = system.end_points.get(k).map(|s| &s.0[0]);
     let held = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
-    let ends = (
-        before.map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.at)),
-        after.map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.at)),
-    );
-    let (Some(a), Some(b)) = ends else { return };
+    let start_at = before.map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.at));
+    let end_at = after.map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.at));
+    let (Some(a), Some(b)) = (start_at, end_at) else { return };
     let (from, to) = section.material(k);
     let (start, end) = (section.force(context, k, from), section.force(context, k, to));
     let (way, compliance) = context.chain(from, to).reach(start);
@@ -227,80 +246,122 @@ fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &
     }
 }
 
+/// One end of a contact: its row of tangency and its part of the two rows of material.
+struct ContactEnd {
+    /// Index of the contact.
+    contact: usize,
+    side: usize,
+    /// Derivatives of the two rows of material by the place, the material and the tension of this
+    /// end.
+    by: [[f64; 3]; 2],
+}
+
+impl ContactEnd {
+    fn tangency_row(&self) -> usize {
+        6 * self.contact + 2 + 3 * self.side
+    }
+
+    fn material_row(&self, i: usize) -> usize {
+        6 * self.contact + 3 + i
+    }
+
+    /// The column of its place, or of its tension if that is an unknown of its own.
+    fn place_column(&self) -> usize {
+        6 * self.contact + 2 + 2 * self.side
+    }
+
+    fn material_column(&self) -> usize {
+        self.place_column() + 1
+    }
+
+    /// The first column of the force of the span beyond it.
+    fn force_column(&self) -> usize {
+        6 * (self.contact + self.side)
+    }
+
+    /// Adds the row of tangency, or that which replaces it, and its columns to the rows of
+    /// material.
+    fn add_to(&self, section: &CableSection, context: &SolveContext, system: &mut System) {
+        let (b, scale, by) = (&mut system.band, scale(section), &self.by);
+        let (p, s) = (self.place_column(), self.material_column());
+        if section.in_pocket(self.contact, self.side) {
+            // It is held in the kink without tension, and its material is the unknown.
+            b.add(self.tangency_row(), p, 1.0);
+            for i in 0..2 {
+                b.add(self.material_row(i), s, by[i][1]);
+            }
+        } else if section.is_joined(self.contact, self.side) {
+            b.add(self.tangency_row(), s, scale);
+            for i in 0..2 {
+                b.add(self.material_row(i), p, by[i][0]);
+                b.add(self.material_row(i), s, by[i][1]);
+                b.add(self.material_row(i), self.force_column(), by[i][2]);
+            }
+        } else if is_end(section, self.contact, self.side) {
+            let end = if self.side == 0 { section.from } else { section.to };
+            let material = section.contacts[self.contact].ends.material[self.side];
+            system.residual[self.tangency_row()] = (material - end) * scale;
+            b.add(self.tangency_row(), s, scale);
+            // A free end has a known tension and an unknown place; a held end has a known place and
+            // an unknown tension.
+            let of = if has_tension_unknown(section, self.contact, self.side) { 2 } else { 0 };
+            for i in 0..2 {
+                b.add(self.material_row(i), p, by[i][of]);
+                b.add(self.material_row(i), s, by[i][1]);
+            }
+        } else if let Some(force) = section.force_at_contact(context, self.contact, self.side) {
+            self.add_tangency(force, context.law.load, system);
+        }
+    }
+
+    /// Adds the row of tangency to the span beyond it, which has the force (N) there, and its
+    /// columns to the rows of material.
+    fn add_tangency(&self, force: Vec2, load: Vec2, system: &mut System) {
+        let (r, b) = (&mut system.residual, &mut system.band);
+        let place = &system.end_points[self.contact].0[self.side];
+        let (p, s, g) = (self.place_column(), self.material_column(), self.force_column());
+        let row = self.tangency_row();
+        let t = force.norm();
+        r[row] = cross(force, place.tangent) / t;
+        // A force that points backwards is not tangent, and Newton's method must not converge to
+        // it.
+        if force.dot(&place.tangent) < 0.0 {
+            r[row] += 2.0 * r[row].signum();
+        }
+        let u = force / t;
+        // This is d(F × t)/T at constant size of F.
+        let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
+        b.add(row, g, across.x);
+        b.add(row, g + 1, across.y);
+        b.add(row, s, -across.dot(&load));
+        b.add(row, p, place.turn * u.dot(&place.tangent));
+        for (i, by) in self.by.iter().enumerate() {
+            b.add(self.material_row(i), p, by[0]);
+            b.add(self.material_row(i), s, by[1] - by[2] * u.dot(&load));
+            b.add(self.material_row(i), g, by[2] * u.x);
+            b.add(self.material_row(i), g + 1, by[2] * u.y);
+        }
+    }
+}
+
+/// Adds the four rows of contact j: tangency at both ends, and two of its material.
 fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
     if section.contacts[j].is_load() {
         return load_rows(section, context, j, system);
     }
-    let (r, b, (end_points, cached_piece), scale) =
-        (&mut system.residual, &mut system.band, &system.end_points[j], scale(section));
+    let (end_points, cached_piece) = &system.end_points[j];
     let c = &section.contacts[j];
     let contact_path = ContactPath { cached_piece: Some(*cached_piece), ..context.contact_path(c) };
-    let row = 6 * j + 2;
     let (rows, held) = equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
     section.contacts[j].held = held;
-    let c = &section.contacts[j];
-    let tension =
-        larger(larger(c.ends.tension[0].abs(), c.ends.tension[1].abs()), MIN_FORCE_LENGTH_M * context.law.load.norm());
-    let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
+    let [t1, t2] = section.contacts[j].ends.tension.map(f64::abs);
+    let tension = larger(larger(t1, t2), MIN_FORCE_LENGTH_M * context.law.load.norm());
+    let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale(section) });
     for i in 0..2 {
-        r[row + 1 + i] = rows.residual[i] * size[i];
+        system.residual[6 * j + 3 + i] = rows.residual[i] * size[i];
     }
     for side in 0..2 {
-        let tangency = row + 3 * side;
-        let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
-        let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
-        if section.in_pocket(j, side) {
-            // It is held in the kink without tension, and its material is the unknown.
-            b.add(tangency, p_column, 1.0);
-            for i in 0..2 {
-                b.add(row + 1 + i, s_column, by(i, 1));
-            }
-            continue;
-        }
-        if section.is_joined(j, side) {
-            b.add(tangency, s_column, scale);
-            let g = 6 * (j + side);
-            for i in 0..2 {
-                b.add(row + 1 + i, p_column, by(i, 0));
-                b.add(row + 1 + i, s_column, by(i, 1));
-                b.add(row + 1 + i, g, by(i, 2));
-            }
-            continue;
-        }
-        if is_end(section, j, side) {
-            let s = if side == 0 { section.from } else { section.to };
-            r[tangency] = (c.ends.material[side] - s) * scale;
-            b.add(tangency, s_column, scale);
-            // A free end has a known tension and an unknown place; a held end has a known place and
-            // an unknown tension.
-            let of = if has_tension_unknown(section, j, side) { 2 } else { 0 };
-            for i in 0..2 {
-                b.add(row + 1 + i, p_column, by(i, of));
-                b.add(row + 1 + i, s_column, by(i, 1));
-            }
-            continue;
-        }
-        let Some(force) = section.force_at_contact(context, j, side) else { continue };
-        let place = &end_points[side];
-        let t = force.norm();
-        r[tangency] = cross(force, place.tangent) / t;
-        // A force that points backwards is not tangent, and Newton's method must not converge to
-        // it.
-        if force.dot(&place.tangent) < 0.0 {
-            r[tangency] += 2.0 * r[tangency].signum();
-        }
-        let (load, u, g) = (context.law.load, force / t, 6 * (j + side));
-        // This is d(F × t)/T at constant size of F.
-        let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
-        b.add(tangency, g, across.x);
-        b.add(tangency, g + 1, across.y);
-        b.add(tangency, s_column, -across.dot(&load));
-        b.add(tangency, p_column, place.turn * u.dot(&place.tangent));
-        for i in 0..2 {
-            b.add(row + 1 + i, p_column, by(i, 0));
-            b.add(row + 1 + i, s_column, by(i, 1) - by(i, 2) * u.dot(&load));
-            b.add(row + 1 + i, g, by(i, 2) * u.x);
-            b.add(row + 1 + i, g + 1, by(i, 2) * u.y);
-        }
+        let by = [0, 1].map(|i| [0, 1, 2].map(|of| rows.by[i][3 * side + of] * size[i]));
+        ContactEnd { contact: j, side, by }.add_to(section, context, system);
     }
 }

@@ -35,6 +35,7 @@ use crate::model::spans::newton::jacobian::{System, assemble, gather, has_tensio
 use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::section::{BoundaryConditions, CableSection, SolveContext};
+use crate::model::spans::settings::NewtonSettings;
 
 /// Residual of round-off for EA/T = 1; the residual grows in proportion to EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
@@ -206,6 +207,50 @@ fn borders(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64],
     }
 }
 
+/// Progress of an iteration.
+struct Progress {
+    iterations: usize,
+    /// The residual that counts as the last progress.
+    best: f64,
+    /// Number of iterations since then.
+    stalled: usize,
+}
+
+impl Progress {
+    fn new() -> Self {
+        Self { iterations: 0, best: f64::INFINITY, stalled: 0 }
+    }
+
+    /// Takes in the residual of an iterate.
+    fn record(&mut self, residual: f64) {
+        if residual < 0.5 * self.best {
+            (self.best, self.stalled) = (residual, 0);
+        } else {
+            self.stalled += 1;
+        }
+    }
+
+    fn is_over(&self, tuned: &NewtonSettings) -> bool {
+        self.iterations == tuned.max_iterations || self.stalled > tuned.max_stalled
+    }
+
+    /// Forgets the residuals of other equations.
+    fn restart(&mut self) {
+        (self.best, self.stalled) = (f64::INFINITY, 0);
+    }
+}
+
+/// Lets contacts slide that friction drives in one direction, and forgets how often each has
+/// changed its mode.
+fn start_modes(section: &mut CableSection, context: &SolveContext) {
+    for c in &mut section.contacts {
+        c.mode_changes = 0;
+        if context.mobilised != 0.0 && c.kink().is_none() {
+            c.mode = Mode::Slip(context.mobilised * context.friction(c));
+        }
+    }
+}
+
 /// Solves a section from its present state. On an error it holds the last iterate.
 pub(super) fn solve(
     section: &mut CableSection,
@@ -214,27 +259,18 @@ pub(super) fn solve(
 ) -> Result<Converged, NotConverged> {
     let tuned = &context.settings.newton;
     section.update_end_tensions(context);
-    for c in &mut section.contacts {
-        c.mode_changes = 0;
-        if context.mobilised != 0.0 && c.kink().is_none() {
-            c.mode = Mode::Slip(context.mobilised * context.friction(c));
-        }
-    }
-    let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, f64::INFINITY);
+    start_modes(section, context);
+    let (mut progress, mut polished) = (Progress::new(), f64::INFINITY);
     assemble(section, context, &mut workspace.system);
     loop {
         let (mut worst, mut at) = norm(&workspace.system.residual);
         let done = worst <= tolerance(section, context);
-        if worst <= tuned.mode_residual || stalled >= tuned.mode_stalled_iterations {
-            let (changed, content) = change_modes(
-                section,
-                context,
-                if done { 4 * tuned.max_mode_changes } else { tuned.max_mode_changes },
-                &mut workspace.system,
-            );
+        if worst <= tuned.mode_residual || progress.stalled >= tuned.mode_stalled_iterations {
+            let most = if done { 4 * tuned.max_mode_changes } else { tuned.max_mode_changes };
+            let (changed, content) = change_modes(section, context, most, &mut workspace.system);
             if changed {
                 (worst, at) = norm(&workspace.system.residual);
-                (best, stalled) = (f64::INFINITY, 0);
+                progress.restart();
                 // Within round-off at the edge of the friction cone another mode changes nothing:
                 // the section is solved.
                 if worst <= tolerance(section, context) {
@@ -244,26 +280,23 @@ pub(super) fn solve(
                 // Polish as long as it helps: where a tension vanishes, Newton's method converges
                 // only linearly.
                 if content && worst < 0.5 * polished && is_rough(section, context, worst) {
-                    (polished, iterations) = (worst, iterations + 1);
+                    polished = worst;
+                    progress.iterations += 1;
                     if step(section, context, workspace) {
                         continue;
                     }
                 }
                 return if content || modes_agree(section, context, &workspace.system) {
-                    Ok(Converged { iterations, residual: worst })
+                    Ok(Converged { iterations: progress.iterations, residual: worst })
                 } else {
-                    Err(NotConverged { iterations, residual: worst, at: at / 6 })
+                    Err(NotConverged { iterations: progress.iterations, residual: worst, at: at / 6 })
                 };
             }
         }
-        let stall = move |residual: f64| NotConverged { iterations, residual, at: at / 6 };
-        if worst < 0.5 * best {
-            (best, stalled) = (worst, 0);
-        } else {
-            stalled += 1;
-        }
-        let over = !worst.is_finite() || iterations == tuned.max_iterations || stalled > tuned.max_stalled;
-        iterations += usize::from(!over);
+        let last = NotConverged { iterations: progress.iterations, residual: worst, at: at / 6 };
+        progress.record(worst);
+        let over = !worst.is_finite() || progress.is_over(tuned);
+        progress.iterations += usize::from(!over);
         if over || !step(section, context, workspace) {
             if !over && change_modes(section, context, tuned.max_mode_changes, &mut workspace.system).0 {
                 continue;
@@ -272,9 +305,9 @@ pub(super) fn solve(
             return if worst <= tuned.stalled_residual_factor * tolerance(section, context)
                 && modes_agree(section, context, &workspace.system)
             {
-                Ok(Converged { iterations, residual: worst })
+                Ok(Converged { iterations: progress.iterations, residual: worst })
             } else {
-                Err(stall(worst))
+                Err(last)
             };
         }
     }

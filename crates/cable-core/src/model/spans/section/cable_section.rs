@@ -143,6 +143,23 @@ impl Connection {
 }
 
 impl Contact {
+    /// A contact with an obstacle, without a friction memory, and with a span beyond it.
+    pub fn new(curve: usize, chain_range: ChainRange, ends: Ends, mode: Mode) -> Self {
+        Self {
+            curve,
+            chain_range,
+            ends,
+            mode,
+            held: None,
+            history: TensionProfile::default(),
+            wheel: None,
+            mode_changes: 0,
+            next: Connection::Span,
+            load: None,
+            smooth: false,
+        }
+    }
+
     /// True if a point load rests here.
     pub fn is_load(&self) -> bool {
         self.load.is_some()

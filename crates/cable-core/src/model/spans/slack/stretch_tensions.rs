@@ -65,73 +65,19 @@ impl SlackSolver<'_> {
         begins: f64,
     ) -> Option<StretchTensions> {
         let n = stretches.len();
-        let mut out = StretchTensions {
+        let tensions = StretchTensions {
             stretches: stretches.to_vec(),
             enters: vec![0.0; n],
             spans: vec![None; n],
             leaves: begins,
         };
+        let mut sweep = TensionSweep { solver: self, whole_stretches: stretches, walls, side, tensions };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
-            let (s, enters) = (out.stretches[k], out.leaves);
-            out.enters[k] = enters;
-            out.leaves = self.least(&s, side, enters, s.coordinates[1 - side]);
-            if self.sought == LooseShapes::NoTension && out.leaves > self.most {
-                return None;
-            }
-            let first = if side == 0 { k } else { k.wrapping_sub(1) };
-            let (Some(a), Some(b)) =
-                (out.stretches.get(first).copied(), out.stretches.get(first.wrapping_add(1)).copied())
-            else {
-                continue;
-            };
-            let ([from, to], way) = if side == 0 { ([&a, &b], 1.0) } else { ([&b, &a], -1.0) };
-            let mut left = k;
-            let over = match walls.get(first).copied().flatten() {
-                Some(height) if out.leaves > self.most && height * way > 0.0 => loop {
-                    let from = LyingStretch {
-                        coordinates: bounds(
-                            side,
-                            out.stretches[left].coordinates[side],
-                            stretches[left].coordinates[1 - side],
-                        ),
-                        ..stretches[left]
-                    };
-                    let enters = out.enters[left];
-                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
-                        break over;
-                    }
-                    // The span has to begin on an earlier stretch.
-                    left = if side == 0 { left.checked_sub(1)? } else { left + 1 };
-                    let between = if side == 0 { left } else { left - 1 };
-                    if left >= n || walls[between].is_some() {
-                        return None;
-                    }
-                    out.spans[between] = None;
-                },
-                Some(height) => {
-                    // It hangs plumb from the round; the tension at the foot is that at the round
-                    // less its weight.
-                    out.leaves = larger(out.leaves + self.context.law.load.norm() * height * way, 0.0);
-                    if out.leaves > self.most {
-                        return None;
-                    }
-                    continue;
-                }
-                None if out.leaves > self.most && self.bends_in(&a, &b) => {
-                    self.over([from, to], way, &|p| self.least(&s, side, enters, p))?
-                }
-                None => continue,
-            };
-            let (before, after) = if side == 0 { (left, first + 1) } else { (first, left) };
-            let [p, ends] = [over.coordinates, over.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
-            (out.stretches[before].coordinates[1], out.stretches[after].coordinates[0]) = (p[0], p[1]);
-            let place = out.stretches[before].place(self.context, p[0]);
-            let form = SlackForm::Spans { from: place.at, force: place.tangent * ends[0] };
-            out.spans[before] = Some((SlackPart { arc_lengths: [0.0, over.material], tension: ends, form }, after));
-            out.leaves = over.tension[1];
+            sweep.slide_along(k)?;
+            sweep.cross_gap(k)?;
         }
-        Some(out)
+        Some(sweep.tensions)
     }
 
     /// The least tension (N) that friction allows at p of a stretch that is entered on a side with
@@ -243,6 +189,102 @@ impl SlackSolver<'_> {
             tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)),
             material,
         }))
+    }
+}
+
+/// The computation of tensions along stretches from one end.
+struct TensionSweep<'a> {
+    solver: &'a SlackSolver<'a>,
+    /// Stretches before spans over kinks shorten them.
+    whole_stretches: &'a [LyingStretch],
+    walls: &'a [Option<f64>],
+    /// The end from which it goes: 0 for the start.
+    side: usize,
+    tensions: StretchTensions,
+}
+
+impl TensionSweep<'_> {
+    /// Index of the gap beyond stretch k, which is that of the stretch before it along the cable.
+    fn gap_beyond(&self, k: usize) -> usize {
+        if self.side == 0 { k } else { k.wrapping_sub(1) }
+    }
+
+    /// Computes the tension where stretch k is left. None if it is in tension, and a shape without
+    /// is sought.
+    fn slide_along(&mut self, k: usize) -> Option<()> {
+        let (s, enters) = (self.tensions.stretches[k], self.tensions.leaves);
+        self.tensions.enters[k] = enters;
+        self.tensions.leaves = self.solver.least(&s, self.side, enters, s.coordinates[1 - self.side]);
+        let in_tension = self.tensions.leaves > self.solver.most;
+        (self.solver.sought != LooseShapes::NoTension || !in_tension).then_some(())
+    }
+
+    /// Goes from stretch k to the next, over a kink or along a wall. None if no cable can.
+    fn cross_gap(&mut self, k: usize) -> Option<()> {
+        let (solver, side, gap) = (self.solver, self.side, self.gap_beyond(k));
+        let stretch = |i: usize| self.tensions.stretches.get(i).copied();
+        let (Some(a), Some(b)) = (stretch(gap), stretch(gap.wrapping_add(1))) else { return Some(()) };
+        let ([from, to], way) = if side == 0 { ([&a, &b], 1.0) } else { ([&b, &a], -1.0) };
+        let in_tension = self.tensions.leaves > solver.most;
+        match self.walls.get(gap).copied().flatten() {
+            Some(height) if in_tension && height * way > 0.0 => {
+                let (left, span) = self.climb_wall(k, to, way)?;
+                self.add_span(left, gap, &span);
+            }
+            Some(height) => {
+                // It hangs plumb from the round; the tension at the foot is that at the round less
+                // its weight.
+                self.tensions.leaves =
+                    larger(self.tensions.leaves + solver.context.law.load.norm() * height * way, 0.0);
+                if self.tensions.leaves > solver.most {
+                    return None;
+                }
+            }
+            None if in_tension && solver.bends_in(&a, &b) => {
+                let enters = self.tensions.enters[k];
+                let span = solver.over([from, to], way, &|p| solver.least(from, side, enters, p))?;
+                self.add_span(k, gap, &span);
+            }
+            None => {}
+        }
+        Some(())
+    }
+
+    /// The span from stretch k up the wall beyond it, with the index of the stretch from which it
+    /// leaves; spans over kinks that it passes are dropped.
+    fn climb_wall(&mut self, k: usize, to: &LyingStretch, way: f64) -> Option<(usize, KinkSpan)> {
+        let (solver, side) = (self.solver, self.side);
+        let mut left = k;
+        loop {
+            let enters_at = self.tensions.stretches[left].coordinates[side];
+            let coordinates = bounds(side, enters_at, self.whole_stretches[left].coordinates[1 - side]);
+            let from = LyingStretch { coordinates, ..self.whole_stretches[left] };
+            let enters = self.tensions.enters[left];
+            if let Some(span) = solver.climb([&from, to], way, &|p| solver.least(&from, side, enters, p))? {
+                return Some((left, span));
+            }
+            // The span has to begin on an earlier stretch.
+            left = if side == 0 { left.checked_sub(1)? } else { left + 1 };
+            let between = self.gap_beyond(left);
+            if left >= self.whole_stretches.len() || self.walls[between].is_some() {
+                return None;
+            }
+            self.tensions.spans[between] = None;
+        }
+    }
+
+    /// Adds a span from stretch `left` over a gap; the stretches end where it begins and ends.
+    fn add_span(&mut self, left: usize, gap: usize, span: &KinkSpan) {
+        let side = self.side;
+        let (before, after) = if side == 0 { (left, gap + 1) } else { (gap, left) };
+        let [p, ends] = [span.coordinates, span.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
+        let stretches = &mut self.tensions.stretches;
+        (stretches[before].coordinates[1], stretches[after].coordinates[0]) = (p[0], p[1]);
+        let place = stretches[before].place(self.solver.context, p[0]);
+        let form = SlackForm::Spans { from: place.at, force: place.tangent * ends[0] };
+        let part = SlackPart { arc_lengths: [0.0, span.material], tension: ends, form };
+        self.tensions.spans[before] = Some((part, after));
+        self.tensions.leaves = span.tension[1];
     }
 }
 
