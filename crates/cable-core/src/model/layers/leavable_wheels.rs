@@ -336,13 +336,15 @@ impl Layer for LeavableWheels {
     }
 
     /// A wheel that stands acts on the cable as a post does: where no answer over wheels is sound,
-    /// one over posts is asked for.
+    /// one over posts is asked for. The elements of `mass-spring` run round wheels, but straight
+    /// through posts that are smaller than they are long.
     fn fall_back(&mut self, why: &SolveError) -> bool {
         if self.inner.fall_back(why) {
             return true;
         }
         let all = self.wheels.standing.clone();
-        if self.inner.time_s() > 0.0 || self.replaced() == all {
+        let cuts_posts = self.inner.model() == Model::MassSpring;
+        if cuts_posts || self.inner.time_s() > 0.0 || self.replaced() == all {
             return false;
         }
         let Some(posts) = self.posts(&all) else { return false };
