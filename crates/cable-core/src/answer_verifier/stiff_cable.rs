@@ -12,9 +12,9 @@ use crate::verification_report::{Law, Verification};
 /// Checks a stiff cable from node to node: its path is an arc of its material, and with M the
 /// bending moment, M' + t × F = 0.
 ///
-/// Where a clamp between the ends turns the cable, M jumps by the clamp's own moment. An answer has
-/// one curvature at that node, that of one side; what the bar on the other side lacks is the jump,
-/// which nothing limits.
+/// M jumps at a clamp between the ends, by the clamp's own moment. An answer has one curvature at
+/// that node, that of one side; what the bar on the other side lacks is the jump, which nothing
+/// limits.
 pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) {
     [Law::Length, Law::Moment].into_iter().for_each(|law| found.ask(law));
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;

@@ -1,5 +1,6 @@
 //! These tests advance single cables, whole and in pieces.
 
+use crate::error::SolveError;
 use crate::math::{Point, Vec2};
 use crate::model::{Inertia, Model};
 use crate::scene::{Motion, Scene, Support, SupportKind, catalog};
@@ -161,6 +162,21 @@ fn a_loaded_cable_breaks_at_its_top_and_falls_freely() {
         let again = sim.solution().cables[0].supports[0].reaction_y_n;
         assert!((again + weight).abs() < 1e-3 * weight, "{model}: {again}");
     }
+}
+
+/// The error said that nothing holds the cable, and not that it had broken.
+#[test]
+fn issue_016_a_break_after_which_nothing_holds_a_piece_is_told_without_inertia() {
+    let mut scene = span(9.81, [0.0, 0.0]);
+    let c = &mut scene.cables[0];
+    c.supports[1] = Support::new("weight", SupportKind::Load);
+    c.supports[1].times_s = vec![0.0, 0.75];
+    c.supports[1].forces_n = vec![[0.0, 0.0], [0.0, -12e3]];
+    let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+    sim.settle().unwrap();
+    let why = (0..75).find_map(|_| sim.step_quasi_static(0.01).err()).expect("nothing holds the lower piece");
+    let SolveError::AfterBreak { arc_length_m, why, .. } = why else { panic!("{why}") };
+    assert!(arc_length_m == 0.0 && matches!(*why, SolveError::NoRestingPlace { .. }), "{arc_length_m} m: {why}");
 }
 
 /// A pulse of a force at the lower end of a hanging cable: up and down again within 3 ms, or held

@@ -23,6 +23,7 @@ use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
+use crate::numerics::bisect;
 
 /// Arc of a bar on its rounds below which it counts as unwound, rad: its tangent points have passed
 /// each other. Nearer to 0: bars that graze a round are not divided; farther: a bar that runs
@@ -201,14 +202,13 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
 /// Places the material node `k` on the line from a centre `from` along `way` (m), where its two
 /// bars are `whole` (m) long together, if they are longer at the end of the line.
 fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, from: Vec2, way: Vec2) {
-    let (mut near, mut far) = (0.0, 1.0);
-    while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
-        let middle = 0.5 * (near + far);
-        cable.motion.positions[k] = from + way * middle;
+    let fits = |part: f64| {
+        cable.motion.positions[k] = from + way * part;
         let x = &cable.motion.positions;
-        let length: f64 = [k - 1, k].map(|e| cable.mesh.path(e, x).length).iter().sum();
-        *(if length > whole { &mut far } else { &mut near }) = middle;
-    }
+        [k - 1, k].map(|e| cable.mesh.path(e, x).length).iter().sum::<f64>() <= whole
+    };
+    let [part, _] = bisect([0.0, 1.0], f64::MANTISSA_DIGITS as usize, fits);
+    cable.motion.positions[k] = from + way * part;
 }
 
 /// Puts sliding nodes where corners and circles press; returns what they slide over.

@@ -6,8 +6,9 @@
 //! of rest length is spread over the whole stretch between its fixed marks, so that tension does
 //! not jump there.
 
-use crate::math::{Vec2, smaller};
+use crate::math::Vec2;
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
+use crate::numerics::bisect;
 
 /// Material that stays beside a node that does not run through a pulley, m.
 pub(in crate::model::mass_spring) fn least_straight_length(mesh: &Mesh) -> f64 {
@@ -44,10 +45,6 @@ pub(in crate::model::mass_spring) fn remesh(mesh: &mut Mesh, time_s: f64) -> boo
     changed
 }
 
-/// Half of the greatest turn for which the tangents of a wheel meet at a usable point, rad.
-/// Smaller: bends of wheels that let go are cut more; larger: nodes far from the wheel are tried.
-const MAX_HALF_TURN_RAD: f64 = 1.4;
-
 /// Makes pulleys that hold no more in a sub-step from `begins_s` (s) nodes of the mesh: the
 /// material goes on as it slid.
 pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, begins_s: f64) {
@@ -66,10 +63,7 @@ pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, begins_s: 
         mesh.velocity[n] -= along * p.sliding_speed;
         mesh.wheels.pulleys.remove(k);
         mesh.wheels.index();
-        let half = smaller(0.5 * p.turn.abs(), MAX_HALF_TURN_RAD);
-        let chord = (b.end + a.start) * 0.5;
-        let tangents_meet = mesh.position[n] + outward * (p.radius / half.cos());
-        place_at_length(mesh, n, b.length + a.length, [chord, tangents_meet]);
+        place_at_length(mesh, n, b.length + a.length, [(b.end + a.start) * 0.5, outward]);
         // Both elements keep their strain; what the shorter path leaves over is shared.
         let needs = [0, 1].map(|side| mesh.element(bars[side]).length / stretch[side]);
         let whole = mesh.arc_length[n + 1] - mesh.arc_length[n - 1];
@@ -78,16 +72,15 @@ pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, begins_s: 
     }
 }
 
-/// Places node `n` on the way between two points (m) where its elements are `length` (m) long
-/// together, or at the second if they are shorter even there.
-fn place_at_length(mesh: &mut Mesh, n: usize, length: f64, [from, to]: [Vec2; 2]) {
-    let (mut near, mut far) = (0.0, 1.0);
-    while near < 0.5 * (near + far) && 0.5 * (near + far) < far {
-        let middle = 0.5 * (near + far);
-        mesh.position[n] = from + (to - from) * middle;
-        let found = mesh.element(n - 1).length + mesh.element(n).length;
-        *(if found > length { &mut far } else { &mut near }) = middle;
-    }
+/// Places node `n` at the distance from a point (m) along a direction at which its elements are
+/// `length` (m) long together.
+fn place_at_length(mesh: &mut Mesh, n: usize, length: f64, [from, along]: [Vec2; 2]) {
+    let fits = |distance: f64| {
+        mesh.position[n] = from + along * distance;
+        mesh.element(n - 1).length + mesh.element(n).length <= length
+    };
+    let [distance, _] = bisect([0.0, length], f64::MANTISSA_DIGITS as usize, fits);
+    mesh.position[n] = from + along * distance;
 }
 
 /// True if a node belongs to the mesh alone, not to a support, load or pulley.
