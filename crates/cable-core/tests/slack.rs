@@ -278,6 +278,27 @@ fn issue_016_a_loose_cable_pulls_the_harder_the_farther_it_is_drawn() {
     assert!(compared > 50, "{compared}");
 }
 
+/// A coarse mesh was laid elsewhere, with up to the whole of its friction, where the loose cable of
+/// `spans` pulls with what hangs: half of a bar's weight was taken for another equilibrium.
+#[test]
+fn issue_016_coarse_meshes_of_loose_cable_rest_as_fine_ones_do() {
+    let mut r = Chance(61);
+    let mut coarse = 0;
+    for case in 0..24 {
+        let place = [r.within(0.5, 4.0), 0.0141, r.within(4.0, 12.0)];
+        let mut s = riser(place, (place[0] + place[2]) * (1.0 + r.scale(0.002, 0.3)), r.within(0.2, 0.8));
+        s.cables[0].segments = Some(r.within(8.0, 40.0) as usize);
+        let bar = s.cables[0].length_m / s.cables[0].segments.unwrap() as f64;
+        let hangs = place[0] - 0.5 * s.cables[0].diameter_m;
+        coarse += usize::from(bar > 0.2 * hangs);
+        let answer = Simulation::new(s, Model::Fem).unwrap().settle().unwrap();
+        let a = &answer.cables[0].supports[0];
+        let off = a.reaction_x_n.hypot(a.reaction_y_n + GRAVITY * hangs);
+        assert!(off <= GRAVITY * (0.5 * bar + 0.1 * hangs), "{case}: {off} N of {} N, bars {bar} m", GRAVITY * hangs);
+    }
+    assert!(coarse >= 8, "{coarse}");
+}
+
 /// A beam overhead, whether the straight way is blocked by the hill or not, is not in the way: the
 /// cable lay over it, drawn out by 94 % (25 of 117 random tanks with such a beam).
 #[test]
