@@ -220,7 +220,8 @@ impl Outputs {
         self.warning_log.update(simulation.warnings(), time_s);
         self.peaks_since_output.resize(simulation.answers().len(), None);
         for (answer, since) in simulation.answers().iter().zip(&mut self.peaks_since_output) {
-            *since = since.take().into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
+            let peaks = answer.peaks_at(time_s);
+            *since = Some(since.map_or(peaks, |before: TensionPeaks| before.with(peaks)));
         }
     }
 }

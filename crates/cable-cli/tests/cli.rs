@@ -267,6 +267,31 @@ fn run_says_that_a_greatest_tension_depends_on_small_differences() {
     assert!(unknown["inertia"]["matters"].is_null() && unknown["inertia"]["mach_number"].is_f64(), "{unknown}");
 }
 
+/// An end goes out and back between two rows of a run without inertia: the table held the tension of
+/// its instants alone.
+#[test]
+fn issue_016_rows_hold_the_greatest_tension_since_the_row_before() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, out) = (folder.path().join("scene.toml"), folder.path().join("out"));
+    let mut scene = catalog::hanging_span();
+    let end = scene.cables[0].supports.last_mut().unwrap();
+    let [x, y] = end.at_m.unwrap();
+    let points_m = vec![[x, y], [x + 0.1, y], [x, y]];
+    end.motion = Some(cable_core::scene::Motion { times_s: vec![0.0, 0.5, 1.0], points_m });
+    std::fs::write(&file, scene.to_toml()).unwrap();
+    let arguments = ["run", file.to_str().unwrap(), "--quasi-static", "--for", "1s", "--every", "1s", "--out"];
+    let o = cable(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(o.status.code(), Some(0), "{}", text(&o.stderr));
+    let history = std::fs::read_to_string(out.join("history.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = history.lines().map(|line| line.split(',').collect()).collect();
+    let figure = |row: usize, name: &str| -> f64 {
+        rows[row][rows[0].iter().position(|n| *n == name).unwrap()].parse().unwrap()
+    };
+    assert_eq!(rows.len(), 3, "{history}");
+    assert!(figure(2, "peak_tension_n") > 1.02 * figure(2, "max_tension_n"), "{history}");
+    assert!(text(&o.stdout).contains(&format!("{:.6} N", figure(2, "peak_tension_n"))), "{}", text(&o.stdout));
+}
+
 #[test]
 fn a_reader_that_leaves_is_no_error() {
     let folder = tempfile::tempdir().unwrap();

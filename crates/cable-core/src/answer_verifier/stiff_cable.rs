@@ -24,9 +24,13 @@ pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) 
     // The unbalanced moment of the bar before a clamp, once that bar is passed; None in it where
     // the bar cannot show one.
     let mut before_clamp: Option<Option<(f64, usize)>> = None;
+    let resolves: Vec<bool> = checked.bars().map(|bar| resolves_bend(checked, &bar)).collect();
     for bar in checked.bars() {
         report_length(checked, found, &bar, stiff_length(checked, &bar));
-        let mut unbalanced = unbalanced_moment(checked, &bar, stiffness).map(|moment| (moment, bar.index));
+        // The curvature of a node comes from the bars on both sides of it.
+        let beside = bar.index.saturating_sub(1)..(bar.index + 2).min(resolves.len());
+        let shows = resolves[beside].iter().all(|resolves| *resolves);
+        let mut unbalanced = shows.then(|| (unbalanced_moment(checked, &bar, stiffness), bar.index));
         if let Some(before) = before_clamp.take() {
             let smaller = |(before, after): ((f64, _), (f64, _))| if after.0 <= before.0 { after } else { before };
             unbalanced = before.zip(unbalanced).map(smaller);
@@ -41,15 +45,16 @@ pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) 
     }
 }
 
-/// The moment (N·m) that is left on a bar of a cable of this bending stiffness (N·m²). None for a
-/// bar that is longer than the bend beside a clamp or a contact, √(EI/T), and cannot show it.
-fn unbalanced_moment(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, stiffness: f64) -> Option<f64> {
-    if bar.way.norm_squared() * bar.forces[0] > checked.answer.assumptions.bending_stiffness_n_m2 {
-        return None;
-    }
+/// True for a bar that is no longer than the bend beside a clamp or a contact, √(EI/T).
+fn resolves_bend(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> bool {
+    bar.way.norm_squared() * bar.forces[0] <= checked.answer.assumptions.bending_stiffness_n_m2
+}
+
+/// The moment (N·m) that is left on a bar of a cable of this bending stiffness (N·m²).
+fn unbalanced_moment(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, stiffness: f64) -> f64 {
     let change = stiffness * (bar.to.curvature_per_m - bar.from.curvature_per_m);
     let off = checked.forces_at_end(bar).map(|end| cross(bar.way, (bar.from.force() + end) * 0.5) + change);
-    Some(smaller(off[0].abs(), off[1].abs()))
+    smaller(off[0].abs(), off[1].abs())
 }
 
 /// The nodes between the ends that a clamp turns.

@@ -1,6 +1,7 @@
 //! A snag is an obstacle that holds the cable fast while the pull on it grows.
 
 use super::Observed;
+use crate::math::larger;
 use crate::solution::{ContactReport, ContactState, Warning, WarningCause};
 
 /// Growth of the ratio of tensions across a contact that is a snag. Smaller: every contact that
@@ -45,7 +46,8 @@ impl SnagDetector {
         let near = MATCH_DIAMETERS * observed.problem.cable.diameter_m;
         let mut next = Vec::with_capacity(self.sticking.len());
         for c in observed.answer.contacts.iter().filter(|c| c.state == ContactState::Stick) {
-            let (ratio, pull) = tension_ratio(c);
+            let weight = observed.problem.body_force(time_s).norm() * (c.ends_m - c.begins_m);
+            let (ratio, pull) = tension_ratio(c, weight);
             let same = |h: &&StickingContact| h.obstacle == c.obstacle && (h.arc_length - c.arc_length_m).abs() <= near;
             let mut held = self.sticking.iter().find(same).cloned().unwrap_or_else(|| StickingContact {
                 obstacle: c.obstacle.clone(),
@@ -70,11 +72,13 @@ impl SnagDetector {
     }
 }
 
-/// Ratio of the tensions beside a contact, and the larger, N.
-fn tension_ratio(c: &ContactReport) -> (f64, f64) {
+/// Ratio of the tensions beside a contact, and the larger, N. The weight (N) of what lies there rubs
+/// however hard the cable is pulled: up to that much more on one side is no sign of a snag.
+fn tension_ratio(c: &ContactReport, weight: f64) -> (f64, f64) {
     let (a, b) = (c.tension_before_n, c.tension_after_n);
     let (low, high) = if a < b { (a, b) } else { (b, a) };
-    (if low * MAX_RATIO > high { high / low } else { MAX_RATIO }, high)
+    let caught = larger(high - weight, low);
+    (if low * MAX_RATIO > caught { caught / low } else { MAX_RATIO }, high)
 }
 
 fn warning(observed: &Observed<'_>, c: &ContactReport, ratio: f64, first: f64) -> Warning {

@@ -5,8 +5,10 @@ use super::monitor::HOLD_TIME_S;
 use super::{Observed, WarningMonitor};
 use crate::contact::self_crossings::{crossings, meet};
 use crate::math::{Point, Vec2};
+use crate::model::Model;
 use crate::problem::{Problem, problems};
-use crate::scene::{Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use crate::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
+use crate::simulation::Simulation;
 use crate::solution::{
     CableSolution, ContactReport, ContactState, Energy, Node, SupportReaction, TensionPeaks, Warning, WarningKind,
 };
@@ -457,6 +459,27 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
     // 28 cm from one look to the next is the same contact; farther, another one each time.
     assert!(run_at(ContactState::Stick, |t| 4.0 + t, |_| 80.0, |t| 100.0 + 150.0 * t).is_some());
     assert!(run_at(ContactState::Stick, |t| 4.0 + 9.0 * t, |_| 80.0, |t| 100.0 + 150.0 * t).is_none());
+}
+
+/// A cable that lies on level ground is drawn: its friction is mobilised from there on, and nothing
+/// catches it.
+#[test]
+fn issue_016_level_ground_catches_nothing() {
+    let mut s = scene();
+    s.obstacles.clear();
+    let points_m = vec![[-9.0, 0.0], [40.0, 0.0]];
+    s.obstacles.push(Obstacle { name: "floor".into(), shape: Shape::Terrain { points_m }, friction: Some(0.5) });
+    let c = &mut s.cables[0];
+    c.length_m = 12.0;
+    c.supports = vec![Support::fixed("a", [0.0, 3.0]), Support::fixed("b", [10.0, 0.3])];
+    c.supports[1].motion = Some(Motion { times_s: vec![0.0, 5.0], points_m: vec![[10.0, 0.3], [11.0, 0.3]] });
+    let mut sim = Simulation::new(s, Model::Auto).unwrap();
+    sim.settle().unwrap();
+    for _ in 0..50 {
+        sim.step_quasi_static(0.1).unwrap();
+        let caught = sim.solution().warnings.iter().any(|w| w.kind == WarningKind::Snag);
+        assert!(!caught, "{} s", sim.time_s());
+    }
 }
 
 proptest! {

@@ -208,6 +208,12 @@ impl Mechanics for FemModel {
             self.bending_error = None;
             if let Some(answer) = self.elastica_answer.take() {
                 self.stepper.warm_start(&answer, self.stepper.cable.time(), &self.dragged)?;
+                if inertia == Inertia::QuasiStatic {
+                    self.begin_from_elastica(&answer);
+                }
+            }
+            if inertia == Inertia::QuasiStatic {
+                self.refine_for_bending();
             }
             let mut report = self.stepper.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
             self.meshes.follow(&self.problem, self.settings, &self.stepper, dt_s, inertia, &self.dragged);

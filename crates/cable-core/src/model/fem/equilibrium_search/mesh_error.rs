@@ -110,6 +110,62 @@ impl TwoMeshes {
         }
     }
 
+    /// Begins to follow a cable whose mesh came to rest at an answer without a mesh. Refines the mesh
+    /// as far as the tolerance needs, if that is allowed.
+    pub fn begin(
+        &mut self,
+        problem: &Arc<Problem>,
+        settings: Settings,
+        refinement: Refinement,
+        fine: &mut Stepper,
+        answer: &CableSolution,
+        dragged: &[Option<Vec2>],
+    ) {
+        *self = Self::default();
+        if problem.outline.is_some() || problem.cable.self_contact {
+            return;
+        }
+        while let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
+            (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
+            let bars = 2 * fine.cable.meshing.even_bars;
+            if refinement == Refinement::Forbidden
+                || !exceeds(&errors, &fine.solution(), settings)
+                || bars > fine.cable.mesh.tuning.start.max_refined_bars
+            {
+                return;
+            }
+            let Some(mut finer) = at_rest_with_bars(problem, settings, fine, bars, answer, dragged) else { return };
+            finer.hand_drive.pulled.clone_from(&fine.hand_drive.pulled);
+            *fine = finer;
+        }
+    }
+
+    /// The relative difference of an answer from that of the coarser mesh beside it.
+    pub fn halving_error(&self, answer: &CableSolution) -> Option<f64> {
+        ErrorEstimates::between(&self.coarse.as_ref()?.solution(), answer).relative(answer)
+    }
+
+    /// Halves the bars of a cable at rest; the mesh that it had is the coarser one beside it.
+    /// Returns whether that was possible.
+    pub fn halve_bars(
+        &mut self,
+        problem: &Arc<Problem>,
+        settings: Settings,
+        fine: &mut Stepper,
+        dragged: &[Option<Vec2>],
+    ) -> bool {
+        let bars = 2 * fine.cable.meshing.even_bars;
+        if bars > fine.cable.mesh.tuning.start.max_refined_bars {
+            return false;
+        }
+        let Some(mut finer) = at_rest_with_bars(problem, settings, fine, bars, &fine.solution(), dragged) else {
+            return false;
+        };
+        finer.hand_drive.pulled.clone_from(&fine.hand_drive.pulled);
+        self.coarse = Some(Box::new(std::mem::replace(fine, finer)));
+        true
+    }
+
     /// Follows a quasi-static step of the cable; steps with inertia have no estimate.
     pub fn follow(
         &mut self,

@@ -140,10 +140,15 @@ impl FemModel {
     /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
     /// refines it if the scene leaves its number of bars open.
     pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
-        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
+        let refinement = self.refinement();
         let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
         meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
+    }
+
+    /// Tells whether the mesh may be refined: whether the scene leaves the number of bars open.
+    pub(in crate::model::fem) fn refinement(&self) -> Refinement {
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        if given { Refinement::Forbidden } else { Refinement::Allowed }
     }
 
     /// A warning of a mesh that is too coarse for the tolerance.

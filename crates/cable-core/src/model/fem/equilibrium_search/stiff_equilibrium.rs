@@ -1,7 +1,11 @@
 //! This module finds the equilibrium of a stiff cable in contact as an elastica, from a flexible
 //! cable or from the mesh. If there is none, it warns of the bending that the mesh neglects.
 
+use crate::math::larger;
 use crate::model::fem::elastica::{self, Elastica};
+use crate::model::fem::equilibrium_search::TwoMeshes;
+use crate::model::fem::equilibrium_search::mesh_error::Refinement;
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::{FemModel, PresentPart, results};
 use crate::model::initial_equilibrium::{initial_equilibrium, meets_itself};
 use crate::model::{Mechanics, StepReport};
@@ -84,20 +88,45 @@ impl FemModel {
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
+    /// Begins to move a stiff cable without inertia from the answer of an elastica, at which the
+    /// mesh has come to rest.
+    pub(in crate::model::fem) fn begin_from_elastica(&mut self, answer: &CableSolution) {
+        if self.problem.bending_stiffness > 0.0 {
+            let refinement = self.refinement();
+            let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
+            meshes.begin(&self.problem, self.settings, refinement, stepper, answer, &self.dragged);
+        }
+    }
+
+    /// Halves the bars of a stiff cable that moves without inertia until they show its bending to
+    /// the tolerance, if the scene leaves their number open.
+    pub(in crate::model::fem) fn refine_for_bending(&mut self) {
+        if !(self.problem.bending_stiffness > 0.0)
+            || self.problem.outline.is_some()
+            || self.refinement() == Refinement::Forbidden
+        {
+            return;
+        }
+        let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
+        while BendingEstimate::of(meshes, stepper).whole > self.settings.tolerance
+            && meshes.halve_bars(&self.problem, self.settings, stepper, &self.dragged)
+        {}
+    }
+
     /// A warning of the bending of a stiff cable that the mesh neglects, if it exceeds the
     /// tolerance.
     pub(in crate::model::fem) fn coarse_bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = results::bending_error(&self.stepper.cable);
-        self.bending_error = Some(off);
+        let estimate = BendingEstimate::of(&self.meshes, &self.stepper);
+        self.bending_error = Some(estimate.hidden);
         let limit = self.settings.tolerance;
-        if off <= limit {
+        if estimate.whole <= limit {
             return None;
         }
         let cause = WarningCause::CoarseBend { bars: self.stepper.cable.meshing.even_bars };
-        Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
+        Some(Warning::new(cause, &self.problem.cable.name, estimate.arc_length, [estimate.whole, limit]))
     }
 
     /// A warning of the other equilibria of a compressed stiff cable: it may bow to another side.
@@ -117,5 +146,25 @@ impl FemModel {
         let histories = elastica::other_equilibria(&passing, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
+    }
+}
+
+/// The error of the tension of a stiff cable by its bars, relative to the greatest tension.
+struct BendingEstimate {
+    /// All of it.
+    whole: f64,
+    /// The part that a coarser mesh beside it does not show.
+    hidden: f64,
+    /// The arc length at which that is greatest, m.
+    arc_length: f64,
+}
+
+impl BendingEstimate {
+    /// A coarser mesh shows the error of material nodes; without one there is a bound.
+    fn of(meshes: &TwoMeshes, stepper: &Stepper) -> Self {
+        let bound = results::bending_error(&stepper.cable);
+        let shown = meshes.halving_error(&stepper.solution());
+        let hidden = if shown.is_some() { bound.sliding } else { larger(bound.sliding, bound.material) };
+        Self { whole: larger(hidden, shown.unwrap_or(0.0)), hidden, arc_length: bound.arc_length }
     }
 }

@@ -4,7 +4,7 @@
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::{BalancedTensions, SlideOver, SlidingNodeLoad};
-use crate::model::fem::results::forces::LyingEnd;
+use crate::model::fem::results::forces::{LyingEnd, tension_beside_round};
 use crate::model::fem::results::self_contact;
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, FrictionContact, RoundFloorFriction};
@@ -99,7 +99,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
         let (mut push, mut turn, mut slips, mut samples) = (Vec2::zeros(), 0.0, true, Vec::new());
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
-            let [before, after] = load.tension;
+            let [before, after] = [0, 1].map(|side| tension_beside_round(d, j, &load, side, x));
             // The law of friction relates the pulls along the bars: the transverse part of the
             // force is the cable's own weight, and the floor's friction on the sliding cable does
             // not belong to the round.

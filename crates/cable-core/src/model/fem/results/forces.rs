@@ -4,7 +4,7 @@
 use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::mesh::Mesh;
+use crate::model::fem::mesh::{Mesh, SlidingNodeLoad};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 use crate::model::fem::time::loss_memory;
@@ -32,6 +32,19 @@ pub(super) fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.loads.body).carried(material)[1 - side]
+}
+
+/// Tension (N) where the cable comes to the round of a sliding node (`side` 0) or leaves it (1). The
+/// node itself is at its mark: between there and the tangent point the cable carries its weight.
+pub(super) fn tension_beside_round(
+    d: &CableState,
+    node: usize,
+    load: &SlidingNodeLoad,
+    side: usize,
+    x: &[Vec2],
+) -> f64 {
+    let tangent = d.mesh.path(node + side - 1, x).ends[1 - side];
+    load.tension[side] + d.input.loads.body.dot(&(x[node] - tangent))
 }
 
 /// The force of the ground on the half bar at a held end that lies on it.

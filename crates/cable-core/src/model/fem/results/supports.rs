@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::SlideOver;
-use crate::model::fem::results::forces::half;
+use crate::model::fem::results::forces::{half, tension_beside_round};
 use crate::model::fem::state::CableState;
 use crate::problem::Problem;
 use crate::solution::SupportReaction;
@@ -28,8 +28,8 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
         reaction_x_n: force.x,
         reaction_y_n: force.y,
         arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[last]),
-        tension_before_n: Some(before.tension[0]),
-        tension_after_n: Some(after.tension[1]),
+        tension_before_n: Some(tension_beside_round(d, first, &before, 0, x)),
+        tension_after_n: Some(tension_beside_round(d, last, &after, 1, x)),
         hand: None,
     })
 }

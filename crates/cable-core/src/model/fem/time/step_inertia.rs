@@ -1,7 +1,7 @@
 //! This module sets masses, predicted positions and damping of a step with inertia from its weights
 //! in time.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::damping_time;
 use crate::model::fem::time::bdf2::Weights;
@@ -74,8 +74,15 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
             mesh.path(e, &m.positions).length
         } else {
             let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-            let older = if weights.older > 0.0 { length(&m.older_positions) * weights.older } else { 0.0 };
-            length(&m.positions) * now - length(&m.previous_positions) * past + older
+            // The material of a slack bar has its own length. A bar that has just become taut did
+            // not come from its folded length, and one that is slack is not yet stretched.
+            let (own, flexible) = (mesh.rest_length[e], mesh.is_flexible());
+            let present = length(&m.positions);
+            let slack = flexible && present < own;
+            let past_length = |x: &[Vec2]| if flexible && !slack { larger(length(x), own) } else { length(x) };
+            let older = if weights.older > 0.0 { past_length(&m.older_positions) * weights.older } else { 0.0 };
+            let predicted = present * now - past_length(&m.previous_positions) * past + older;
+            if slack { smaller(predicted, own) } else { predicted }
         };
     }
     for &(bar, length) in &input.losses.lengths_at_wheels {
