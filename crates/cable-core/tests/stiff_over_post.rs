@@ -1,9 +1,9 @@
 //! A stiff cable that a dead load holds is drawn over a rubbing post without inertia or gravity.
 //!
-//! In the air ½M²/EI + F·t does not change along the cable. Far from the post M is zero, and on it EI/r:
-//! with the far force F₀ the tension where the contact begins is F₀ − EI/2r². The rest of F₀ is the
-//! shear force there, which the post takes in that point, and which rubs as well; between the two
-//! ends of the contact the tension grows as on a capstan.
+//! In the air ½M²/EI + F·t does not change along the cable. Far from the post M is zero, and on it
+//! EI/r: with the far force F₀ the tension where the contact begins is F₀ − EI/2r². The rest of F₀
+//! is the shear force there, which the post takes in that point, and which rubs as well; between
+//! the two ends of the contact the tension grows as on a capstan.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -19,8 +19,8 @@ impl Random {
     }
 }
 
-/// A cable over a post: radius of the centre line there (m), bending stiffness (N·m²), friction, and
-/// the load (N).
+/// A cable over a post: radius of the centre line there (m), bending stiffness (N·m²), friction,
+/// and the load (N).
 struct Post {
     radius: f64,
     stiffness: f64,
@@ -124,8 +124,8 @@ fn issue_016_stiff_cables_are_drawn_over_rubbing_posts() {
     assert!(compared >= 8, "{compared}");
 }
 
-/// A bar longer than √(EI/T) cannot show the moment beside the end of a contact, and neither can the
-/// bars beside it: coarse meshes asked for by hand are answered, with their error.
+/// A bar longer than √(EI/T) cannot show the moment beside the end of a contact, and neither can
+/// the bars beside it: coarse meshes asked for by hand are answered, with their error.
 #[test]
 fn issue_016_coarse_meshes_of_stiff_cables_over_posts_are_answered() {
     for seed in 0..6 {
