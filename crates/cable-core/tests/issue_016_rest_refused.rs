@@ -214,3 +214,24 @@ fn a_stiff_cable_rests_on_a_wheel_as_on_a_post() {
     let off: f64 = a.iter().zip(&b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
     assert!(off < 1e-6, "{a:?} {b:?}");
 }
+
+/// Elements of an elastica, or bars of a chain, are longer than a thin beam: the cable went through
+/// the beam between two nodes that are clear of it on both sides, and the answer was refused.
+#[test]
+fn a_stiff_cable_does_not_cut_through_a_thin_beam() {
+    let cases = [
+        ([10.034, 1.379, 0.2], 0.4865, [[0.0, 1.1887], [9.0452, 0.02]], [[4.4247, 0.62196], [4.5788, 0.72196]]),
+        ([11.0438, 4.3741, 0.5], 1.1544, [[0.0, 3.6729], [8.4816, 1.5]], [[3.5496, 0.2438], [3.9893, 0.3438]]),
+    ];
+    for (cable, density, [a, b], beam) in cases {
+        let ends = vec![Support::fixed("A", a), Support::fixed("B", b)];
+        let mut s = scene(View::Elevation, cable, ends);
+        let cable = &mut s.cables[0];
+        (cable.linear_density_kg_per_m, cable.axial_stiffness_n, cable.diameter_m) = (density, 1e6, 0.02);
+        let floor = Shape::Terrain { points_m: vec![[-20.0, 0.0], [40.0, 0.0]] };
+        let shapes = [("floor", floor), ("beam", Shape::Polyline { points_m: beam.to_vec(), thickness_m: 0.0 })];
+        s.obstacles = shapes.map(|(name, shape)| Obstacle { name: name.into(), shape, friction: Some(0.3) }).into();
+        let answer = rest(&s, Model::Auto);
+        assert!(answer.cables[0].errors.support_force_n.is_some_and(|e| e < 1e-3), "{:?}", answer.cables[0].errors);
+    }
+}

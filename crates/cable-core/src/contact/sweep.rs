@@ -83,6 +83,17 @@ impl Geometry {
         found
     }
 
+    /// True if a segment of the centre line crosses an edge. Ends that lie on one do not.
+    #[must_use]
+    pub(crate) fn is_crossed(&self, [a, b]: [Vec2; 2]) -> bool {
+        let (low, high) = (a.inf(&b), a.sup(&b));
+        let apart = |[p, q]: [Vec2; 2], [c, d]: [Vec2; 2]| cross(q - p, c - p) * cross(q - p, d - p) < 0.0;
+        self.parts(low, high, 0.0).any(|part| {
+            let edge = self.bodies().get(part.body).and_then(|body| body.edges.get(part.edge?));
+            edge.is_some_and(|e| apart([a, b], [e.from, e.to]) && apart([e.from, e.to], [a, b]))
+        })
+    }
+
     /// Returns the free fraction with respect to `parts`, which hold all parts within the margin of
     /// the sweep from its box.
     pub(crate) fn free_fraction_among(

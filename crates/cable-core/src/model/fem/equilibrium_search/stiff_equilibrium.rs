@@ -35,7 +35,7 @@ impl FemModel {
         let (time_s, tolerance) = (self.stepper.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
         let (answer, cost) = elastica::rest(&passing, time_s, &self.dragged, flexible, tolerance)?;
-        if meets_itself(&self.problem, &answer.nodes) {
+        if meets_itself(&self.problem, &answer.nodes) || crosses_an_obstacle(&self.problem, &answer.nodes) {
             return None;
         }
         self.elastica_answer = Some(answer);
@@ -167,4 +167,11 @@ impl BendingEstimate {
         let hidden = if shown.is_some() { bound.sliding } else { larger(bound.sliding, bound.material) };
         Self { whole: larger(hidden, shown.unwrap_or(0.0)), hidden, arc_length: bound.arc_length }
     }
+}
+
+/// True if the centre line of a cable goes through an edge of an obstacle between two of its nodes:
+/// elements are longer than a thin beam, and clear of it on both sides.
+fn crosses_an_obstacle(problem: &Problem, nodes: &[Node]) -> bool {
+    let geometry = problem.world.geometry();
+    nodes.windows(2).any(|pair| geometry.is_crossed([pair[0].at(), pair[1].at()]))
 }
