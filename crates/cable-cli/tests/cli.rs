@@ -267,8 +267,8 @@ fn run_says_that_a_greatest_tension_depends_on_small_differences() {
     assert!(unknown["inertia"]["matters"].is_null() && unknown["inertia"]["mach_number"].is_f64(), "{unknown}");
 }
 
-/// An end goes out and back between two rows of a run without inertia: the table held the tension of
-/// its instants alone.
+/// An end goes out and back between two rows of a run without inertia: the table held the tension
+/// of its instants alone.
 #[test]
 fn issue_016_rows_hold_the_greatest_tension_since_the_row_before() {
     let folder = tempfile::tempdir().unwrap();

@@ -189,8 +189,8 @@ fn issue_016_a_cable_drawn_slowly_does_not_chatter() {
 }
 
 /// In a plan view one end of a slack cable is pushed back past its neighbours and drawn out again,
-/// and never taut. All that could pull is the floor's friction and the momentum of the cable that is
-/// caught: 2015 N were reported for some 10 N, because the damping of a bar that had just become
+/// and never taut. All that could pull is the floor's friction and the momentum of the cable that
+/// is caught: 2015 N were reported for some 10 N, because the damping of a bar that had just become
 /// taut was taken from how fast it had grown while it was folded.
 #[test]
 fn issue_016_folded_cable_in_a_plan_view_is_caught_softly() {
@@ -210,8 +210,8 @@ fn issue_016_folded_cable_in_a_plan_view_is_caught_softly() {
         end.motion = Some(Motion { times_s: times_s.clone(), points_m });
         c.supports = vec![Support::fixed("start", [0.0, 0.0]), end];
         let friction = c.friction * c.linear_density_kg_per_m * STANDARD_GRAVITY * c.length_m;
-        // Four bars caught at once at the greatest speed of the eased motion, within the 4 ms of the
-        // mean.
+        // Four bars caught at once at the greatest speed of the eased motion, within the 4 ms of
+        // the mean.
         let bar = c.linear_density_kg_per_m * c.length_m / c.segments.unwrap_or(1) as f64;
         let caught = 4.0 * bar * 2.0 * speed / 0.004;
         let mut sim = begin(scene, Model::Fem);

@@ -72,8 +72,8 @@ impl SnagDetector {
     }
 }
 
-/// Ratio of the tensions beside a contact, and the larger, N. The weight (N) of what lies there rubs
-/// however hard the cable is pulled: up to that much more on one side is no sign of a snag.
+/// Ratio of the tensions beside a contact, and the larger, N. The weight (N) of what lies there
+/// rubs however hard the cable is pulled: up to that much more on one side is no sign of a snag.
 fn tension_ratio(c: &ContactReport, weight: f64) -> (f64, f64) {
     let (a, b) = (c.tension_before_n, c.tension_after_n);
     let (low, high) = if a < b { (a, b) } else { (b, a) };

@@ -527,9 +527,10 @@ pub struct StartTuning {
     /// own. Smaller: short bars. Larger: corners of the route are cut.
     pub route_node_bars: f64,
     /// The solution of `spans` is accepted as the initial equilibrium if no support force changes
-    /// by more than this part of the greatest tension, and half the weight of a bar. Smaller: coarse meshes reject it and relax
-    /// into folds. Larger: bars that are too long for the ground, held by friction at both ends,
-    /// keep a tension that nothing else requires (25 bars on a robot's ground: 220 %).
+    /// by more than this part of the greatest tension, and half the weight of a bar. Smaller:
+    /// coarse meshes reject it and relax into folds. Larger: bars that are too long for the ground,
+    /// held by friction at both ends, keep a tension that nothing else requires (25 bars on a
+    /// robot's ground: 220 %).
     pub max_force_change: f64,
     /// The same fraction for a stiff cable, whose initial shape is that of a flexible one: its
     /// bending contributes to the support forces.

@@ -110,8 +110,8 @@ impl TwoMeshes {
         }
     }
 
-    /// Begins to follow a cable whose mesh came to rest at an answer without a mesh. Refines the mesh
-    /// as far as the tolerance needs, if that is allowed.
+    /// Begins to follow a cable whose mesh came to rest at an answer without a mesh. Refines the
+    /// mesh as far as the tolerance needs, if that is allowed.
     pub fn begin(
         &mut self,
         problem: &Arc<Problem>,

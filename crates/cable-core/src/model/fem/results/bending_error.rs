@@ -11,9 +11,9 @@ use crate::model::fem::system::ContactPair;
 /// relative to the greatest tension.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct BendingError {
-    /// At sliding nodes, which carry no moment: the tension there is off by EI/2ρ² if the cable lies
-    /// on the round, and by at most T(1 − cos ½φ), φ its turn, if it touches in a point. It does not
-    /// vanish with the length of bars.
+    /// At sliding nodes, which carry no moment: the tension there is off by EI/2ρ² if the cable
+    /// lies on the round, and by at most T(1 − cos ½φ), φ its turn, if it touches in a point. It
+    /// does not vanish with the length of bars.
     pub sliding: f64,
     /// At material nodes. Where one turns by ψ, the normal force of a contact can have any
     /// direction within the turn, which makes an error along the cable of ½ψ times the force.

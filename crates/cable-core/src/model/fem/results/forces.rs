@@ -34,8 +34,9 @@ pub(super) fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.loads.body).carried(material)[1 - side]
 }
 
-/// Tension (N) where the cable comes to the round of a sliding node (`side` 0) or leaves it (1). The
-/// node itself is at its mark: between there and the tangent point the cable carries its weight.
+/// Tension (N) where the cable comes to the round of a sliding node (`side` 0) or leaves it (1).
+/// The node itself is at its mark: between there and the tangent point the cable carries its
+/// weight.
 pub(super) fn tension_beside_round(
     d: &CableState,
     node: usize,
