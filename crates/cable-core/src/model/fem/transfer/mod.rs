@@ -102,8 +102,15 @@ impl Stepper {
         if !same {
             remove_all_sliding_nodes(&mut self.cable);
         }
+        let broken = self.cable.mesh.breaks().next().is_some();
         for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
             if self.cable.mesh.sliding[k].is_some() {
+                continue;
+            }
+            if same && broken {
+                // Arc lengths do not tell two nodes at a break apart.
+                self.cable.motion.positions[k] = state.position_m[k];
+                self.cable.motion.velocities[k] = state.velocity_m_per_s.get(k).copied().unwrap_or_default();
                 continue;
             }
             if let Some(p) = state.position_at(s) {
