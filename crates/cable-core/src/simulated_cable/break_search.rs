@@ -84,14 +84,15 @@ impl Piece {
         let (mut left_s, h) = (dt_s, dt_s / parts);
         let mut peaks: Option<TensionPeaks> = None;
         for _ in 0..parts as usize {
-            let start_s = self.mechanics.time_s();
+            let start = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
             let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
             let before = breaking_n.map(|_| self.mechanics.boxed_clone());
             let done = self.gauged_step(step_s, breaking_n);
-            let reached = self.gauge.reached();
-            if let (Ok(_), Some(reached), Some(before)) = (&done, reached, before) {
-                self.step_to_break(before, [start_s, step_s, reached.time_s]);
+            let (reached, end_s) = (self.gauge.reached(), self.mechanics.time_s());
+            if let (Ok(_), Some(reached), Some(before)) = (&done, reached, before.filter(|_| self.breaks_in_own_motion()))
+            {
+                self.step_to_break(before, [start.time_s, step_s, reached.time_s]);
             }
             self.refresh_answer();
             self.accumulate_momentum();
@@ -101,18 +102,30 @@ impl Piece {
             left_s -= step_s;
             self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
             if let Some(reached) = reached {
-                let state = self.mechanics.state();
-                let fraction = ((reached.time_s - start_s) / step_s).clamp(0.0, 1.0);
+                let now = self.mechanics.state();
+                let fraction = ((reached.time_s - start.time_s) / (end_s - start.time_s)).clamp(0.0, 1.0);
                 let at = Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
+                let state = if self.breaks_in_own_motion() || 1.0 - fraction < MIN_STEP_REMAINDER {
+                    now
+                } else {
+                    rupture::between(&start, &now, fraction)
+                };
                 return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)
     }
 
+    /// True if the piece takes a step to the instant of a break, so that it breaks in a state of
+    /// its own motion: an energy account goes on from there, and a mean of two states in which the
+    /// cable does not run through itself may be one in which it does. Others break in the mean of
+    /// two states.
+    fn breaks_in_own_motion(&self) -> bool {
+        self.mechanics.stored_energy().is_some() || self.mechanics.problem().cable.self_contact
+    }
+
     /// After a step in which it breaks, the piece takes a shorter one from the state `before` to
-    /// that time, so that it breaks in a state of its own motion; states between two of these may
-    /// run through something. A break near the start or the end of the step is put there.
+    /// that time. A break near the start or the end of the step is put there.
     fn step_to_break(&mut self, before: Box<dyn Mechanics>, [start_s, step_s, break_s]: [f64; 3]) {
         let fraction = (break_s - start_s) / step_s;
         if 1.0 - fraction < MIN_STEP_REMAINDER {

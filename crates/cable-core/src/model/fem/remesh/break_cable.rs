@@ -21,8 +21,7 @@ pub(in crate::model::fem) fn break_cable(cable: &mut CableState, place: &BreakPl
     } else {
         return false;
     }
-    // Forces jump: with the history from before, BDF2 would take them into account half a step late.
-    (cable.motion.step_before, cable.motion.even_steps) = (0.0, 0);
+    cable.motion.begin_after_break();
     cable.answers.stepped = None;
     renew_input(cable);
     let stored = stored_energy(cable);

@@ -429,7 +429,7 @@ fn legs_rub_on_each_other_and_remember_it() {
         assert!((rub.sliding(&slid).abs() - by).abs() < 0.1 * by && rub.sliding(&start) == 0.0);
     }
     let before: Vec<f64> = own.friction_contacts.iter().map(|r| r.sliding(&slid)).collect();
-    own.commit(&slid, 1e-5);
+    own.commit(&slid, 1e-5, barrier.reach);
     own.prepare(&barrier, &d.cable.mesh, &slid, &slid);
     let kept = own.friction_contacts.iter().filter(|r| before.contains(&r.sliding(&slid))).count();
     assert!(kept > 2 && kept * 2 > own.friction_contacts.len(), "{kept} of {}", own.friction_contacts.len());

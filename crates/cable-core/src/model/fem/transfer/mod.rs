@@ -144,6 +144,9 @@ impl Stepper {
         }
         IntersectionCheck::of(&self.cable).refuse_buried()?;
         self.forget_history();
+        if state.in_motion {
+            self.cable.motion.begin_after_break();
+        }
         // A state at rest on another mesh is brought to rest on this one before it moves.
         self.rested = same || !still;
         renew_input(&mut self.cable);
