@@ -365,6 +365,46 @@ mod tests {
         assert!((towards - 0.5).abs() < 1e-6, "{towards}");
     }
 
+    /// A straight cable that breaks at its middle: the ends begin at one point and part.
+    #[test]
+    fn ends_at_a_break_touch_once_they_have_parted() {
+        let reach = 1e-3;
+        let mut shape = SelfContact::of_diameter(0.02);
+        let mut x: Vec<Vec2> = (0..=40).map(|k| Vec2::new(0.05 * f64::from(k), 0.0)).collect();
+        let mut s = arc(&x);
+        (x.insert(21, x[20]), s.insert(21, s[20]));
+        shape.break_at(20, &x, &s, reach);
+        let pairs = |shape: &SelfContact, x: &[Vec2]| {
+            let mut found = Vec::new();
+            shape.pairs(x, &s, reach, &mut SortedNodes::default(), &mut found);
+            found
+        };
+        let free = |shape: &SelfContact, x: &[Vec2], way: Vec2| {
+            let step = |k: usize| if k > 20 { way } else { Vec2::zeros() };
+            shape.free_fraction(x, &s, &step, [0.5, f64::INFINITY, 1.0], &mut SortedNodes::default())
+        };
+        let moved = |way: Vec2| -> Vec<Vec2> {
+            x.iter().enumerate().map(|(k, p)| if k > 20 { p + way } else { *p }).collect()
+        };
+        // The ends do not touch where they begin, nor keep each other there.
+        assert!(pairs(&shape, &x).is_empty() && free(&shape, &x, Vec2::new(0.01, 0.0)) == 1.0);
+        let nearly = moved(Vec2::new(0.0, 0.0205));
+        shape.part(&nearly, reach);
+        assert!(pairs(&shape, &nearly).is_empty());
+        // Once they have parted they do: end against end, and laid over each other anywhere.
+        shape.part(&moved(Vec2::new(0.03, 0.0)), reach);
+        assert_eq!(pairs(&shape, &moved(Vec2::new(0.0205, 0.0))).iter().map(|p| p.weight).sum::<f64>(), 2.0);
+        for along in [-0.02, -0.31, -0.525] {
+            let over = moved(Vec2::new(along, 0.03));
+            let fraction = free(&shape, &over, Vec2::new(0.0, -0.04));
+            assert!(fraction > 0.0 && fraction < 0.25, "{along}: {fraction}");
+            let near = pairs(&shape, &moved(Vec2::new(along, 0.0205)));
+            assert!(!near.is_empty() && near.iter().all(|p| (p.gap_m - 5e-4).abs() < 1e-12), "{along}: {near:?}");
+        }
+        // Neighbours of the same piece still do not.
+        assert!(!shape.apart(&s, 5, 5) && !shape.apart(&s, 30, 30) && !shape.apart(&s, 5, 20));
+    }
+
     proptest! {
         #[test]
         fn no_move_within_the_free_way_crosses(

@@ -2,7 +2,7 @@
 
 use super::SimulatedCable;
 use super::piece::Piece;
-use crate::breakage::Cut;
+use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
 use crate::model::{Model, ModelSource, Settings};
 use crate::problem::Problem;
@@ -80,7 +80,12 @@ impl SimulatedCable {
                 parts.extend(last.cut(&self.problem, &cut));
             }
         }
-        parts.into_iter().zip(state.pieces()).map(|(part, state)| self.build_piece(part, &state)).collect()
+        let own = |(part, mut state): (CablePart, State)| {
+            let from = state.arc_length_m.first().copied().unwrap_or(0.0);
+            state.arc_length_m.iter_mut().for_each(|s| *s -= from);
+            self.build_piece(part, &state)
+        };
+        parts.into_iter().zip(state.pieces()).map(own).collect()
     }
 
     /// Continues from where `old`, the same cable before an edit, is: broken where that one broke.

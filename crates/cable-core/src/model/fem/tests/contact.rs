@@ -363,7 +363,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
 }
 
 /// Two legs of a hanging hairpin thrown at each other until they touch.
-fn legs_that_touch() -> Stepper {
+pub(super) fn legs_that_touch() -> Stepper {
     let mut scene = scene(
         |c| {
             (c.length_m, c.axial_stiffness_n, c.segments, c.self_contact) = (4.0, 1e5, Some(40), true);

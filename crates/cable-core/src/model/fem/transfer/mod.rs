@@ -102,17 +102,14 @@ impl Stepper {
         if !same {
             remove_all_sliding_nodes(&mut self.cable);
         }
-        let broken = self.cable.mesh.breaks().next().is_some();
+        let breaks: Vec<usize> = self.cable.mesh.breaks().collect();
+        let pieces = if breaks.is_empty() { Vec::new() } else { state.pieces() };
         for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
             if self.cable.mesh.sliding[k].is_some() {
                 continue;
             }
-            if same && broken {
-                // Arc lengths do not tell two nodes at a break apart.
-                self.cable.motion.positions[k] = state.position_m[k];
-                self.cable.motion.velocities[k] = state.velocity_m_per_s.get(k).copied().unwrap_or_default();
-                continue;
-            }
+            // Arc lengths do not tell two nodes at a break apart.
+            let state = pieces.get(breaks.partition_point(|&e| e < k)).unwrap_or(state);
             if let Some(p) = state.position_at(s) {
                 self.cable.motion.positions[k] = p;
             }
