@@ -372,7 +372,8 @@ fn the_account_goes_on_over_a_break() {
         for pair in accounts.windows(2) {
             let [a, b] = pair else { continue };
             assert!(b.exchanged_j >= a.exchanged_j * (1.0 - 1e-12), "{a:?} {b:?}");
-            assert!((b.supports_j - a.supports_j).abs() < 0.2 * b.exchanged_j, "{a:?} {b:?}");
+            // The drawn end pulls with 500 N at most, and goes 5.6 mm in a step.
+            assert!((b.supports_j - a.supports_j).abs() < 4.0, "{a:?} {b:?}");
         }
         assert!(last.supports_j > 1.0, "{last:?}");
     }

@@ -383,9 +383,8 @@ mod tests {
             let step = |k: usize| if k > 20 { way } else { Vec2::zeros() };
             shape.free_fraction(x, &s, &step, [0.5, f64::INFINITY, 1.0], &mut SortedNodes::default())
         };
-        let moved = |way: Vec2| -> Vec<Vec2> {
-            x.iter().enumerate().map(|(k, p)| if k > 20 { p + way } else { *p }).collect()
-        };
+        let moved =
+            |way: Vec2| -> Vec<Vec2> { x.iter().enumerate().map(|(k, p)| if k > 20 { p + way } else { *p }).collect() };
         // The ends do not touch where they begin, nor keep each other there.
         assert!(pairs(&shape, &x).is_empty() && free(&shape, &x, Vec2::new(0.01, 0.0)) == 1.0);
         let nearly = moved(Vec2::new(0.0, 0.0205));

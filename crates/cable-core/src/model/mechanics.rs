@@ -182,10 +182,10 @@ pub trait Mechanics: Send {
         None
     }
 
-    /// Breaks the cable in its present state, at a node of its answer, and goes on with both pieces,
-    /// which can touch each other; the answer has the places of its breaks from then on. At an end
-    /// the cable is torn off what holds it. Returns false, without a change, if the model knows
-    /// unbroken cables only.
+    /// Breaks the cable in its present state, at a node of its answer, and goes on with both
+    /// pieces, which can touch each other; the answer has the places of its breaks from then on. At
+    /// an end the cable is torn off what holds it. Returns false, without a change, if the model
+    /// knows unbroken cables only.
     fn break_at(&mut self, _place: &BreakPlace) -> bool {
         false
     }

@@ -4,6 +4,7 @@
 use super::piece::Piece;
 use crate::breakage::rupture::{self, Rupture};
 use crate::error::SolveError;
+use crate::math::larger;
 use crate::model::tension_gauge::{Limit, TensionGauge};
 use crate::model::{Inertia, Mechanics, StepReport};
 use crate::solution::TensionPeaks;
@@ -19,8 +20,8 @@ const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 /// step is found to 1e-2 of the step.
 const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
-/// A break in the last such part of a step is put at its end, and one in the first at its start:
-/// over a millionth of a step the forces of inertia would be rounding.
+/// A break in the last such part of a step is put at its end, and one in the first such part at the
+/// end of that: over a millionth of a step the forces of inertia would be rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// The break of a piece.
@@ -90,7 +91,8 @@ impl Piece {
             let before = breaking_n.map(|_| self.mechanics.boxed_clone());
             let done = self.gauged_step(step_s, breaking_n);
             let (reached, end_s) = (self.gauge.reached(), self.mechanics.time_s());
-            if let (Ok(_), Some(reached), Some(before)) = (&done, reached, before.filter(|_| self.breaks_in_own_motion()))
+            if let (Ok(_), Some(reached), Some(before)) =
+                (&done, reached, before.filter(|_| self.breaks_in_own_motion()))
             {
                 self.step_to_break(before, [start.time_s, step_s, reached.time_s]);
             }
@@ -125,17 +127,16 @@ impl Piece {
     }
 
     /// After a step in which it breaks, the piece takes a shorter one from the state `before` to
-    /// that time. A break near the start or the end of the step is put there.
+    /// that time, with which a cable at rest begins to move. A break near the end of the step is
+    /// put there, and one near its start a little later.
     fn step_to_break(&mut self, before: Box<dyn Mechanics>, [start_s, step_s, break_s]: [f64; 3]) {
-        let fraction = (break_s - start_s) / step_s;
-        if 1.0 - fraction < MIN_STEP_REMAINDER {
+        let part = larger((break_s - start_s) / step_s, MIN_STEP_REMAINDER);
+        if 1.0 - part < MIN_STEP_REMAINDER {
             return;
         }
         let mut at_break = before;
         // The gauge has seen the step.
-        let found = fraction < MIN_STEP_REMAINDER
-            || at_break.advance_gauged(break_s - start_s, Inertia::Dynamic, &mut TensionGauge::off()).is_ok();
-        if found {
+        if at_break.advance_gauged(part * step_s, Inertia::Dynamic, &mut TensionGauge::off()).is_ok() {
             self.mechanics = at_break;
         }
     }

@@ -1,8 +1,8 @@
 //! A piece is a part of the cable that holds together, with its model and its last answer.
 
 use crate::breakage::CablePart;
-use crate::model::{BreakPlace, Mechanics};
 use crate::model::tension_gauge::TensionGauge;
+use crate::model::{BreakPlace, Mechanics};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, MomentumAccount, TensionPeak, TensionPeaks};

@@ -61,7 +61,9 @@ impl SimulatedCable {
         };
         let from = piece.part.from;
         self.breaks.push(event);
-        if let Some(broken) = self.break_in_model(k, Division { cut: &cut, parts: &parts, grown }, point.time_s, inertia)? {
+        if let Some(broken) =
+            self.break_in_model(k, Division { cut: &cut, parts: &parts, grown }, point.time_s, inertia)?
+        {
             self.pieces.splice(k..=k, [broken]);
             return Ok(());
         }

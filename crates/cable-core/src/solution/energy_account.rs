@@ -116,7 +116,8 @@ impl EnergyAccount {
         } = self;
         *over_s *= time;
         let gains = [kinetic_j, gravity_j, stretch_j, bending_j, exchanged_j];
-        let works = [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, breaks_j, numerical_j];
+        let works =
+            [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, breaks_j, numerical_j];
         gains.into_iter().chain(works).for_each(|e| *e *= energy);
     }
 }

@@ -29,7 +29,8 @@ pub(super) struct PeaksOfMeans {
 }
 
 impl PeaksOfMeans {
-    /// Compares means (N) with the limits, of one stretch each, between two times (s) at which they are known.
+    /// Compares means (N) with the limits, of one stretch each, between two times (s) at which they
+    /// are known.
     pub fn look_at(&mut self, points: &[f64], limits: &[Limit], [from_s, to_s]: [f64; 2], [was, is]: [&[f64]; 2]) {
         if self.reached.is_some() {
             return;

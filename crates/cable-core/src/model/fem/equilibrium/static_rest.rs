@@ -221,7 +221,10 @@ impl Stepper {
             let diameter = std::mem::replace(&mut self.cable.contacts.self_contacts.shape.diameter, 0.0);
             let found = self.relax(time, dragged);
             self.cable.contacts.self_contacts.shape.diameter = diameter;
-            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.mesh, &self.cable.motion.positions) {
+            if found.is_ok()
+                && !self.cable.touches_itself()
+                && !crosses_itself(&self.cable.mesh, &self.cable.motion.positions)
+            {
                 return Ok(found);
             }
             self.rollback.restore(&mut self.cable);

@@ -167,9 +167,9 @@ impl<'a> OutlineStep<'a> {
             .map(|(k, e)| {
                 !self.step.mesh.is_break(k)
                     && self.is_near(
-                    e.map(|p| self.motion.carried(p)),
-                    self.step.mesh.tuning.outline.carried_distance_m + 4.0 * way,
-                )
+                        e.map(|p| self.motion.carried(p)),
+                        self.step.mesh.tuning.outline.carried_distance_m + 4.0 * way,
+                    )
             })
             .collect();
         if !near.contains(&true) {

@@ -17,8 +17,7 @@ fn mass_m(d: &Stepper) -> f64 {
 fn a_break_keeps_mass_momentum_and_energy() {
     for (arc_length_m, nodes) in [(1.0, 42), (2.0, 42), (0.0, 41), (4.0, 41)] {
         let mut d = legs_that_touch();
-        let (momentum, energy, mass) =
-            (MovingMass::of(&d.cable).momentum(), stored_energy(&d.cable), mass_m(&d));
+        let (momentum, energy, mass) = (MovingMass::of(&d.cable).momentum(), stored_energy(&d.cable), mass_m(&d));
         let touching = d.cable.contacts.self_contacts.friction_contacts.len();
         assert!(touching > 2 && momentum.norm() > 0.1 && (mass - 4.0).abs() < 1e-12);
         assert!(break_cable(&mut d.cable, &BreakPlace { arc_length_m, gives_way_after: true }));
