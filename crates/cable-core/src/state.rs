@@ -39,6 +39,21 @@ impl State {
         state
     }
 
+    /// The states of the pieces of a broken cable, whose nodes at a break have the same arc length.
+    #[must_use]
+    pub(crate) fn pieces(&self) -> Vec<Self> {
+        let s = &self.arc_length_m;
+        let breaks = || (1..s.len()).filter(|&k| s[k] <= s[k - 1]);
+        let ends = std::iter::once(0).chain(breaks()).zip(breaks().chain([s.len()]));
+        let piece = |(a, b): (usize, usize)| Self {
+            arc_length_m: s[a..b].to_vec(),
+            position_m: self.position_m.get(a..b).unwrap_or_default().to_vec(),
+            velocity_m_per_s: self.velocity_m_per_s.get(a..b).unwrap_or_default().to_vec(),
+            ..*self
+        };
+        ends.map(piece).collect()
+    }
+
     /// Returns whether it is a state of motion: said to be one, or with a velocity.
     #[must_use]
     pub fn moves(&self) -> bool {

@@ -324,3 +324,57 @@ fn the_catalogue() {
         }
     }
 }
+
+/// A cable that is drawn until it breaks, and falls on the floor: the account goes on over the
+/// break, whether its pieces are two models (`self_contact` false) or one.
+fn a_break(self_contact: bool, stiffness: f64) -> Vec<EnergyAccount> {
+    let lines = format!(
+        r#"length_m = 6.0
+segments = 48
+self_contact = {self_contact}
+axial_stiffness_n = 1e5
+bending_stiffness_n_m2 = {stiffness}
+breaking_tension_n = 500.0
+service_tension_n = 400.0
+supports = [
+    {{ name = "a", kind = "fixed", at_m = [0.0, 1.0] }},
+    {{ name = "top", kind = "fixed", at_m = [2.9, 1.5], arc_length_m = 3.2 }},
+    {{ name = "b", kind = "fixed", at_m = [5.6, 1.0], motion = {{ times_s = [0.0, 0.6], points_m = [[5.6, 1.0], [6.4, 0.9]] }} }},
+]"#
+    );
+    let mut sim =
+        Simulation::with_settings(cable(&lines, FLOOR), Model::Fem, Settings::default()).expect("a sound scene");
+    sim.settle().expect("it rests");
+    let mut accounts = Vec::new();
+    for _ in 0..720 {
+        sim.step(1.0 / 240.0).expect("it moves");
+        let account = sim.solution().cables[0].energy_account.expect("an account");
+        assert!((account.over_s - sim.time_s()).abs() < 1e-9, "{} of {} s", account.over_s, sim.time_s());
+        accounts.push(account);
+    }
+    assert_eq!(sim.solution().cables[0].breaks.len(), 1, "it breaks once");
+    accounts
+}
+
+#[test]
+fn the_account_goes_on_over_a_break() {
+    for (self_contact, stiffness) in [(false, 0.0), (true, 0.0), (false, 0.5), (true, 0.5)] {
+        let accounts = a_break(self_contact, stiffness);
+        let part = |e: f64, a: &EnergyAccount| e.abs() / a.exchanged_j.max(1e-9);
+        let worst = accounts.iter().map(|a| part(a.unaccounted_j(), a)).fold(0.0, f64::max);
+        let last = accounts[accounts.len() - 1];
+        println!("self_contact {self_contact}, EI {stiffness}: {worst:.1e} not accounted for, {last:?}");
+        assert!(worst < MAX_UNACCOUNTED_FRACTION, "{worst}");
+        // Nothing but the bend at the place of the break is lost there.
+        assert!(part(last.breaks_j, &last) < MAX_UNACCOUNTED_FRACTION, "{last:?}");
+        assert!(last.breaks_j <= 1e-9 * last.exchanged_j || !self_contact, "{last:?}");
+        // What supports have done is not forgotten, and what was exchanged only grows.
+        for pair in accounts.windows(2) {
+            let [a, b] = pair else { continue };
+            assert!(b.exchanged_j >= a.exchanged_j * (1.0 - 1e-12), "{a:?} {b:?}");
+            // The drawn end pulls with 500 N at most, and goes 5.6 mm in a step.
+            assert!((b.supports_j - a.supports_j).abs() < 4.0, "{a:?} {b:?}");
+        }
+        assert!(last.supports_j > 1.0, "{last:?}");
+    }
+}

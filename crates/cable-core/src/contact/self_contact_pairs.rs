@@ -8,8 +8,14 @@
 //! Gaps are distances of centre lines less one diameter. Two places whose arc lengths differ by
 //! less than the cable needs to bend back on itself are no contact: the two legs of a bend of the
 //! diameter d touch after π d/2 of arc length.
+//!
+//! At a break two nodes have the same place in the cable, and the segment between them does not
+//! exist. Across it arc lengths mean nothing: the ends of the two pieces touch like any other parts
+//! of the cable. But they begin at the same point, without a gap. So a pair across a break that was
+//! no contact of the unbroken cable is none until the pieces have parted there, which is where its
+//! barrier begins: at the reach, where its force is zero.
 
-use super::distance::{from_segment, nearest_fraction};
+use super::distance::{from_segment, nearest_fraction, point_segment};
 use super::sweep::advance;
 use crate::math::Vec2;
 
@@ -58,10 +64,14 @@ impl SelfPair {
 }
 
 /// The cable as an obstacle to itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SelfContact {
     /// Diameter of the cable, m; 0 = it can pass itself.
     pub diameter: f64,
+    /// Breaks: the segments that do not exist.
+    breaks: Vec<usize>,
+    /// Nodes and segments on both sides of a break that have not parted since.
+    joined: Vec<(usize, usize)>,
 }
 
 /// Nodes sorted by x, and kept from search to search: a nearly sorted list is sorted quickly.
@@ -94,6 +104,55 @@ struct Pairing {
 }
 
 impl SelfContact {
+    /// An unbroken cable of a diameter (m).
+    #[must_use]
+    pub(crate) fn of_diameter(diameter: f64) -> Self {
+        Self { diameter, ..Self::default() }
+    }
+
+    /// Becomes a copy of `other`, reusing its memory where possible.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        self.diameter = other.diameter;
+        self.breaks.clone_from(&other.breaks);
+        self.joined.clone_from(&other.joined);
+    }
+
+    /// Breaks the cable at node `k`, whose copy for the second piece has become node `k` + 1 at
+    /// positions `x` (m) with arc lengths `arc` (m).
+    pub(crate) fn break_at(&mut self, k: usize, x: &[Vec2], arc: &[f64], reach: f64) {
+        let moved = |node: usize| if node > k { node + 1 } else { node };
+        let moved_segment = |e: usize| if e >= k { e + 1 } else { e };
+        self.breaks.iter_mut().for_each(|e| *e = moved_segment(*e));
+        // A pair of the broken node is one of both its copies.
+        let joined = std::mem::take(&mut self.joined);
+        for (p, e) in joined {
+            self.joined.push((moved(p), moved_segment(e)));
+            if p == k {
+                self.joined.push((k + 1, moved_segment(e)));
+            }
+        }
+        let first = self.breaks.partition_point(|&e| e < k);
+        let (low, high) = (
+            first.checked_sub(1).map_or(0, |b| self.breaks[b] + 1),
+            self.breaks.get(first).copied().unwrap_or(x.len() - 1),
+        );
+        let near = |p: usize, e: usize| {
+            !self.is_beyond_bend(arc, p, e) && point_segment(x[p], x[e], x[e + 1]) - self.diameter < reach
+        };
+        let before = (low..=k).flat_map(|p| (k + 1..high).map(move |e| (p, e)));
+        let after = (k + 1..=high).flat_map(|p| (low..k).map(move |e| (p, e)));
+        let joined: Vec<(usize, usize)> = before.chain(after).filter(|&(p, e)| near(p, e)).collect();
+        self.joined.extend(joined);
+        self.breaks.insert(first, k);
+    }
+
+    /// Lets the pairs at breaks be contacts that have parted by the `reach` of the barrier (m) at
+    /// positions `x` (m).
+    pub(crate) fn part(&mut self, x: &[Vec2], reach: f64) {
+        let diameter = self.diameter;
+        self.joined.retain(|&(p, e)| point_segment(x[p], x[e], x[e + 1]) - diameter < reach);
+    }
+
     /// Returns whether the cable meets itself at all.
     #[must_use]
     pub(crate) fn is_on(&self) -> bool {
@@ -103,6 +162,20 @@ impl SelfContact {
     /// Returns whether the node `p` may touch segment `e` of a cable with nodes at these arc
     /// lengths, m.
     fn apart(&self, arc: &[f64], p: usize, e: usize) -> bool {
+        if self.breaks.is_empty() {
+            return self.is_beyond_bend(arc, p, e);
+        }
+        let between = if p <= e { p..=e } else { e..=p - 1 };
+        let first = self.breaks.partition_point(|b| b < between.start());
+        match self.breaks.get(first).filter(|b| between.contains(b)) {
+            Some(_) => self.breaks.binary_search(&e).is_err() && !self.joined.contains(&(p, e)),
+            None => self.is_beyond_bend(arc, p, e),
+        }
+    }
+
+    /// Returns whether the cable is long enough between node `p` and segment `e` to bend back on
+    /// itself.
+    fn is_beyond_bend(&self, arc: &[f64], p: usize, e: usize) -> bool {
         let between = if p <= e { arc[e] - arc[p] } else { arc[p] - arc[e + 1] };
         between >= MIN_ARC_DIAMETERS * self.diameter
     }
@@ -237,7 +310,7 @@ mod tests {
     }
 
     /// Barrier energy of the last node, J.
-    fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
+    fn energy(shape: &SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
         let mut pairs = Vec::new();
         shape.pairs(x, s, barrier.reach, &mut SortedNodes::default(), &mut pairs);
         // Only the pairs of the last node are counted: near another node that it passes, the pairs
@@ -255,9 +328,9 @@ mod tests {
 
     #[test]
     fn a_node_drawn_along_a_straight_stretch_feels_no_joint() {
-        let (shape, barrier) = (SelfContact { diameter: 0.02 }, Barrier { reach: 1e-3, stiffness: 5.0 });
+        let (shape, barrier) = (SelfContact::of_diameter(0.02), Barrier { reach: 1e-3, stiffness: 5.0 });
         let s = arc(&bight(0.0205, 1.0));
-        let at = |end: f64| energy(shape, &barrier, &bight(0.0205, end), &s);
+        let at = |end: f64| energy(&shape, &barrier, &bight(0.0205, end), &s);
         let first = at(0.95);
         assert!(first > 0.0);
         for k in 0..=200 {
@@ -268,7 +341,7 @@ mod tests {
 
     #[test]
     fn neighbours_along_the_cable_are_no_contact() {
-        let shape = SelfContact { diameter: 0.02 };
+        let shape = SelfContact::of_diameter(0.02);
         let x: Vec<Vec2> = (0..50).map(|k| Vec2::new(0.005 * f64::from(k), 0.0)).collect();
         assert_eq!(shape.smallest_gap(&x, &arc(&x), 0.1).map(|g| g.0 > 0.02), Some(true));
         let mut pairs = Vec::new();
@@ -279,7 +352,7 @@ mod tests {
 
     #[test]
     fn strands_that_move_together_or_along_each_other_do_not_stop_each_other() {
-        let shape = SelfContact { diameter: 0.02 };
+        let shape = SelfContact::of_diameter(0.02);
         let x = bight(0.02 + 1e-6, 1.0);
         let s = arc(&x);
         let free = |step: &dyn Fn(usize) -> Vec2| {
@@ -292,6 +365,45 @@ mod tests {
         assert!((towards - 0.5).abs() < 1e-6, "{towards}");
     }
 
+    /// A straight cable that breaks at its middle: the ends begin at one point and part.
+    #[test]
+    fn ends_at_a_break_touch_once_they_have_parted() {
+        let reach = 1e-3;
+        let mut shape = SelfContact::of_diameter(0.02);
+        let mut x: Vec<Vec2> = (0..=40).map(|k| Vec2::new(0.05 * f64::from(k), 0.0)).collect();
+        let mut s = arc(&x);
+        (x.insert(21, x[20]), s.insert(21, s[20]));
+        shape.break_at(20, &x, &s, reach);
+        let pairs = |shape: &SelfContact, x: &[Vec2]| {
+            let mut found = Vec::new();
+            shape.pairs(x, &s, reach, &mut SortedNodes::default(), &mut found);
+            found
+        };
+        let free = |shape: &SelfContact, x: &[Vec2], way: Vec2| {
+            let step = |k: usize| if k > 20 { way } else { Vec2::zeros() };
+            shape.free_fraction(x, &s, &step, [0.5, f64::INFINITY, 1.0], &mut SortedNodes::default())
+        };
+        let moved =
+            |way: Vec2| -> Vec<Vec2> { x.iter().enumerate().map(|(k, p)| if k > 20 { p + way } else { *p }).collect() };
+        // The ends do not touch where they begin, nor keep each other there.
+        assert!(pairs(&shape, &x).is_empty() && free(&shape, &x, Vec2::new(0.01, 0.0)) == 1.0);
+        let nearly = moved(Vec2::new(0.0, 0.0205));
+        shape.part(&nearly, reach);
+        assert!(pairs(&shape, &nearly).is_empty());
+        // Once they have parted they do: end against end, and laid over each other anywhere.
+        shape.part(&moved(Vec2::new(0.03, 0.0)), reach);
+        assert_eq!(pairs(&shape, &moved(Vec2::new(0.0205, 0.0))).iter().map(|p| p.weight).sum::<f64>(), 2.0);
+        for along in [-0.02, -0.31, -0.525] {
+            let over = moved(Vec2::new(along, 0.03));
+            let fraction = free(&shape, &over, Vec2::new(0.0, -0.04));
+            assert!(fraction > 0.0 && fraction < 0.25, "{along}: {fraction}");
+            let near = pairs(&shape, &moved(Vec2::new(along, 0.0205)));
+            assert!(!near.is_empty() && near.iter().all(|p| (p.gap_m - 5e-4).abs() < 1e-12), "{along}: {near:?}");
+        }
+        // Neighbours of the same piece still do not.
+        assert!(!shape.apart(&s, 5, 5) && !shape.apart(&s, 30, 30) && !shape.apart(&s, 5, 20));
+    }
+
     proptest! {
         #[test]
         fn no_move_within_the_free_way_crosses(
@@ -300,7 +412,7 @@ mod tests {
         ) {
             let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
             let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
-            let shape = SelfContact { diameter: 0.01 };
+            let shape = SelfContact::of_diameter(0.01);
             let before = shape.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0);
             prop_assume!(before > 1e-6);
             let step = |k: usize| Vec2::new(moves[k].0, moves[k].1);
@@ -318,7 +430,7 @@ mod tests {
         fn every_near_pair_is_found(points in prop::collection::vec((0.0_f64..1.0, 0.0_f64..1.0), 4..16)) {
             let x: Vec<Vec2> = points.iter().map(|p| Vec2::new(p.0, p.1)).collect();
             let s: Vec<f64> = (0..x.len()).map(|k| k as f64).collect();
-            let shape = SelfContact { diameter: 0.01 };
+            let shape = SelfContact::of_diameter(0.01);
             let found = shape.smallest_gap(&x, &s, 2.0).map(|g| g.0);
             let mut least = f64::INFINITY;
             for p in 0..x.len() {

@@ -167,7 +167,8 @@ pub(crate) fn meets_itself(problem: &Problem, nodes: &[Node]) -> bool {
     let diameter = 2.0 * problem.radius;
     let (least, of_diameter) = STRAND_CLEARANCE;
     let clearance = larger(least, of_diameter * diameter) + 2.0 * sagitta;
-    SelfContact { diameter }.smallest_gap(&at, &arc, clearance).is_some() || !crossings(&at, |_| true).is_empty()
+    SelfContact::of_diameter(diameter).smallest_gap(&at, &arc, clearance).is_some()
+        || !crossings(&at, |_| true).is_empty()
 }
 
 /// Returns whether a cable lies in an obstacle, deeper than the difference between the models.

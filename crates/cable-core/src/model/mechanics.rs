@@ -9,7 +9,7 @@ use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
 use crate::model_id::Model;
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, ModelReason, Warning};
+use crate::solution::{CableSolution, Cost, Energy, ModelReason, Warning};
 use crate::state::State;
 
 /// The role of inertia in a step.
@@ -47,6 +47,16 @@ impl StepReport {
             self.warnings.push(warning);
         }
     }
+}
+
+/// The place of a break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BreakPlace {
+    /// Arc length, m.
+    pub arc_length_m: f64,
+    /// True if the cable gives way on the side of greater arc length of what sits there: a support
+    /// or load stays with the first piece.
+    pub gives_way_after: bool,
 }
 
 /// The contact of a cable with the outline of the robot.
@@ -169,6 +179,19 @@ pub trait Mechanics: Send {
     /// Returns the action of the cable on the outline of the robot; None without an outline, or if
     /// the model ignores it.
     fn robot_contact(&self) -> Option<RobotContact> {
+        None
+    }
+
+    /// Breaks the cable in its present state, at a node of its answer, and goes on with both
+    /// pieces, which can touch each other; the answer has the places of its breaks from then on. At
+    /// an end the cable is torn off what holds it. Returns false, without a change, if the model
+    /// knows unbroken cables only.
+    fn break_at(&mut self, _place: &BreakPlace) -> bool {
+        false
+    }
+
+    /// Returns the energy of the cable as its energy account counts it; None if it keeps none.
+    fn stored_energy(&self) -> Option<Energy> {
         None
     }
 

@@ -33,7 +33,7 @@ pub mod spans;
 pub mod tension_gauge;
 
 pub use self::auto::Question;
-pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
+pub use self::mechanics::{BreakPlace, Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
 pub(crate) use self::registry::ModelSource;
 pub use self::registry::{Capabilities, ModelInfo, build};
 pub(crate) use self::settings::MIN_TOLERANCE;

@@ -12,7 +12,7 @@ pub(super) const ENERGY_COLUMNS: [&str; 4] =
     ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
 /// Works since the cables began to move, in the order of the energy account, what was
 /// exchanged and what is not accounted for; 0 where there is no account.
-pub(super) const ACCOUNT_COLUMNS: [&str; 10] = [
+pub(super) const ACCOUNT_COLUMNS: [&str; 11] = [
     "supports_work_j",
     "loads_work_j",
     "outlines_work_j",
@@ -20,6 +20,7 @@ pub(super) const ACCOUNT_COLUMNS: [&str; 10] = [
     "material_work_j",
     "impacts_work_j",
     "edits_work_j",
+    "breaks_work_j",
     "numerical_work_j",
     "exchanged_energy_j",
     "unaccounted_energy_j",

@@ -87,9 +87,9 @@ proptest! {
         prop_assert_eq!(history.time_s[0].to_bits(), time.to_bits());
         prop_assert_eq!(history.supports[0].reaction_x_n[0].to_bits(), values[1].to_bits());
         prop_assert_eq!(&history.supports[0].name, &name);
-        prop_assert_eq!(history.extras.len(), 16);
+        prop_assert_eq!(history.extras.len(), 17);
         prop_assert_eq!(history.extras[3].values[0].to_bits(), values[7].to_bits());
-        let account = [6, 14, 15].map(|k| (history.extras[k].name, history.extras[k].values[0].to_bits()));
+        let account = [6, 15, 16].map(|k| (history.extras[k].name, history.extras[k].values[0].to_bits()));
         let bits = f64::to_bits;
         let unaccounted = s.energy_account().unwrap().unaccounted_j();
         prop_assert_eq!(account[0], ("supports_work_j", bits(values[1])));

@@ -46,6 +46,9 @@ impl SimulatedCable {
             return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
         }
         let before = self.breaks.len();
+        if inertia == Inertia::QuasiStatic {
+            self.former_energy = None;
+        }
         let done = self.advance_to_turns(dt_s, inertia);
         let broke_now = self.breaks.get(before..).and_then(<[_]>::last).filter(|_| inertia == Inertia::QuasiStatic);
         done.map_err(|why| match broke_now {
@@ -83,7 +86,7 @@ impl SimulatedCable {
         let breaking_n = self.problem.cable.breaking_tension_n;
         let mut k = 0;
         while k < self.pieces.len() {
-            let may_break = self.settings.breaks && self.pieces.len() < MAX_PIECES;
+            let may_break = self.settings.breaks && self.count_pieces() < MAX_PIECES;
             let Some(piece) = self.pieces.get_mut(k) else { break };
             // A whole cable takes the very step it was asked for.
             let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
@@ -102,6 +105,7 @@ impl SimulatedCable {
             }
         }
         self.note_reach();
+        self.note_exchanged_energy();
         Ok(sum)
     }
 }

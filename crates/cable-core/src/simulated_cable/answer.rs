@@ -4,7 +4,7 @@
 use super::SimulatedCable;
 use super::piece::Piece;
 use crate::problem::SupportPoint;
-use crate::solution::{Assumptions, CableSolution, EnergyAccount, MomentumAccount, SupportReaction};
+use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
 use crate::state::State;
 
 /// Part by which sums of times round.
@@ -34,6 +34,8 @@ impl SimulatedCable {
             if !out.nodes.is_empty() || piece.part.supports.first() == Some(&None) {
                 out.breaks.push(out.nodes.len());
             }
+            let first = out.nodes.len();
+            out.breaks.extend(piece.answer.breaks.iter().map(|node| first + node));
             out.nodes.extend(piece.answer.nodes.iter().map(|n| {
                 let mut n = *n;
                 n.arc_length_m += from;
@@ -60,12 +62,6 @@ impl SimulatedCable {
         let over_s = self.time_s() - self.peaks_since_s;
         let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= TIME_TOLERANCE * over_s);
         let accounts: Option<Vec<MomentumAccount>> = self.pieces.iter().map(whole).collect();
-        accounts?.into_iter().reduce(|a, b| a.with(&b))
-    }
-
-    /// The energy account of all pieces since the cable last broke, where each has one.
-    fn energy_account(&self) -> Option<EnergyAccount> {
-        let accounts: Option<Vec<EnergyAccount>> = self.pieces.iter().map(|p| p.answer.energy_account).collect();
         accounts?.into_iter().reduce(|a, b| a.with(&b))
     }
 

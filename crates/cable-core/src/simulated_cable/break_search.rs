@@ -4,8 +4,9 @@
 use super::piece::Piece;
 use crate::breakage::rupture::{self, Rupture};
 use crate::error::SolveError;
-use crate::model::tension_gauge::Limit;
-use crate::model::{Inertia, StepReport};
+use crate::math::larger;
+use crate::model::tension_gauge::{Limit, TensionGauge};
+use crate::model::{Inertia, Mechanics, StepReport};
 use crate::solution::TensionPeaks;
 use crate::state::State;
 
@@ -19,8 +20,8 @@ const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 /// step is found to 1e-2 of the step.
 const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
-/// A break in the last such part of a step is put at its end: over a millionth of a step the forces
-/// of inertia would be rounding.
+/// A break in the last such part of a step is put at its end, and one in the first such part at the
+/// end of that: over a millionth of a step the forces of inertia would be rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// The break of a piece.
@@ -84,10 +85,17 @@ impl Piece {
         let (mut left_s, h) = (dt_s, dt_s / parts);
         let mut peaks: Option<TensionPeaks> = None;
         for _ in 0..parts as usize {
-            let state = self.mechanics.state();
+            let start = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
             let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
+            let before = breaking_n.map(|_| self.mechanics.boxed_clone());
             let done = self.gauged_step(step_s, breaking_n);
+            let (reached, end_s) = (self.gauge.reached(), self.mechanics.time_s());
+            if let (Ok(_), Some(reached), Some(before)) =
+                (&done, reached, before.filter(|_| self.breaks_in_own_motion()))
+            {
+                self.step_to_break(before, [start.time_s, step_s, reached.time_s]);
+            }
             self.refresh_answer();
             self.accumulate_momentum();
             sum.add(done?);
@@ -95,24 +103,52 @@ impl Piece {
             peaks = self.gauge.peaks();
             left_s -= step_s;
             self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
-            if let Some(reached) = self.gauge.reached() {
+            if let Some(reached) = reached {
                 let now = self.mechanics.state();
-                let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
+                let fraction = ((reached.time_s - start.time_s) / (end_s - start.time_s)).clamp(0.0, 1.0);
                 let at = Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
-                let state =
-                    if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
+                let state = if self.breaks_in_own_motion() || 1.0 - fraction < MIN_STEP_REMAINDER {
+                    now
+                } else {
+                    rupture::between(&start, &now, fraction)
+                };
                 return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)
     }
 
+    /// True if the piece takes a step to the instant of a break, so that it breaks in a state of
+    /// its own motion: an energy account goes on from there, and a mean of two states in which the
+    /// cable does not run through itself may be one in which it does. Others break in the mean of
+    /// two states.
+    fn breaks_in_own_motion(&self) -> bool {
+        self.mechanics.stored_energy().is_some() || self.mechanics.problem().cable.self_contact
+    }
+
+    /// After a step in which it breaks, the piece takes a shorter one from the state `before` to
+    /// that time, with which a cable at rest begins to move. A break near the end of the step is
+    /// put there, and one near its start a little later.
+    fn step_to_break(&mut self, before: Box<dyn Mechanics>, [start_s, step_s, break_s]: [f64; 3]) {
+        let part = larger((break_s - start_s) / step_s, MIN_STEP_REMAINDER);
+        if 1.0 - part < MIN_STEP_REMAINDER {
+            return;
+        }
+        let mut at_break = before;
+        // The gauge has seen the step.
+        if at_break.advance_gauged(part * step_s, Inertia::Dynamic, &mut TensionGauge::off()).is_ok() {
+            self.mechanics = at_break;
+        }
+    }
+
     /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
     /// break.
     fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
         let tension_n = breaking_n.unwrap_or(f64::INFINITY);
-        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.breakable_range() };
-        self.gauge.watch(limit);
+        let limit = |(within_m, from_s): ([f64; 2], f64)| Limit { tension_n, from_s, within_m };
+        let limits: Vec<Limit> =
+            self.breakable_ranges().zip(self.unwatched_until_s.iter().copied()).map(limit).collect();
+        self.gauge.watch(limits);
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }
 
@@ -153,9 +189,9 @@ impl Piece {
             let now = self.mechanics.state();
             let awake = self.unwatched_steps == 0;
             self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
-            let [low, high] = self.breakable_range();
-            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
-            {
+            let ranges: Vec<[f64; 2]> = self.breakable_ranges().collect();
+            let breakable = |s: f64| ranges.iter().any(|[low, high]| *low <= s && s <= *high);
+            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, breakable) {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;
                 let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
@@ -163,15 +199,5 @@ impl Piece {
             }
         }
         Ok(StepOutcome::Intact)
-    }
-
-    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
-    /// break.
-    fn breakable_range(&self) -> [f64; 2] {
-        let least = 0.5 * self.element();
-        let new = |end: Option<&Option<usize>>| end == Some(&None);
-        let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
-        let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
-        [low, high]
     }
 }

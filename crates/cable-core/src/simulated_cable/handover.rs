@@ -1,10 +1,15 @@
 //! The same cable goes on in another state, by another model or after an edit.
 
 use super::SimulatedCable;
+use super::piece::Piece;
+use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
 use crate::model::{Model, ModelSource, Settings};
 use crate::problem::Problem;
 use crate::state::State;
+
+/// Part of a piece's length by which the places of a break and of a support differ by rounding.
+const SAME_PLACE: f64 = 1e-6;
 
 impl SimulatedCable {
     /// Returns the same cable by another model: in its present state, or on its route where no time
@@ -47,6 +52,42 @@ impl SimulatedCable {
         }
     }
 
+    /// Builds a piece like one of another model: in one mesh if this model can break, else as what
+    /// it broke into.
+    fn rebuilt_piece(&self, old: &Piece) -> Result<Vec<Piece>, SolveError> {
+        let state = old.mechanics.state();
+        let mut piece = self.build_piece(old.part.clone(), &state)?;
+        if old.breaks.is_empty() {
+            return Ok(vec![piece]);
+        }
+        if old.breaks.iter().all(|place| piece.break_in_model(*place, f64::NEG_INFINITY, 0.0)) {
+            // The nodes on both sides of a break are told apart only now.
+            piece.mechanics.set_state(&state)?;
+            piece.refresh_answer();
+            return Ok(vec![piece]);
+        }
+        let mut parts = vec![old.part.clone()];
+        for place in &old.breaks {
+            let at = old.part.from + place.arc_length_m;
+            let cut = Cut {
+                at,
+                near: SAME_PLACE * old.part.length(),
+                after: place.gives_way_after,
+                support_arc_lengths: &self.support_arc_lengths(),
+                cleared_wheels: &[],
+            };
+            if let Some(last) = parts.pop() {
+                parts.extend(last.cut(&self.problem, &cut));
+            }
+        }
+        let own = |(part, mut state): (CablePart, State)| {
+            let from = state.arc_length_m.first().copied().unwrap_or(0.0);
+            state.arc_length_m.iter_mut().for_each(|s| *s -= from);
+            self.build_piece(part, &state)
+        };
+        parts.into_iter().zip(state.pieces()).map(own).collect()
+    }
+
     /// Continues from where `old`, the same cable before an edit, is: broken where that one broke.
     pub fn continue_from(&mut self, old: &Self) -> Result<(), SolveError> {
         let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
@@ -70,7 +111,7 @@ impl SimulatedCable {
         self.targets.supports.clone_from(&old.targets.supports);
         let mut pieces = Vec::with_capacity(old.pieces.len());
         for p in &old.pieces {
-            pieces.push(self.build_piece(p.part.clone(), &p.mechanics.state())?);
+            pieces.extend(self.rebuilt_piece(p)?);
         }
         self.pieces = pieces;
         self.breaks.clone_from(&old.breaks);

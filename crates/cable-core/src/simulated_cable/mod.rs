@@ -7,20 +7,24 @@
 //! | `piece.rs` | one piece with its model, and its last answer |
 //! | `break_search.rs` | a step of a piece, and the instant in it at which the piece breaks |
 //! | `split.rs` | the pieces that replace one that broke, and pulleys that their ends run off |
+//! | `energy_over_breaks.rs` | the energy account of a cable whose models were replaced |
 //! | `support_targets.rs` | supports that are dragged or pulled, and the robot's pose |
 //! | `obstacles_in_reach.rs` | obstacles that a cable comes to which were out of its reach |
 //! | `handover.rs` | the same cable in another state, by another model or after an edit |
 //! | `answer.rs` | the pieces read as one cable |
 //! | `support_speed_limit.rs` | motions of supports that are too fast to be followed |
 //!
-//! A model knows one unbroken cable. Where the tension reaches the breaking tension,
+//! Most models know unbroken cables only. Where the tension reaches the breaking tension,
 //! [`SimulatedCable`] stops the model there, distributes supports and loads over two shorter
 //! [`Problem`]s with free ends (`crate::breakage`), and continues with a model for each, from the
-//! positions and velocities of that instant. Every model can break, and none knows that it can.
+//! positions and velocities of that instant. So every model can break. Pieces of models of their
+//! own do not meet each other; a model that lets a cable touch itself keeps the pieces in one mesh
+//! ([`Mechanics::break_at`](crate::model::Mechanics::break_at)), and is one [`Piece`] here.
 
 mod advance;
 mod answer;
 mod break_search;
+mod energy_over_breaks;
 mod handover;
 mod obstacles_in_reach;
 mod piece;
@@ -32,6 +36,7 @@ mod tests;
 
 use std::sync::Arc;
 
+use self::energy_over_breaks::FormerEnergy;
 use self::piece::Piece;
 use self::support_speed_limit::too_fast;
 use self::support_targets::{SupportGrip, SupportTarget, Targets};
@@ -52,6 +57,8 @@ pub(crate) struct SimulatedCable {
     settings: Settings,
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
+    /// The energy account of the models that pieces replaced; None where there is none.
+    former_energy: Option<FormerEnergy>,
     targets: Targets,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
@@ -82,6 +89,7 @@ impl SimulatedCable {
             settings,
             pieces: vec![piece],
             breaks: Vec::new(),
+            former_energy: None,
             targets,
             peaks: None,
             peaks_since_s: 0.0,
@@ -107,6 +115,11 @@ impl SimulatedCable {
     /// The settings with which it was built.
     pub fn settings(&self) -> Settings {
         self.settings
+    }
+
+    /// Number of pieces of the cable.
+    fn count_pieces(&self) -> usize {
+        self.pieces.iter().map(|p| 1 + p.breaks.len()).sum()
     }
 
     /// The whole cable's problem.
@@ -240,6 +253,7 @@ impl SimulatedCable {
             settings: self.settings,
             pieces,
             breaks: self.breaks.clone(),
+            former_energy: self.former_energy,
             targets: self.targets.clone(),
             peaks: self.peaks,
             peaks_since_s: self.peaks_since_s,

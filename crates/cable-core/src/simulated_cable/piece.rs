@@ -1,8 +1,8 @@
 //! A piece is a part of the cable that holds together, with its model and its last answer.
 
 use crate::breakage::CablePart;
-use crate::model::Mechanics;
 use crate::model::tension_gauge::TensionGauge;
+use crate::model::{BreakPlace, Mechanics};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, MomentumAccount, TensionPeak, TensionPeaks};
@@ -20,8 +20,10 @@ pub(super) struct Piece {
     pub answer: CableSolution,
     /// Steps, of those after a break, in which it is still not asked whether it breaks …
     pub unwatched_steps: u32,
-    /// … and the time before which it is not asked, s.
-    pub unwatched_until_s: f64,
+    /// … and for each of its stretches between breaks the time before which it is not asked, s.
+    pub unwatched_until_s: Vec<f64>,
+    /// Places, in its own arc lengths and in order, at which its model has broken it.
+    pub breaks: Vec<BreakPlace>,
     /// Its tension in the inner steps of its model, in its own arc lengths.
     pub gauge: TensionGauge,
     /// Its momentum since the caller's step began, as far as there is an account of it.
@@ -31,7 +33,16 @@ pub(super) struct Piece {
 impl Piece {
     pub fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
         let answer = mechanics.solution();
-        Self { answer, mechanics, part, unwatched_steps: 0, unwatched_until_s: f64::NEG_INFINITY, gauge, account: None }
+        Self {
+            answer,
+            mechanics,
+            part,
+            unwatched_steps: 0,
+            unwatched_until_s: vec![f64::NEG_INFINITY],
+            breaks: Vec::new(),
+            gauge,
+            account: None,
+        }
     }
 
     pub fn refresh_answer(&mut self) {
@@ -48,7 +59,47 @@ impl Piece {
 
     /// Mean length of an element, m.
     pub fn element(&self) -> f64 {
-        self.part.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
+        self.part.length() / self.answer.nodes.len().saturating_sub(1 + self.breaks.len()).max(1) as f64
+    }
+
+    /// The arc lengths (its own, m) between which each of its stretches lies.
+    pub fn stretches(&self) -> impl Iterator<Item = [f64; 2]> {
+        let places = || self.breaks.iter().map(|b| b.arc_length_m);
+        std::iter::once(0.0).chain(places()).zip(places().chain([self.part.length()])).map(|(a, b)| [a, b])
+    }
+
+    /// The arc lengths (its own, m) between which each of its stretches may break: not at an end
+    /// that is free since a break.
+    pub fn breakable_ranges(&self) -> impl Iterator<Item = [f64; 2]> {
+        let least = 0.5 * self.element();
+        let (first, last) = (self.part.supports.first(), self.part.supports.last());
+        let breaks = self.breaks.len();
+        self.stretches().enumerate().map(move |(k, [from, to])| {
+            let low = if k > 0 || first == Some(&None) { from + least } else { f64::NEG_INFINITY };
+            let high = if k < breaks || last == Some(&None) { to - least } else { f64::INFINITY };
+            [low, high]
+        })
+    }
+
+    /// Lets its model break it and go on with both pieces; `wave_s_per_m` is the time (s/m) of a
+    /// wave along the cable. Returns whether the model can.
+    pub fn break_in_model(&mut self, place: BreakPlace, time_s: f64, wave_s_per_m: f64) -> bool {
+        if !self.mechanics.break_at(&place) {
+            return false;
+        }
+        let k = self.breaks.partition_point(|b| b.arc_length_m < place.arc_length_m);
+        let inside = place.arc_length_m > 0.0 && place.arc_length_m < self.part.length();
+        if inside {
+            self.breaks.insert(k, place);
+            self.unwatched_until_s.insert(k, f64::NEG_INFINITY);
+        }
+        let lengths: Vec<f64> = self.stretches().map(|[from, to]| to - from).collect();
+        let new = self.unwatched_until_s.iter_mut().zip(lengths).skip(k).take(1 + usize::from(inside));
+        for (until_s, length) in new {
+            *until_s = time_s + 2.0 * length * wave_s_per_m;
+        }
+        self.refresh_answer();
+        true
     }
 
     /// The greatest tensions of the last advance, with the nodes at its end where it did not break,
@@ -93,7 +144,8 @@ impl Piece {
             part: self.part.clone(),
             answer: self.answer.clone(),
             unwatched_steps: self.unwatched_steps,
-            unwatched_until_s: self.unwatched_until_s,
+            unwatched_until_s: self.unwatched_until_s.clone(),
+            breaks: self.breaks.clone(),
             gauge: self.gauge.clone(),
             account: self.account,
         }

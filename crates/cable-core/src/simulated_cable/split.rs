@@ -4,11 +4,13 @@ use std::sync::Arc;
 
 use super::SimulatedCable;
 use super::break_search::BreakPoint;
+use super::energy_over_breaks::Replacement;
 use super::piece::Piece;
 use crate::breakage::{Break, CablePart, Cut, rupture};
 use crate::error::SolveError;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Settings};
+use crate::model::{BreakPlace, Inertia, Mechanics, Settings};
+use crate::problem::Problem;
 use crate::state::State;
 
 /// Steps after a break in which a piece is not asked whether it breaks: the models start with a
@@ -19,12 +21,22 @@ use crate::state::State;
 /// once, which no cable does.
 const UNWATCHED_STEPS: u32 = 2;
 
+/// The division of a piece at a break.
+struct Division<'a> {
+    cut: &'a Cut<'a>,
+    /// What it breaks into.
+    parts: &'a [CablePart],
+    /// The problem with obstacles that the whole cable could not reach, if there are any.
+    grown: Option<Arc<Problem>>,
+}
+
 impl SimulatedCable {
     /// Replaces a piece by those it breaks into.
     pub(super) fn split(&mut self, k: usize, point: &BreakPoint, inertia: Inertia) -> Result<(), SolveError> {
         let (support_arc_lengths, cleared_wheels) = (self.support_arc_lengths(), self.cleared_wheels());
         // The pieces may come to obstacles that the whole cable could not reach.
-        if let Some(problem) = self.problem.with_all_obstacles() {
+        let grown = self.problem.with_all_obstacles();
+        if let Some(problem) = grown.clone() {
             self.problem = problem;
         }
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
@@ -49,10 +61,60 @@ impl SimulatedCable {
         };
         let from = piece.part.from;
         self.breaks.push(event);
+        if let Some(broken) =
+            self.break_in_model(k, Division { cut: &cut, parts: &parts, grown }, point.time_s, inertia)?
+        {
+            self.pieces.splice(k..=k, [broken]);
+            return Ok(());
+        }
         let new_pieces = parts.into_iter().map(|part| self.piece_after_break(part, from, point, inertia));
         let new_pieces = new_pieces.collect::<Result<Vec<_>, SolveError>>()?;
+        let next: Vec<&dyn Mechanics> = new_pieces.iter().map(|p| &*p.mechanics).collect();
+        self.replace_account(k, &next, Replacement::Break);
         self.pieces.splice(k..=k, new_pieces);
         Ok(())
+    }
+
+    /// The piece after its model has broken it and goes on with what it broke into; None if the
+    /// model cannot.
+    fn break_in_model(
+        &mut self,
+        k: usize,
+        division: Division<'_>,
+        time_s: f64,
+        inertia: Inertia,
+    ) -> Result<Option<Piece>, SolveError> {
+        let Division { cut, parts, grown } = division;
+        let Some(piece) = self.pieces.get(k).filter(|p| p.mechanics.problem().cable.self_contact) else {
+            return Ok(None);
+        };
+        let (mut broken, rebuilt) = (piece.clone(), grown.is_some());
+        if let Some(problem) = grown {
+            broken.mechanics = self.source.build(problem, self.settings)?;
+            self.targets.tell(&broken.part, broken.mechanics.as_mut());
+            let state = State { in_motion: inertia == Inertia::Dynamic, ..piece.mechanics.state() };
+            broken.mechanics.set_state(&state)?;
+        }
+        let (from, length) = (broken.part.from, broken.part.length());
+        let arc_length_m = match parts {
+            [_] if cut.at - from <= cut.near => 0.0,
+            [_] => length,
+            _ => cut.at - from,
+        };
+        let place = BreakPlace { arc_length_m, gives_way_after: cut.after };
+        let wave_s_per_m = (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
+        if !broken.break_in_model(place, time_s, wave_s_per_m) {
+            return Ok(None);
+        }
+        if rebuilt {
+            self.replace_account(k, &[&*broken.mechanics], Replacement::Break);
+        }
+        if let [torn_off] = parts {
+            broken.part = torn_off.clone();
+        }
+        broken.unwatched_steps = UNWATCHED_STEPS;
+        broken.gauge = TensionGauge::over(self.problem.cable.breaking_time_s);
+        Ok(Some(broken))
     }
 
     /// Builds a piece of one that began at `from` (m on the whole cable) and broke.
@@ -70,7 +132,7 @@ impl SimulatedCable {
             2.0 * part.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
         let mut piece = self.build_piece(part, &state)?;
         piece.unwatched_steps = UNWATCHED_STEPS;
-        piece.unwatched_until_s = point.time_s + there_and_back_s;
+        piece.unwatched_until_s = vec![point.time_s + there_and_back_s];
         Ok(piece)
     }
 
@@ -95,6 +157,7 @@ impl SimulatedCable {
                 let mut state = piece.mechanics.state();
                 state.in_motion = inertia == Inertia::Dynamic;
                 let next = self.build_piece(piece.part.without(support), &state)?;
+                self.replace_account(k, &[&*next.mechanics], Replacement::Edit);
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
                 }

@@ -338,6 +338,46 @@ fn an_edit_keeps_the_pieces_and_reset_mends_them() {
     assert_eq!(sim.solution().cables, rest.cables);
 }
 
+/// The same of a cable that may touch itself: its pieces go on in one mesh, in the same places, and
+/// in two where the model does not know broken cables.
+#[test]
+fn an_edit_keeps_pieces_that_can_touch_each_other() {
+    let mut scene = span(9.81, [9.9, 0.0]);
+    scene.cables[0].self_contact = true;
+    scene.cables[0].diameter_m = 0.02;
+    let top = Support { arc_length_m: Some(5.2), ..Support::fixed("top", [4.9, 0.6]) };
+    scene.cables[0].supports.insert(1, top);
+    scene.cables[0].length_m = 10.4;
+    moved(&mut scene, 2, vec![0.0, 0.4], vec![[9.9, 0.0], [10.4, 0.0]]);
+    (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (300.0, 600.0);
+    for model in [Model::Fem, Model::Auto] {
+        let mut sim = Simulation::new(scene.clone(), model).unwrap();
+        sim.settle().unwrap();
+        while broken(&sim.solution()).is_empty() || sim.time_s() < 0.4 {
+            sim.step(1.0 / 240.0).unwrap();
+            assert!(sim.time_s() < 2.0, "it does not break");
+        }
+        let before = sim.solution();
+        assert_eq!((sim.cables()[0].pieces.len(), before.cables[0].pieces().count()), (1, 2), "{model}");
+        let mut other = scene.clone();
+        other.cables[0].damping_ratio *= 2.0;
+        let mut edited = sim.with_scene(other, crate::Settings::default()).unwrap();
+        let after = edited.solution();
+        assert_eq!(after.cables[0].nodes.len(), before.cables[0].nodes.len(), "{model}");
+        for (a, b) in after.cables[0].nodes.iter().zip(&before.cables[0].nodes) {
+            assert!((a.at() - b.at()).norm() < 1e-4, "{model}: {a:?} {b:?}");
+        }
+        assert_eq!((edited.cables()[0].pieces.len(), broken(&after)), (1, broken(&before)), "{model}");
+        for _ in 0..120 {
+            edited.step(1.0 / 240.0).unwrap();
+            finite(&edited);
+        }
+        assert_eq!(edited.solution().cables[0].breaks, before.cables[0].breaks);
+        sim.reset();
+        assert!(broken(&sim.solution()).is_empty() && sim.solution().cables[0].breaks.is_empty());
+    }
+}
+
 /// Over a pulley between two tight spans: where it breaks, the part with the pulley slips off it
 /// and falls.
 #[test]

@@ -23,6 +23,19 @@ impl Energy {
     }
 }
 
+impl std::ops::Mul<f64> for Energy {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            kinetic_j: self.kinetic_j * factor,
+            gravity_j: self.gravity_j * factor,
+            stretch_j: self.stretch_j * factor,
+            bending_j: self.bending_j * factor,
+        }
+    }
+}
+
 impl std::iter::Sum for Energy {
     fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
         all.fold(Self::default(), |s, e| Self {

@@ -35,6 +35,9 @@ pub struct EnergyAccount {
     pub impacts_j: f64,
     /// Energy that changes of the mesh gave the cable, J.
     pub edits_j: f64,
+    /// Energy that breaks gave the cable, J: the pieces have the material, the places and the
+    /// velocities of the cable, but no bend where it broke, and their own division into bars.
+    pub breaks_j: f64,
     /// Energy that the time integrator gave the cable, J: what its inertia forces did less the
     /// change of kinetic energy, and what conservative forces did less the change of potential.
     pub numerical_j: f64,
@@ -45,15 +48,15 @@ pub struct EnergyAccount {
 
 impl EnergyAccount {
     /// The kinds of work in the order of [`Self::works_j`].
-    pub const KINDS: [&'static str; 8] =
-        ["supports", "loads", "outlines", "friction", "material", "impacts", "edits", "numerical"];
+    pub const KINDS: [&'static str; 9] =
+        ["supports", "loads", "outlines", "friction", "material", "impacts", "edits", "breaks", "numerical"];
 
     /// The works in the order of the fields, J.
     #[must_use]
-    pub fn works_j(&self) -> [f64; 8] {
-        let Self { supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j, .. } =
-            *self;
-        [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j]
+    pub fn works_j(&self) -> [f64; 9] {
+        let Self { supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, .. } = *self;
+        let Self { edits_j, breaks_j, numerical_j, .. } = *self;
+        [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, breaks_j, numerical_j]
     }
 
     /// True if all of it is a number.
@@ -75,9 +78,17 @@ impl EnergyAccount {
             material_j: self.material_j + other.material_j,
             impacts_j: self.impacts_j + other.impacts_j,
             edits_j: self.edits_j + other.edits_j,
+            breaks_j: self.breaks_j + other.breaks_j,
             numerical_j: self.numerical_j + other.numerical_j,
             exchanged_j: self.exchanged_j + other.exchanged_j,
         }
+    }
+
+    /// Half of the sum of the magnitudes of gains and works, J.
+    pub(crate) fn half_sum_j(&self) -> f64 {
+        let Energy { kinetic_j, gravity_j, stretch_j, bending_j } = self.gained;
+        let gains = [kinetic_j, gravity_j, stretch_j, bending_j];
+        0.5 * gains.into_iter().chain(self.works_j()).map(f64::abs).sum::<f64>()
     }
 
     /// The part of the gains that no work accounts for, J: 0 but for what inner steps leave
@@ -99,12 +110,14 @@ impl EnergyAccount {
             material_j,
             impacts_j,
             edits_j,
+            breaks_j,
             numerical_j,
             exchanged_j,
         } = self;
         *over_s *= time;
         let gains = [kinetic_j, gravity_j, stretch_j, bending_j, exchanged_j];
-        let works = [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, numerical_j];
+        let works =
+            [supports_j, loads_j, outlines_j, friction_j, material_j, impacts_j, edits_j, breaks_j, numerical_j];
         gains.into_iter().chain(works).for_each(|e| *e *= energy);
     }
 }

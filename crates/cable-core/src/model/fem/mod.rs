@@ -47,12 +47,14 @@ use crate::math::{RigidPose, Vec2, larger};
 use crate::model::fem::equilibrium_search::TwoMeshes;
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::obstacle::{outline_report, place_outline};
+use crate::model::fem::remesh::break_cable;
+use crate::model::fem::state::stored_energy;
 use crate::model::fem::system::WorkBudget;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
+use crate::model::{BreakPlace, Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, ErrorEstimates};
+use crate::solution::{CableSolution, Energy, ErrorEstimates};
 use crate::state::State;
 
 pub use crate::model::fem::settings::Tuning;
@@ -125,6 +127,11 @@ impl FemModel {
     /// The tuned constants with which it is solved.
     fn tuning(&self) -> &Arc<Tuning> {
         &self.stepper.cable.mesh.tuning
+    }
+
+    /// True if the cable is broken: no other solver and no other model knows its pieces.
+    pub(in crate::model) fn is_broken(&self) -> bool {
+        self.stepper.cable.mesh.breaks().next().is_some()
     }
 
     /// Removes the sliding nodes at corners and posts, so that every node moves with its material:
@@ -296,6 +303,23 @@ impl Mechanics for FemModel {
 
     fn start_without_spans(&mut self) {
         self.starts_from_spans = false;
+    }
+
+    fn break_at(&mut self, place: &BreakPlace) -> bool {
+        let broken = self.present == PresentPart::Stepper
+            && self.elastica_answer.is_none()
+            && break_cable(&mut self.stepper.cable, place);
+        if broken {
+            self.meshes = TwoMeshes::default();
+            self.stepper.time_control.sleep.wake();
+            self.stepper.rested = true;
+        }
+        broken
+    }
+
+    fn stored_energy(&self) -> Option<Energy> {
+        let counts = self.present == PresentPart::Stepper && self.stepper.accounts_energy;
+        counts.then(|| stored_energy(&self.stepper.cable))
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {

@@ -18,9 +18,9 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2};
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
+use crate::model::{BreakPlace, Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, ModelReason};
+use crate::solution::{CableSolution, Energy, ModelReason};
 use crate::state::State;
 
 /// The changes that a layer makes. A method that it does not implement calls the inner model, or
@@ -77,6 +77,16 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
 
     fn set_robot_pose(&mut self, to: RigidPose) {
         self.inner_mut().set_robot_pose(to);
+    }
+
+    /// See [`Mechanics::break_at`].
+    fn break_at(&mut self, place: &BreakPlace) -> bool {
+        self.inner_mut().break_at(place)
+    }
+
+    /// Translates an energy of the inner model.
+    fn outer_energy(&self, energy: Energy) -> Energy {
+        energy
     }
 
     /// See [`Mechanics::fall_back`].
@@ -200,6 +210,14 @@ impl<L: Layer> Mechanics for Layered<L> {
 
     fn robot_contact(&self) -> Option<RobotContact> {
         self.0.inner().robot_contact()
+    }
+
+    fn break_at(&mut self, place: &BreakPlace) -> bool {
+        self.0.break_at(place)
+    }
+
+    fn stored_energy(&self) -> Option<Energy> {
+        self.0.inner().stored_energy().map(|energy| self.0.outer_energy(energy))
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {

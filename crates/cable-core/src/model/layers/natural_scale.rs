@@ -11,10 +11,10 @@ use super::{Layer, Layered};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Mechanics, StepReport};
+use crate::model::{BreakPlace, Inertia, Mechanics, StepReport};
 use crate::problem::Problem;
 use crate::scene::similarity::Similarity;
-use crate::solution::{CableSolution, ModelReason, Warning};
+use crate::solution::{CableSolution, Energy, ModelReason, Warning};
 use crate::state::State;
 
 /// Longest time of the copy in one step, s: every model can take such a step.
@@ -180,6 +180,14 @@ impl Layer for ScaledModel {
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.inner.pull_support(support, self.by.place(hand_m));
+    }
+
+    fn break_at(&mut self, place: &BreakPlace) -> bool {
+        self.inner.break_at(&BreakPlace { arc_length_m: place.arc_length_m * self.by.length, ..*place })
+    }
+
+    fn outer_energy(&self, energy: Energy) -> Energy {
+        energy * (1.0 / self.by.length)
     }
 
     fn outer_time(&self, time_s: f64) -> f64 {

@@ -18,9 +18,9 @@ use crate::model::initial_equilibrium::{is_buried, meets_itself, meets_outline, 
 use crate::model::mobilised_friction::refuse_mobilised;
 use crate::model::spans::SpansModel;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
+use crate::model::{BreakPlace, Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, ModelReason, Node, Warning};
+use crate::solution::{CableSolution, Energy, ModelReason, Node, Warning};
 use crate::state::State;
 
 /// Greatest displacement of the cable when it is handed back, the larger of a length (m) and a
@@ -330,6 +330,9 @@ impl Mechanics for SwitchingModel {
     }
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(broken) = self.fem.as_mut().filter(|fem| fem.is_broken()) {
+            return broken.set_state(state);
+        }
         self.spans.set_state(state)?;
         let moves = state.moves();
         self.adopted = Some(state.clone());
@@ -392,6 +395,14 @@ impl Mechanics for SwitchingModel {
         if let Some(fem) = &mut self.fem {
             fem.limit_work(work);
         }
+    }
+
+    fn break_at(&mut self, place: &BreakPlace) -> bool {
+        self.fem.as_mut().is_some_and(|fem| fem.break_at(place))
+    }
+
+    fn stored_energy(&self) -> Option<Energy> {
+        self.fem.as_ref().and_then(Mechanics::stored_energy)
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {

@@ -33,7 +33,8 @@ const SAME_TIME_S: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub struct TensionGauge {
     on: bool,
-    limit: Limit,
+    /// The limits, of one stretch of the cable each.
+    limits: Vec<Limit>,
     /// Arc length and time of the cable over those of the model that is gauged.
     scale: [f64; 2],
     /// Arc lengths of the material points, m.
@@ -64,7 +65,7 @@ impl TensionGauge {
     pub fn off() -> Self {
         Self {
             on: false,
-            limit: Limit::default(),
+            limits: Vec::new(),
             scale: [1.0; 2],
             points: Vec::new(),
             time_s: f64::NAN,
@@ -85,8 +86,9 @@ impl TensionGauge {
     }
 
     /// Begins a step of the caller: earlier peaks are forgotten, the history of tensions is not.
-    pub fn watch(&mut self, limit: Limit) {
-        self.limit = limit;
+    pub fn watch(&mut self, limits: impl IntoIterator<Item = Limit>) {
+        self.limits.clear();
+        self.limits.extend(limits);
         (self.greatest, self.means) = (None, PeaksOfMeans::default());
     }
 
@@ -198,8 +200,8 @@ impl TensionGauge {
         if !(self.on && h > 0.0) {
             return;
         }
-        let (points, limit, means) = (&self.points, &self.limit, &mut self.means);
-        let mut look = |times_s: [f64; 2], tensions: [&[f64]; 2]| means.look_at(points, limit, times_s, tensions);
+        let (points, limits, means) = (&self.points, &self.limits, &mut self.means);
+        let mut look = |times_s: [f64; 2], tensions: [&[f64]; 2]| means.look_at(points, limits, times_s, tensions);
         if self.mean.over_s > 0.0 {
             self.mean.advance([from_s, to_s], [&self.now, &self.next], look);
         } else {

@@ -29,15 +29,16 @@ pub(super) struct PeaksOfMeans {
 }
 
 impl PeaksOfMeans {
-    /// Looks at means (N) between two times (s) at which they are known.
-    pub fn look_at(&mut self, points: &[f64], limit: &Limit, [from_s, to_s]: [f64; 2], [was, is]: [&[f64]; 2]) {
+    /// Compares means (N) with the limits, of one stretch each, between two times (s) at which they
+    /// are known.
+    pub fn look_at(&mut self, points: &[f64], limits: &[Limit], [from_s, to_s]: [f64; 2], [was, is]: [&[f64]; 2]) {
         if self.reached.is_some() {
             return;
         }
         let most = greatest_of(is);
-        if most >= limit.tension_n && to_s >= limit.from_s {
+        let mut first: Option<(TensionPeak, f64)> = None;
+        for limit in limits.iter().filter(|limit| most >= limit.tension_n && to_s >= limit.from_s) {
             let [low, high] = limit.within_m;
-            let mut first: Option<(TensionPeak, f64)> = None;
             for ((&s, &had), &has) in points.iter().zip(was).zip(is) {
                 if !(has >= limit.tension_n && s >= low && s <= high) {
                     continue;
@@ -49,11 +50,11 @@ impl PeaksOfMeans {
                     first = Some((TensionPeak { tension_n, arc_length_m: s, time_s }, has));
                 }
             }
-            if let Some((first, _)) = first {
-                self.held = self.held.filter(|h| h.tension_n >= first.tension_n).or(Some(first));
-                self.reached = Some(first);
-                return;
-            }
+        }
+        if let Some((first, _)) = first {
+            self.held = self.held.filter(|h| h.tension_n >= first.tension_n).or(Some(first));
+            self.reached = Some(first);
+            return;
         }
         self.held = higher(self.held, points, is, most, to_s);
     }

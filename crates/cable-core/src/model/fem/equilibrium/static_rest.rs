@@ -6,7 +6,7 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::lagged_friction::rounding_of_bars;
 use crate::model::fem::equilibrium::relaxation::moved_away;
 use crate::model::fem::first_shape::{bow, depenetrate};
-use crate::model::fem::mesh::PUSHED_OUT_REACHES;
+use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES};
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way, put_outline};
 use crate::model::fem::results;
 use crate::model::fem::state::{CableState, prepare_input};
@@ -42,7 +42,7 @@ fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium>
     // The centre line is inside the obstacle itself, or nearly so; a cable that touches it is
     // outside.
     let least = -MAX_DEPTH_RADII * cable.problem.radius;
-    let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
+    let clear = |e: usize| mesh.is_break(e) || world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
     let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
     let [a, b] = mesh.straight(e, x);
     let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
@@ -51,8 +51,8 @@ fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium>
 }
 
 /// True if two bars of a cable at positions `x` (m) cross.
-fn crosses_itself(x: &[Vec2]) -> bool {
-    !crate::contact::self_crossings::crossings(x, |_| true).is_empty()
+fn crosses_itself(mesh: &Mesh, x: &[Vec2]) -> bool {
+    !crate::contact::self_crossings::crossings(x, |e| !mesh.is_break(e)).is_empty()
 }
 
 impl Stepper {
@@ -214,15 +214,17 @@ impl Stepper {
     /// self-contact is first sought as if the cable could pass through itself.
     fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.cable.motion.time;
-        let shape = self.cable.contacts.self_contacts.shape;
-        if !shape.is_on() {
+        if !self.cable.contacts.self_contacts.shape.is_on() {
             return Ok(self.relax(time, dragged));
         }
         if !self.rested {
-            self.cable.contacts.self_contacts.shape.diameter = 0.0;
+            let diameter = std::mem::replace(&mut self.cable.contacts.self_contacts.shape.diameter, 0.0);
             let found = self.relax(time, dragged);
-            self.cable.contacts.self_contacts.shape = shape;
-            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.positions) {
+            self.cable.contacts.self_contacts.shape.diameter = diameter;
+            if found.is_ok()
+                && !self.cable.touches_itself()
+                && !crosses_itself(&self.cable.mesh, &self.cable.motion.positions)
+            {
                 return Ok(found);
             }
             self.rollback.restore(&mut self.cable);
@@ -231,7 +233,7 @@ impl Stepper {
         }
         let overlap =
             self.cable.contacts.self_contacts.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
-        if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
+        if overlap.is_some() || crosses_itself(&self.cable.mesh, &self.cable.motion.positions) {
             let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
             let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });

@@ -24,6 +24,9 @@ impl FemModel {
         }
         self.elastica_answer = None;
         self.bending_error = None;
+        if self.is_broken() {
+            return self.stepper.settle(&self.dragged);
+        }
         if self.on_smooth_floor {
             return self.equilibrium_on_smooth_floor();
         }

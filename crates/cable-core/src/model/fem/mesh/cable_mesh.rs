@@ -28,7 +28,8 @@ pub struct Mesh {
     pub tuning: Arc<Tuning>,
     /// Unstretched arc length of each node at rest temperature, m, increasing.
     pub arc_length: Vec<f64>,
-    /// Unstretched length of each bar at the present temperature (thermal stretch · ds), m.
+    /// Unstretched length of each bar at the present temperature (thermal stretch · ds), m; 0: a
+    /// break, where two nodes have the same place in the cable and no bar joins them.
     pub rest_length: Vec<f64>,
     /// True if each node is held in place.
     pub held: Vec<bool>,
@@ -173,9 +174,30 @@ impl Mesh {
         !self.held[k] && self.sliding[k].is_none()
     }
 
-    /// The bar from node `e` to node `e + 1`.
+    /// True if the cable is broken between nodes `e` and `e + 1`: there is no bar.
+    #[inline]
+    #[must_use]
+    pub fn is_break(&self, e: usize) -> bool {
+        self.rest_length[e] == 0.0
+    }
+
+    /// The breaks, in order.
+    pub fn breaks(&self) -> impl Iterator<Item = usize> {
+        (0..self.rest_length.len()).filter(|&e| self.is_break(e))
+    }
+
+    /// True if the nodes beside an inner node `k` belong to the same piece as it.
+    #[must_use]
+    pub fn goes_on_through(&self, k: usize) -> bool {
+        !(self.is_break(k - 1) || self.is_break(k))
+    }
+
+    /// The bar from node `e` to node `e + 1`; without stiffness at a break.
     #[must_use]
     pub fn bar(&self, e: usize) -> Bar {
+        if self.is_break(e) {
+            return Bar { rest_length: 1.0, stiffness: 0.0 };
+        }
         Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
     }
 
@@ -260,6 +282,14 @@ impl Mesh {
         self.rest_length.insert(k, self.thermal_stretch * (b - arc_length));
         self.held.insert(k, false);
         self.sliding.insert(k, sliding);
+    }
+
+    /// Breaks the cable at node `k`: its second piece begins with node `k` + 1 at the same place.
+    pub(in crate::model::fem) fn break_at(&mut self, k: usize) {
+        self.arc_length.insert(k + 1, self.arc_length[k]);
+        self.rest_length.insert(k, 0.0);
+        self.held.insert(k + 1, false);
+        self.sliding.insert(k + 1, None);
     }
 
     /// Removes node `k`.

@@ -198,7 +198,7 @@ mod tests {
             let arc = [0.0, 1.0, 2.0, 3.0, 4.0];
             let pair = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                SelfContact { diameter: 0.01 }.pairs(x, &arc, 0.2, &mut SortedNodes::default(), &mut found);
+                SelfContact::of_diameter(0.01).pairs(x, &arc, 0.2, &mut SortedNodes::default(), &mut found);
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));

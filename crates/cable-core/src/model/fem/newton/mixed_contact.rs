@@ -143,7 +143,8 @@ impl Workspace {
         self.mixed.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
             let p = (unknowns.positions[e + 1] - unknowns.positions[e]).norm();
-            let pull = bar_energy::stiffness(mesh, p >= *l) * (p / l - 1.0);
+            let stretched = if mesh.is_break(e) { 0.0 } else { p / l - 1.0 };
+            let pull = bar_energy::stiffness(mesh, p >= *l) * stretched;
             let branch = PlainBar::of(mesh, input, e).branch(p);
             self.mixed.carried.push(bar_energy::BarIterate { pull, branch });
         }

@@ -33,7 +33,7 @@ impl Workspace {
             if slides != [false, false] {
                 free = self.kept_cable_bound(mesh, unknowns, e, free);
             }
-            if problem.world.is_empty() || slides == [true, true] {
+            if problem.world.is_empty() || slides == [true, true] || mesh.is_break(e) {
                 continue;
             }
             let x = &unknowns.positions;

@@ -43,7 +43,8 @@ impl<'a> IntersectionCheck<'a> {
 
     /// True if a bar meets nothing.
     pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
-        self.way_is_clear(&self.mesh.path(e, self.positions), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
+        self.mesh.is_break(e)
+            || self.way_is_clear(&self.mesh.path(e, self.positions), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
     /// Returns whether every bar between two free nodes is clear of obstacles. The positions of

@@ -163,11 +163,13 @@ impl<'a> OutlineStep<'a> {
         let way = self.outline.shape.max_displacement(&self.motion.from, &self.motion.to);
         let near: Vec<bool> = ends
             .iter()
-            .map(|e| {
-                self.is_near(
-                    e.map(|p| self.motion.carried(p)),
-                    self.step.mesh.tuning.outline.carried_distance_m + 4.0 * way,
-                )
+            .enumerate()
+            .map(|(k, e)| {
+                !self.step.mesh.is_break(k)
+                    && self.is_near(
+                        e.map(|p| self.motion.carried(p)),
+                        self.step.mesh.tuning.outline.carried_distance_m + 4.0 * way,
+                    )
             })
             .collect();
         if !near.contains(&true) {
@@ -260,7 +262,7 @@ impl<'a> OutlineStep<'a> {
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
         };
         let clear = ends.iter().enumerate().all(|(e, from)| {
-            let moved = mesh.straight(e, x) != *from;
+            let moved = mesh.straight(e, x) != *from && !mesh.is_break(e);
             (!moved || swept(e, *from, false))
                 && (!(moved || near[e]) || swept(e, from.map(|p| self.motion.carried(p)), true))
         });

@@ -5,12 +5,15 @@
 //! | `adapt.rs` | between steps: sliding nodes come and go, long bars cut, crowded nodes removed |
 //! | `edit_criteria.rs` | read-only tests of where a sliding node is needed or lifts off |
 //! | `edit.rs` | insertion and removal of one node; material, position and momentum kept |
+//! | `break_cable.rs` | a break: one node becomes two |
 //! | `arc_marks.rs` | marks on a round where material is counted: moved, added, removed |
 
 pub(in crate::model::fem) mod adapt;
 pub(in crate::model::fem) mod arc_marks;
+mod break_cable;
 pub(in crate::model::fem) mod edit;
 mod edit_criteria;
 
 pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
+pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};

@@ -26,7 +26,8 @@ pub(super) fn contacts(
     for obstacle in obstacles {
         let mut stretch: Vec<ContactPair> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
-            if stretch.last().is_some_and(|l| t.node > l.node + 1) {
+            let elsewhere = |l: &ContactPair| t.node > l.node + 1 || t.node > l.node && d.mesh.is_break(l.node);
+            if stretch.last().is_some_and(elsewhere) {
                 out.push(report(d, x, tension, lying_ends, &stretch));
                 stretch.clear();
             }

@@ -183,15 +183,25 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
     sum
 }
 
+/// Tension force (N) of a piece at its end at a break: at the last node `k` of the first piece
+/// (`side` 0) or the first node of the second one (1). Nothing pulls at a free end; a support or
+/// load there balances the bar.
+pub(super) fn force_at_break(d: &CableState, x: &[Vec2], tension: &[f64], k: usize, side: usize) -> Vec2 {
+    let loaded = d.meshing.support_node.contains(&Some(k)) || d.meshing.loads.iter().any(|l| l.0 == k);
+    let e = k + side - 1;
+    if loaded { d.mesh.direction(e, x) * tension[e] } else { Vec2::zeros() }
+}
+
 /// d(angle)/d(arc length) at a node, 1/m.
 pub(super) fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
-    if k > 0 && k + 1 < x.len() {
+    if k > 0 && k + 1 < x.len() && mesh.goes_on_through(k) {
         let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
         return turn(mesh.direction(k - 1, x), mesh.direction(k, x)) / rest;
     }
     let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) else { return 0.0 };
-    let e = if k == 0 { 0 } else { k - 1 };
-    let sign = if k == 0 { 1.0 } else { -1.0 };
+    let begins = k == 0 || mesh.is_break(k - 1);
+    let e = if begins { k } else { k - 1 };
+    let sign = if begins { 1.0 } else { -1.0 };
     sign * turn(clamp.direction, x[e + 1] - x[e]) / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]))
 }
 

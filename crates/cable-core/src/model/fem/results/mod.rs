@@ -20,7 +20,7 @@ mod weighted_capstan;
 
 pub(in crate::model::fem) use bending_error::bending_error;
 
-use self::forces::{bar_tension, bar_tensions, end_forces};
+use self::forces::{bar_tension, bar_tensions, end_forces, force_at_break};
 use crate::math::larger;
 use crate::model::fem::state::CableState;
 use crate::model::fem::time::loss_memory;
@@ -50,6 +50,7 @@ fn solution_now(d: &CableState) -> CableSolution {
         },
         momentum: d.motion.account.report(d.motion.inertia_counts()),
         energy_account: d.motion.energies.report(d.motion.time),
+        breaks: d.mesh.breaks().map(|e| e + 1).collect(),
         ..CableSolution::default()
     }
 }
@@ -82,6 +83,13 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     gauged.tension.push(ends[0]);
     gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
     gauged.tension.push(ends[1]);
+    for e in cable.mesh.breaks() {
+        for (k, side) in [(e, 0), (e + 1, 1)] {
+            if let Some(t) = gauged.tension.get_mut(k) {
+                *t = force_at_break(cable, x, &gauged.bars, k, side).norm();
+            }
+        }
+    }
     for (k, _) in cable.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
         if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), cable.load(k)) {
             *t = larger(load.tension[0], load.tension[1]);

@@ -2,7 +2,7 @@
 //! sliding nodes.
 
 use crate::math::Vec2;
-use crate::model::fem::results::forces::{curvature_at, half, moments, shear};
+use crate::model::fem::results::forces::{curvature_at, force_at_break, half, moments, shear};
 use crate::model::fem::results::points_on_round::points_on_round;
 use crate::model::fem::state::CableState;
 use crate::model::fem::time::loss_memory;
@@ -45,19 +45,28 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
             }
             continue;
         }
+        // Ends of pieces at a break.
+        let broken = match k {
+            k if k > 0 && mesh.is_break(k - 1) => Some(force_at_break(d, x, tension, k, 1)),
+            k if k + 1 < n && mesh.is_break(k) => Some(force_at_break(d, x, tension, k, 0)),
+            _ => None,
+        };
         let t = match k {
             0 => ends[0].norm(),
             k if k + 1 == n => ends[1].norm(),
+            _ if broken.is_some() => broken.map_or(0.0, |force| force.norm()),
             k => 0.5 * (tension[k - 1] + tension[k]),
         };
         let bar = |e: usize| mesh.direction(e, x) * tension[e] + shear(mesh, &moments, e, x);
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
+            _ if broken.is_some() => broken.unwrap_or_default(),
             k => bar(k) + d.input.loads.body * half(d, k, 1, x),
         };
         // A round that reaches up to the node within one point ends there.
-        while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
+        let begins = k > 0 && mesh.is_break(k - 1);
+        while !begins && out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
             out.pop();
         }
         let node = node(mesh.arc_length[k], (x[k], v[k]), t, (curvature_at(mesh, k, x), force));

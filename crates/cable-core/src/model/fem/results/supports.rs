@@ -4,7 +4,8 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::SlideOver;
 use crate::model::fem::results::forces::{half, tension_beside_round};
 use crate::model::fem::state::CableState;
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::SupportKind;
 use crate::solution::SupportReaction;
 
 /// The force of the cable on a pulley, with its tensions and its arc length.
@@ -34,10 +35,12 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
     })
 }
 
-/// A pulley that has let go of the cable, at its place; None for any other.
-fn released_pulley(d: &CableState, support: usize, x: &[Vec2]) -> Option<SupportReaction> {
-    let s = d.problem.supports.get(support).filter(|s| !s.holds_from(d.time()))?;
-    let (at, _) = s.place_at(d.time())?;
+/// A pulley that has let go of the cable, or a support that the cable was torn off, at its place;
+/// None for any other.
+fn released(d: &CableState, support: usize, x: &[Vec2]) -> Option<SupportReaction> {
+    let torn_off = |s: &SupportPoint| s.kind != SupportKind::Pulley;
+    let s = d.problem.supports.get(support).filter(|s| torn_off(s) || !s.holds_from(d.time()))?;
+    let at = s.place_at(d.time()).map(|place| place.0).or(s.at)?;
     let nearest = (0..x.len()).min_by(|&i, &j| (x[i] - at).norm().total_cmp(&(x[j] - at).norm()))?;
     Some(SupportReaction {
         name: s.name.clone(),
@@ -56,7 +59,9 @@ pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[
         .zip(&d.meshing.support_node)
         .enumerate()
         .filter_map(|(k, (s, node))| {
-            let Some(node) = *node else { return pulley(d, k, x, tension).or_else(|| released_pulley(d, k, x)) };
+            let Some(node) = *node else {
+                return pulley(d, k, x, tension).or_else(|| released(d, k, x));
+            };
             let last = x.len() - 1;
             let on_ground = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];

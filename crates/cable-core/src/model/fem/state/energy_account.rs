@@ -12,6 +12,7 @@ pub(in crate::model::fem) struct Works {
     pub(in crate::model::fem) material: f64,
     pub(in crate::model::fem) impacts: f64,
     pub(in crate::model::fem) edits: f64,
+    pub(in crate::model::fem) breaks: f64,
     pub(in crate::model::fem) numerical: f64,
 }
 
@@ -60,6 +61,14 @@ impl Energies {
         self.stored = stored;
     }
 
+    /// Records a break that left the cable with this energy.
+    pub(in crate::model::fem) fn note_break(&mut self, stored: Energy) {
+        if !self.from.is_nan() {
+            self.works.breaks += stored.total_j() - self.stored.total_j();
+            self.stored = stored;
+        }
+    }
+
     /// Adds the work of forces in a step that left the cable with this energy.
     pub(in crate::model::fem) fn add(&mut self, works: &Works, stored: Energy) {
         let mine = &mut self.works;
@@ -96,15 +105,12 @@ impl Energies {
 
     /// Ends a step.
     pub(in crate::model::fem) fn end_step(&mut self) {
-        let account = self.account();
-        let Energy { kinetic_j, gravity_j, stretch_j, bending_j } = account.gained;
-        let all = [kinetic_j, gravity_j, stretch_j, bending_j].into_iter().chain(account.works_j());
-        let half_sum = 0.5 * all.map(f64::abs).sum::<f64>();
+        let half_sum = self.account().half_sum_j();
         self.exchanged = if half_sum > self.exchanged { half_sum } else { self.exchanged };
     }
 
     fn account(&self) -> EnergyAccount {
-        let Works { supports, loads, outlines, friction, material, impacts, edits, numerical } = self.works;
+        let Works { supports, loads, outlines, friction, material, impacts, edits, breaks, numerical } = self.works;
         EnergyAccount {
             over_s: 0.0,
             gained: Energy {
@@ -120,6 +126,7 @@ impl Energies {
             material_j: material,
             impacts_j: impacts,
             edits_j: edits,
+            breaks_j: breaks,
             numerical_j: numerical,
             exchanged_j: self.exchanged,
         }

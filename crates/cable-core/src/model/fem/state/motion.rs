@@ -15,6 +15,12 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 /// rattle gain energy, half of mgL in a fold of 41 bars.
 const STEPS_BEFORE_BDF3: usize = 3;
 
+/// Number of steps without a history after a break. With one, BDF2 continues in the next step the
+/// recoil of a bar that has become slack: by 1/3, and by 4.8 times where that step is ten times as
+/// long as the rest of the one in which the cable broke. A span that broke so had 1.9 times the
+/// energy that was put in.
+const STEPS_AFTER_BREAK: usize = 2;
+
 /// Positions, velocities and forces with memory at the present instant, and those of earlier steps
 /// that the time integrator uses.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +51,8 @@ pub(in crate::model::fem) struct NodalMotion {
     /// Number of successive steps as long as the last, after each of which all bars were in
     /// tension.
     pub(in crate::model::fem) even_steps: usize,
+    /// Number of the next steps that are implicit Euler, whatever came before.
+    pub(in crate::model::fem) steps_without_history: usize,
     pub(in crate::model::fem) followers: Vec<Option<SmoothedTarget>>,
     /// Hands that hold supports by springs.
     pub(in crate::model::fem) hands: Vec<Option<Hand>>,
@@ -97,6 +105,7 @@ impl NodalMotion {
         self.followers.clone_from(followers);
         self.hands.clone_from(hands);
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
+        self.steps_without_history = other.steps_without_history;
         (self.time, self.placement) = (other.time, other.placement);
         (self.account, self.energies) = (other.account, other.energies);
     }
@@ -111,6 +120,18 @@ impl NodalMotion {
         self.step_before = 0.0;
         self.branch_forces.clear();
         (self.account, self.energies) = (Account::unknown(), Energies::default());
+    }
+
+    /// Begins anew after a break, in which forces jump: with the history from before, BDF2 would
+    /// take them into account half a step late.
+    pub(in crate::model::fem) fn begin_after_break(&mut self) {
+        (self.step_before, self.even_steps) = (0.0, 0);
+        self.steps_without_history = STEPS_AFTER_BREAK;
+    }
+
+    /// The last step to which the next one looks back, s; 0 = none.
+    pub(in crate::model::fem) fn history_s(&self) -> f64 {
+        if self.steps_without_history > 0 { 0.0 } else { self.step_before }
     }
 
     /// True if inertia counts: the cable moves, or its last step had inertia.
@@ -129,6 +150,7 @@ impl NodalMotion {
         let count = if self.is_even(h) { self.even_steps } else { 0 };
         self.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
         self.step_before = h;
+        self.steps_without_history = self.steps_without_history.saturating_sub(1);
     }
 
     /// True if a step of `h` (s) may look back three steps.

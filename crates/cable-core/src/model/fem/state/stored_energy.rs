@@ -18,6 +18,9 @@ pub(in crate::model::fem) fn stored_energy(cable: &CableState) -> Energy {
             false => (x[e] + x[e + 1]) * 0.5,
         };
         moment += center * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        if mesh.is_break(e) {
+            continue;
+        }
         stretch_j += bar_energy::stretch_energy(mesh, [path.length, mesh.rest_length[e]]);
     }
     let (kinetic_j, bending_j) = (kinetic_energy(cable), bending_energy(cable, x));

@@ -12,9 +12,9 @@ use crate::math::{Mat2, Vec2};
 use crate::model::fem::mesh::Mesh;
 
 /// True if the turn at an inner node bends the cable: neither the node nor a neighbour is a sliding
-/// node.
+/// node, and the cable is not broken there.
 fn bends(mesh: &Mesh, node: usize) -> bool {
-    mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
+    mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none) && mesh.goes_on_through(node)
 }
 
 /// A bend of a mesh and its nodes.
@@ -34,7 +34,7 @@ fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: im
     for node in 0..mesh.nodes() {
         if let Some(clamp) = clamps.next_if(|c| c.node == node) {
             let first = node.saturating_sub(1);
-            for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first) {
+            for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first).filter(|(e, _)| !mesh.is_break(*e)) {
                 let direction = clamp.direction;
                 let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
                 visit(NodeBend::Clamped(ClampBend { stiffness, length: 0.5 * rest, direction, from }, [e, e + 1]));

@@ -74,6 +74,9 @@ impl PlainBar {
     #[must_use]
     pub fn of(mesh: &Mesh, input: &StepInput, e: usize) -> Self {
         let (length, ea, flexible) = (mesh.rest_length[e], mesh.axial_stiffness, mesh.is_flexible());
+        if mesh.is_break(e) {
+            return Self { taut_from: 0.0, pull_there: 0.0, slopes: [0.0; 2], flexible };
+        }
         let [taut, slack] = input.losses.bars.get(e).copied().unwrap_or_default();
         let slopes = [(ea + taut) / length, slack / length];
         // The bar was longer than its material at the start of the step.

@@ -363,7 +363,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
 }
 
 /// Two legs of a hanging hairpin thrown at each other until they touch.
-fn legs_that_touch() -> Stepper {
+pub(super) fn legs_that_touch() -> Stepper {
     let mut scene = scene(
         |c| {
             (c.length_m, c.axial_stiffness_n, c.segments, c.self_contact) = (4.0, 1e5, Some(40), true);
@@ -429,7 +429,7 @@ fn legs_rub_on_each_other_and_remember_it() {
         assert!((rub.sliding(&slid).abs() - by).abs() < 0.1 * by && rub.sliding(&start) == 0.0);
     }
     let before: Vec<f64> = own.friction_contacts.iter().map(|r| r.sliding(&slid)).collect();
-    own.commit(&slid, 1e-5);
+    own.commit(&slid, 1e-5, barrier.reach);
     own.prepare(&barrier, &d.cable.mesh, &slid, &slid);
     let kept = own.friction_contacts.iter().filter(|r| before.contains(&r.sliding(&slid))).count();
     assert!(kept > 2 && kept * 2 > own.friction_contacts.len(), "{kept} of {}", own.friction_contacts.len());

@@ -65,6 +65,6 @@ impl Weights {
 
     /// The weights of a step of `h` (s) after this motion.
     pub(in crate::model::fem) fn of_step(motion: &NodalMotion, h: f64) -> Self {
-        if motion.looks_back_three(h) { Self::blended(h) } else { Self::bdf2(h, motion.step_before) }
+        if motion.looks_back_three(h) { Self::blended(h) } else { Self::bdf2(h, motion.history_s()) }
     }
 }

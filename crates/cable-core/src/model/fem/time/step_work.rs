@@ -202,6 +202,9 @@ impl BalancedStep<'_> {
     fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let (d, way, l) = (x[e + 1] - x[e], self.ways[e + 1] - self.ways[e], mesh.rest_length[e]);
+        if mesh.is_break(e) {
+            return [0.0; 2];
+        }
         let p = d.norm();
         let taut = !(p < l);
         let pull = bar_energy::stiffness(mesh, taut) / l * (p - l);

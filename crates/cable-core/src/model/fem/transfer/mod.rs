@@ -102,10 +102,14 @@ impl Stepper {
         if !same {
             remove_all_sliding_nodes(&mut self.cable);
         }
+        let breaks: Vec<usize> = self.cable.mesh.breaks().collect();
+        let pieces = if breaks.is_empty() { Vec::new() } else { state.pieces() };
         for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
             if self.cable.mesh.sliding[k].is_some() {
                 continue;
             }
+            // Arc lengths do not tell two nodes at a break apart.
+            let state = pieces.get(breaks.partition_point(|&e| e < k)).unwrap_or(state);
             if let Some(p) = state.position_at(s) {
                 self.cable.motion.positions[k] = p;
             }
@@ -137,6 +141,9 @@ impl Stepper {
         }
         IntersectionCheck::of(&self.cable).refuse_buried()?;
         self.forget_history();
+        if state.in_motion {
+            self.cable.motion.begin_after_break();
+        }
         // A state at rest on another mesh is brought to rest on this one before it moves.
         self.rested = same || !still;
         renew_input(&mut self.cable);

@@ -46,15 +46,16 @@ impl ContactSearch {
                 continue;
             }
             if mesh.is_free(node) {
-                let before = node.checked_sub(1).map(|e| mesh.straight(e, x)[0]);
-                let chain = [before, Some(x[node]), ends.map(|e| e[1])];
+                let before = node.checked_sub(1).filter(|&e| !mesh.is_break(e)).map(|e| mesh.straight(e, x)[0]);
+                let chain = [before, Some(x[node]), ends.filter(|_| !mesh.is_break(node)).map(|e| e[1])];
                 let mut keep = |pair| out.push(ContactPair { node, on_segment: false, pair });
                 match listed {
                     Some(parts) => geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut keep),
                     None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
                 }
             }
-            let Some(ends) = ends.filter(|_| mesh.is_free(node) || mesh.is_free(node + 1)) else { continue };
+            let moves = |_: &[Vec2; 2]| (mesh.is_free(node) || mesh.is_free(node + 1)) && !mesh.is_break(node);
+            let Some(ends) = ends.filter(moves) else { continue };
             let rounds = mesh.rounds(node);
             let mut keep = |pair: Pair| {
                 if !rounds.contains(&Some(pair.gap.feature)) {

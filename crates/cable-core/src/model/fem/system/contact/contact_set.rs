@@ -242,7 +242,7 @@ impl ContactSet {
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
         self.balanced = self.barrier;
-        self.self_contacts.commit(end, self.tuning.slip_m);
+        self.self_contacts.commit(end, self.tuning.slip_m, self.barrier.reach);
         self.memory.commit(&mut self.friction_contacts, end, self.slip, self.tuning.remembered_steps);
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slip.iter_mut().zip(end.iter().zip(start)).enumerate() {
@@ -282,6 +282,17 @@ impl ContactSet {
             sum -= self.friction_force(rub, x);
         }
         sum
+    }
+
+    /// Breaks the cable at node `k`, whose copy for the second piece has become node `k` + 1 of the
+    /// mesh at positions `x` (m). Friction stays with the first piece.
+    pub(in crate::model::fem) fn break_at(&mut self, k: usize, mesh: &Mesh, x: &[Vec2]) {
+        self.renumber(|node| Some(if node > k { node + 1 } else { node }));
+        if let Some(slip) = self.floor_slip.get(k).copied() {
+            self.floor_slip.insert(k + 1, slip);
+        }
+        self.self_contacts.break_at(k, mesh, x, self.barrier.reach);
+        self.search.lists.clear();
     }
 
     /// Renumbers the friction memory: `change` gives the new number of a node, None if it was

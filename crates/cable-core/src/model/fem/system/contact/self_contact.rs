@@ -50,7 +50,8 @@ pub struct SelfContacts {
 impl SelfContacts {
     /// Becomes a copy of `other`, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
-        (self.shape, self.friction) = (other.shape, other.friction);
+        self.shape.copy_from(&other.shape);
+        self.friction = other.friction;
         self.friction_contacts.clone_from(&other.friction_contacts);
         self.memory.clone_from(&other.memory);
     }
@@ -80,9 +81,21 @@ impl SelfContacts {
         }
     }
 
-    /// Accepts a step that ended at `end` (m): anchors follow contacts that slid by more than
-    /// `slip` (m).
-    pub fn commit(&mut self, end: &[Vec2], slip: f64) {
+    /// Breaks the cable at node `k`, whose copy for the second piece has become node `k` + 1 of
+    /// the mesh at positions `x` (m).
+    pub fn break_at(&mut self, k: usize, mesh: &Mesh, x: &[Vec2], reach: f64) {
+        self.friction_contacts.clear();
+        for (node, segment, _) in &mut self.memory {
+            *node += usize::from(*node > k);
+            *segment += usize::from(*segment >= k);
+        }
+        self.shape.break_at(k, x, &mesh.arc_length, reach);
+    }
+
+    /// Accepts a step that ended at `end` (m), with a barrier of this `reach` (m): anchors follow
+    /// contacts that slid by more than `slip` (m).
+    pub fn commit(&mut self, end: &[Vec2], slip: f64, reach: f64) {
+        self.shape.part(end, reach);
         self.memory.clear();
         for rub in &mut self.friction_contacts {
             rub.slid = friction::return_map(rub.sliding(end), slip);
