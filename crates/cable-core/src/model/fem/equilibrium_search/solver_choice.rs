@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::equilibrium_search::easier_start::SpansStart;
-use crate::model::fem::equilibrium_search::mesh_error::Refinement;
+use crate::model::fem::equilibrium_search::mesh_error::MeshRefinement;
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
@@ -141,7 +141,7 @@ impl FemModel {
     /// refines it if the scene leaves its number of bars open.
     pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
+        let refinement = if given { MeshRefinement::Forbidden } else { MeshRefinement::Allowed };
         let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
         meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
     }
