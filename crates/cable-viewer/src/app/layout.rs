@@ -157,10 +157,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     // The worst warning stands above what scrolls in a panel, or else in the strip above the
     // canvas.
     let told_in_panel = if wide { open.results } else { open.edit || open.results };
-    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
-    if state.ui.tutorial.is_some() {
-        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
-    }
+    bars_at_the_top(ui, state, commands);
     state.ui.results_beside = wide && open.results;
     // The keyboard goes through panels in the order in which they are drawn. They are drawn as they
     // are read, from the left to the right and down; those at the lower edge, which come last, keep
@@ -175,15 +172,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let main = main.available_rect_before_wrap();
     let inspector_width = if state.ui.results_beside { INSPECTOR_WIDTH.of(width) } else { 0.0 };
     let beside_inspector = main.with_max_x(main.max.x - inspector_width);
-    // A past that is shown must not be forgotten about.
-    let past = state.live.recording.shown_s.is_some();
     let graphs_height = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
-    let drawer = match (graphs_below && open.graphs, past) {
-        (true, _) => Some(("plots", graphs_height)),
-        (false, true) => Some(("timeline", PLAYBACK_HEIGHT)),
-        (false, false) => None,
-    };
-    let drawer = drawer.map(|(name, usual)| HeightKept::of(ui, name, usual));
+    let shown_graphs_height = (graphs_below && open.graphs).then_some(graphs_height);
+    let drawer = drawer_below(ui, state, shown_graphs_height);
     let drawer_height = drawer.as_ref().map_or(0.0, |drawer| drawer.points);
     let mut picture = child(ui, "picture", beside_inspector.with_max_y(beside_inspector.max.y - drawer_height));
     if wide && open.edit {
@@ -193,10 +184,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if !told_in_panel {
         strip_above(&mut picture, state, commands);
     }
-    let canvas = CentralPanel::no_frame().frame(Frame::NONE);
-    let canvas = canvas.show(&mut picture, |ui| canvas::ui(ui, state, commands)).response.rect;
-    canvas::follow::offer(&picture, canvas, state, commands);
-    first_step_hints::ui(&picture, canvas, state, commands);
+    canvas_with_hints(&mut picture, state, commands);
     if state.ui.results_beside {
         side(&mut child(ui, "inspector", main), Panel::right("read"), inspector_width, |ui| {
             inspector(ui, state, commands);
@@ -216,6 +204,31 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     playback_height.keep(ui, drawn.response.rect.height());
     highlight::frame(ui.ctx());
     focus::frame(ui.ctx());
+}
+
+/// The menu, and the step of a tutorial.
+fn bars_at_the_top(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
+    if state.ui.tutorial.is_some() {
+        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
+    }
+}
+
+/// The height kept for what is drawn below the canvas: graphs of a usual height (points), if they
+/// are shown, else the timeline of a past that is shown, which must not be forgotten about.
+fn drawer_below(ui: &Ui, state: &AppState, graphs_height: Option<f32>) -> Option<HeightKept> {
+    let past = state.live.recording.shown_s.is_some();
+    let graphs = graphs_height.map(|usual| ("plots", usual));
+    let drawer = graphs.or_else(|| past.then_some(("timeline", PLAYBACK_HEIGHT)));
+    drawer.map(|(name, usual)| HeightKept::of(ui, name, usual))
+}
+
+/// The canvas, with what is offered on it.
+fn canvas_with_hints(picture: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
+    let canvas = CentralPanel::no_frame().frame(Frame::NONE);
+    let canvas = canvas.show(picture, |ui| canvas::ui(ui, state, commands)).response.rect;
+    canvas::follow::offer(picture, canvas, state, commands);
+    first_step_hints::ui(picture, canvas, state, commands);
 }
 
 /// The panel on the right.

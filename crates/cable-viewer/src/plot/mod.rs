@@ -13,7 +13,7 @@ mod line_corners;
 pub mod over_time;
 
 use egui::{Align2, Color32, Id, Pos2, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
-use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotTransform, PlotUi};
+use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotResponse, PlotTransform, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
@@ -199,20 +199,10 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     });
     name_limits(ui, graph, &response.transform, scale.high, si);
     write_ends_across(ui, &response.transform, columns, scale.across.0, width);
-    let asked = response.inner;
+    move_cursors(ui, graph, &response, &mut cursors, x_si);
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
     ui.data_mut(|d| d.insert_temp(Id::unique(("in view", graph.title)), ends));
-    let x_at = |at: Pos2| response.transform.value_from_position(at).x;
-    let over = response.response.hover_pos().map(|p| x_at(p) * x_si);
-    ui.data_mut(|d| d.insert_temp(hovered_id(graph.group), over));
-    if response.response.clicked() {
-        let place = response.response.interact_pointer_pos().map_or(asked.next, x_at);
-        cursors.click(ui, graph.group, place * x_si);
-    }
-    if let Some(place) = asked.cursor {
-        cursors.put_last(ui, graph.group, place * x_si);
-    }
     if response.response.has_focus() {
         let stroke = ui.visuals().selection.stroke;
         ui.painter().rect_stroke(response.response.rect, 2.0, stroke, egui::StrokeKind::Outside);
@@ -221,8 +211,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let dragged = graph.follow && graph.group == TIME && response.response.dragged_by(egui::PointerButton::Primary);
     let at = response.response.interact_pointer_pos().filter(|_| dragged);
     let answer = GraphResponse {
-        zoomed: asked.zoomed,
-        scrubbed_s: at.map(|at| x_at(at) * x_si),
+        zoomed: response.inner.zoomed,
+        scrubbed_s: at.map(|at| response.transform.value_from_position(at).x * x_si),
         export: (export || graph.export).then(|| Box::new(graph_in_view(graph, lines, scale.high, bounds))),
     };
     let figure = response.response.labelled_by(title);
@@ -230,6 +220,28 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol: scale.up.0, si, cursors: cursor_text };
     set_accessible_text(&figure, &spoken);
     answer
+}
+
+/// Sets cursors where the pointer clicks and where keys ask for them, and stores what the pointer
+/// is over.
+fn move_cursors(
+    ui: &mut Ui,
+    graph: &Graph<'_>,
+    drawn: &PlotResponse<keys::KeyInput>,
+    cursors: &mut Cursors,
+    x_si: f64,
+) {
+    let (response, asked) = (&drawn.response, &drawn.inner);
+    let x_at = |at: Pos2| drawn.transform.value_from_position(at).x;
+    let over = response.hover_pos().map(|p| x_at(p) * x_si);
+    ui.data_mut(|d| d.insert_temp(hovered_id(graph.group), over));
+    if response.clicked() {
+        let place = response.interact_pointer_pos().map_or(asked.next, x_at);
+        cursors.click(ui, graph.group, place * x_si);
+    }
+    if let Some(place) = asked.cursor {
+        cursors.put_last(ui, graph.group, place * x_si);
+    }
 }
 
 /// The empty graph with its axes and grid; `size` is the number of columns, and the height in
