@@ -1,6 +1,8 @@
 //! Answers go to standard output, and progress to standard error.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::sync::{Mutex, TryLockError};
+use std::time::{Duration, Instant};
 
 use crate::failure::Failure;
 
@@ -49,10 +51,21 @@ impl Printer {
     }
 }
 
+/// Waits until a line that is being printed is complete, unless its reader has stopped reading.
+pub fn wait_for_line(print_lock: &Mutex<()>) {
+    let began = Instant::now();
+    while let Err(TryLockError::WouldBlock) = print_lock.try_lock() {
+        if began.elapsed() > Duration::from_millis(200) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
 /// Progress on standard error, only on a terminal.
 pub struct Progress {
     shown: bool,
-    last: Option<std::time::Instant>,
+    last: Option<Instant>,
 }
 
 /// Time between two progress lines, s. A shorter time floods a slow terminal, a longer one looks
@@ -70,7 +83,7 @@ impl Progress {
         if !self.shown || self.last.is_some_and(|t| t.elapsed().as_secs_f64() < PROGRESS_INTERVAL_S) {
             return;
         }
-        self.last = Some(std::time::Instant::now());
+        self.last = Some(Instant::now());
         let _ = write!(io::stderr(), "\r{time_s:9.3} s of {duration_s} s, greatest tension {tension_n:.4e} N  ");
     }
 

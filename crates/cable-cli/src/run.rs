@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -27,7 +27,7 @@ use crate::answer_text::answer_text;
 use crate::args::RunArguments;
 use crate::failure::Failure;
 use crate::input::{scene_with_arguments, settings};
-use crate::output::{Printer, Progress};
+use crate::output::{Printer, Progress, wait_for_line};
 use crate::signals::Signals;
 use crate::summary::neglected_at_first_rest;
 
@@ -164,8 +164,22 @@ fn energy_lines(account: &EnergyAccount) -> Vec<String> {
     ]
 }
 
+/// Place of an output among those of the run.
+#[derive(Clone, Copy)]
+enum OutputOrder {
+    Intermediate,
+    Last,
+}
+
+impl OutputOrder {
+    /// The place of output `k` of the outputs 0 to `last`.
+    fn of(k: usize, last: usize) -> Self {
+        if k == last { Self::Last } else { Self::Intermediate }
+    }
+}
+
 impl Outputs {
-    fn push(&mut self, mut solution: Solution, wall_time_s: f64, is_last: bool) -> CommandResult {
+    fn push(&mut self, mut solution: Solution, wall_time_s: f64, order: OutputOrder) -> CommandResult {
         for (cable, since) in solution.cables.iter_mut().zip(self.peaks_since_output.drain(..)) {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
@@ -182,7 +196,10 @@ impl Outputs {
             }
         }
         let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
-        let push = if is_last { RunFolder::push_last } else { RunFolder::push };
+        let push = match order {
+            OutputOrder::Intermediate => RunFolder::push,
+            OutputOrder::Last => RunFolder::push_last,
+        };
         self.folder.write(&self.arguments.out, |folder| {
             push(folder, &solution)?;
             folder.add_wall_time(wall_time_s);
@@ -379,17 +396,6 @@ fn await_end(
     }
 }
 
-/// Waits until a line that is being printed is complete, unless its reader has stopped reading.
-fn wait_for_line(print_lock: &Mutex<()>) {
-    let began = Instant::now();
-    while let Err(TryLockError::WouldBlock) = print_lock.try_lock() {
-        if began.elapsed() > Duration::from_millis(200) {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(2));
-    }
-}
-
 /// Solves, writes, and ends the run.
 fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> CommandResult {
     let walked = run_steps(simulation, inertia, &mut outputs, began);
@@ -445,7 +451,7 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
     let (duration_s, every) = (outputs.arguments.duration_s, outputs.arguments.every_s());
     let count = (duration_s / every - 1e-9).ceil() as usize;
     outputs.observe_step(&simulation);
-    outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
+    outputs.push(first, began.elapsed().as_secs_f64(), OutputOrder::of(0, count))?;
     let interval = Moment::nearest(every);
     let at_rest = simulation.clone();
     let mut timeline = match Timeline::new(simulation, inertia, step) {
@@ -462,7 +468,7 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
         let answer = timeline.at(moment, |simulation| outputs.observe_step(simulation));
         outputs.update_totals(&timeline);
         match answer {
-            Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
+            Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), OutputOrder::of(k, count))?,
             Err(e) => return Err(end_with_error(outputs, timeline.simulation(), e)),
         }
     }

@@ -12,7 +12,9 @@
 //! pivoting, so a pivot ≤ 0 (or NaN) means "not positive definite" and is reported with its row,
 //! which tells the node where a structure is not stable. A matrix that also couples nodes far apart
 //! is solved by faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]). A matrix
-//! that is not symmetric, or that may become singular on the way, is a [`PivotingBand`].
+//! that is not symmetric, or that may become singular on the way, is a [`PivotingBand`]. Three
+//! diagonals with few rows are eliminated by [`solve_tridiagonal`], which shows each pivot to its
+//! caller.
 
 mod band_factor;
 mod band_matrix;
@@ -21,12 +23,14 @@ mod pivoting_band;
 mod sparse_cholesky;
 #[cfg(test)]
 mod tests;
+mod tridiagonal;
 mod two_way_elimination;
 
 pub use band_factor::BandFactor;
 pub use band_matrix::BandMatrix;
 pub use pivoting_band::PivotingBand;
 pub use sparse_cholesky::solve_coupled;
+pub use tridiagonal::{TridiagonalRow, solve_tridiagonal};
 
 use thiserror::Error;
 

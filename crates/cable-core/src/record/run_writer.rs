@@ -23,6 +23,13 @@ pub struct RunWriter<W: Write> {
     active: Vec<LastingWarning>,
 }
 
+/// Tells whether an instant has rows in the table of nodes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum NodeRows {
+    Written,
+    LeftOut,
+}
+
 /// Kind, cable and the time since when, in bits, of a warning that lasts.
 type LastingWarning = (WarningKind, String, Option<u64>);
 
@@ -60,7 +67,8 @@ impl<W: Write> RunWriter<W> {
     /// back what it was given of this time can be written on.
     pub fn push(&mut self, solution: &Solution) -> Result<(), WriteError> {
         let due = self.node_choice.due(solution.time_s, self.node_interval);
-        self.append(solution, due.is_some())?;
+        let nodes = if due.is_some() { NodeRows::Written } else { NodeRows::LeftOut };
+        self.append(solution, nodes)?;
         self.node_interval = due.or(self.node_interval);
         Ok(())
     }
@@ -71,7 +79,8 @@ impl<W: Write> RunWriter<W> {
     /// # Errors
     /// As [`Self::push`].
     pub fn push_last(&mut self, solution: &Solution) -> Result<(), WriteError> {
-        self.append(solution, self.node_choice.interval != NodeInterval::Never)
+        let never = self.node_choice.interval == NodeInterval::Never;
+        self.append(solution, if never { NodeRows::LeftOut } else { NodeRows::Written })
     }
 
     /// Writes the headers alone, so that a run which ends before its first instant has tables: of a
@@ -95,7 +104,7 @@ impl<W: Write> RunWriter<W> {
         events.record(&EVENT_COLUMNS)
     }
 
-    fn append(&mut self, solution: &Solution, with_nodes: bool) -> Result<(), WriteError> {
+    fn append(&mut self, solution: &Solution, node_rows_due: NodeRows) -> Result<(), WriteError> {
         check_finite(solution)?;
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
         let supports = solution.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
@@ -107,7 +116,7 @@ impl<W: Write> RunWriter<W> {
         }
         let [history, nodes, events] = &mut rows;
         history_row(history, solution)?;
-        if with_nodes {
+        if node_rows_due == NodeRows::Written {
             node_rows(nodes, solution, self.node_choice.columns)?;
         }
         for w in began(solution, &self.active) {

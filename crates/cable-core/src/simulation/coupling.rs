@@ -13,7 +13,7 @@
 
 use std::mem::discriminant;
 
-use super::speed_search::{SpeedSearch, Trial};
+use super::speed_search::{SpeedSearch, SpeedTrial};
 use super::{RunPhase, Simulation};
 use crate::error::SolveError;
 use crate::math::RigidPose;
@@ -135,7 +135,7 @@ impl Simulation {
         let even = excess_n <= start.tolerance(pulls) || self.breaks() > breaks;
         let mut left_n = None;
         if !even && !(self.left_m() > 0.0) {
-            match search.next(Trial { speed, excess_speed }) {
+            match search.next(SpeedTrial { speed, excess_speed }) {
                 Some(next) => return TrialOutcome::Again(next),
                 None => left_n = Some(excess_n),
             }

@@ -27,7 +27,7 @@ const SPEED_TOLERANCE: f64 = 1e-9;
 
 /// A trial of a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trial {
+pub(super) struct SpeedTrial {
     /// Speed at its end, m/s.
     pub speed: f64,
     /// Excess of the speed that comes out, m/s.
@@ -38,7 +38,7 @@ pub(super) struct Trial {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpeedSearch {
     left: usize,
-    last: Option<Trial>,
+    last: Option<SpeedTrial>,
     /// The fastest that comes out faster, and the slowest that comes out slower.
     low: Option<f64>,
     high: Option<f64>,
@@ -53,7 +53,7 @@ impl SpeedSearch {
 
     /// The next speed to try after a trial, m/s; `None` if the force jumps between the remaining
     /// speeds, or no trial is left.
-    pub fn next(&mut self, now: Trial) -> Option<f64> {
+    pub fn next(&mut self, now: SpeedTrial) -> Option<f64> {
         self.left = self.left.checked_sub(1)?;
         let before = self.last.replace(now);
         match now.excess_speed > 0.0 {
@@ -90,7 +90,7 @@ mod tests {
     fn trials(excess_speed: impl Fn(f64) -> f64, mut speed: f64) -> (usize, Option<f64>) {
         let (mut search, first) = (SpeedSearch::new(), excess_speed(speed).abs());
         for count in 1.. {
-            let now = Trial { speed, excess_speed: excess_speed(speed) };
+            let now = SpeedTrial { speed, excess_speed: excess_speed(speed) };
             if now.excess_speed.abs() < 1e-3 * first {
                 return (count, Some(speed));
             }

@@ -3,7 +3,8 @@
 
 use std::error::Error;
 
-use super::{Figures, Sentence, display_in_si};
+use super::figures::Figures;
+use super::{Sentence, display_in_si};
 use crate::files::{FileError, RunFolderFault, RunRemark};
 use crate::record::{LeftOut, NodeColumns, ReadError, RowFault, UnknownColumn, WriteError, WrittenNumber};
 use crate::units::{Quantity, UnitSystem};

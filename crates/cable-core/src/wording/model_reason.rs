@@ -1,6 +1,7 @@
 //! These sentences say why an answer comes from its model.
 
-use super::{Figures, Sentence, display_in_si, serialize_in_si};
+use super::figures::Figures;
+use super::{Sentence, display_in_si, serialize_in_si};
 use crate::solution::{LikelyBending, ModelReason, NeglectedEffect, NextCheaper, TakenStiffness};
 use crate::units::{Quantity, UnitSystem};
 

@@ -1,6 +1,7 @@
 //! These sentences say why a scene is refused: the place in its file, the fault, and what mends it.
 
-use super::{Figures, Sentence, display_in_si, six_digits};
+use super::figures::{Figures, six_digits};
+use super::{Sentence, display_in_si};
 use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::units::{Quantity, UnitSystem};
 

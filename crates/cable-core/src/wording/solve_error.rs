@@ -1,7 +1,8 @@
 //! These sentences say why a model has no answer. Every sentence names the place, by lengths and
 //! names, and a remedy; none holds a number that is not finite.
 
-use super::{Figures, Sentence, display_in_si, six_digits};
+use super::figures::{Figures, six_digits};
+use super::{Sentence, display_in_si};
 use crate::error::{
     EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
     Unsupported, UnsupportedReach,

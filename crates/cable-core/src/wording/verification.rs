@@ -1,6 +1,7 @@
 //! A verdict names the broken law, by how much it is broken, and where.
 
-use super::{Figures, Sentence, display_in_si, serialize_in_si};
+use super::figures::Figures;
+use super::{Sentence, display_in_si, serialize_in_si};
 use crate::units::{Quantity, UnitSystem};
 use crate::verification_report::{Finding, NotChecked, Verification};
 

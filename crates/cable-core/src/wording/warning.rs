@@ -1,6 +1,7 @@
 //! A warning says what happens, where, why, and what can be done.
 
-use super::{Figures, Sentence, display_in_si};
+use super::figures::Figures;
+use super::{Sentence, display_in_si};
 use crate::error::NoEquilibrium;
 use crate::solution::{EndMove, Histories, ShownEquilibrium, SlideReason, Warning, WarningCause};
 use crate::units::{Quantity, UnitSystem};

@@ -16,15 +16,24 @@ pub(super) struct FramePacing {
     next: Arc<Mutex<Option<Instant>>>,
 }
 
+/// What the next frame is drawn for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NextFrame {
+    /// It shows a step of the running simulation, and nobody waits for an answer.
+    Step,
+    /// It shows an answer as soon as there is one.
+    Answer,
+}
+
 impl FramePacing {
     /// Least time between two frames while the simulation runs.
     pub fn every(&mut self, interval: Duration) {
         self.interval = interval;
     }
 
-    /// A frame has been drawn. `runs`: the next one shows a step, and nobody waits for an answer.
-    pub fn drawn(&self, now: Instant, runs: bool) {
-        let next = (runs && self.interval > Duration::ZERO).then(|| now + self.interval);
+    /// A frame has been drawn.
+    pub fn drawn(&self, now: Instant, next_frame: NextFrame) {
+        let next = (next_frame == NextFrame::Step && self.interval > Duration::ZERO).then(|| now + self.interval);
         *self.next.lock().unwrap_or_else(PoisonError::into_inner) = next;
     }
 
@@ -43,14 +52,14 @@ mod tests {
     fn steps_wait_for_the_next_frame_and_answers_to_edits_do_not() {
         let (mut pacing, now) = (FramePacing::default(), Instant::now());
         let solver = pacing.clone();
-        pacing.drawn(now, true);
+        pacing.drawn(now, NextFrame::Step);
         assert_eq!(solver.wait(now), Duration::ZERO, "with a GPU each step is shown");
         pacing.every(SOFTWARE_FRAME_INTERVAL);
-        pacing.drawn(now, true);
+        pacing.drawn(now, NextFrame::Step);
         let later = now + Duration::from_millis(13);
         assert_eq!(solver.wait(later), Duration::from_millis(27));
         assert_eq!(solver.wait(now + Duration::from_secs(1)), Duration::ZERO);
-        pacing.drawn(later, false);
+        pacing.drawn(later, NextFrame::Answer);
         assert_eq!(solver.wait(later), Duration::ZERO);
     }
 }

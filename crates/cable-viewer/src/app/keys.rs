@@ -48,19 +48,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         }
         return;
     }
-    // The longer shortcut first: ctrl+shift+S contains ctrl+S.
-    for (shortcut, command) in [
-        (SAVE_AS, Command::File(FileCommand::AskSaveAs)),
-        (SAVE, Command::File(FileCommand::Save)),
-        (OPEN, Command::File(FileCommand::AskOpen)),
-        (NEW, Command::File(FileCommand::New)),
-        (QUIT, Command::File(FileCommand::Quit)),
-        (PALETTE, Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() })))),
-    ] {
-        if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
-            commands.push(command);
-        }
-    }
+    file_shortcuts(ctx, commands);
     if ctx.egui_wants_keyboard_input() {
         return;
     }
@@ -73,31 +61,22 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     // The longer ones first here too: a plain arrow is found in alt with an arrow.
     pick_and_move(ctx, state, commands);
     camera(ctx, state, commands);
-    let plain = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
-    if plain(Key::F) {
-        commands.push(Command::View(ViewCommand::Fit));
-    }
-    if plain(Key::C) {
-        commands.push(Command::View(ViewCommand::Recentre));
-    }
     let panels = state.ui.panels;
-    for (key, panels) in [
-        (Key::OpenBracket, OpenPanels { edit: !panels.edit, ..panels }),
-        (Key::CloseBracket, OpenPanels { results: !panels.results, ..panels }),
-        (Key::G, OpenPanels { graphs: !panels.graphs, ..panels }),
+    let show = |panels| Command::View(ViewCommand::ShowPanels(panels));
+    let plain = |key| ctx.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+    for (key, command) in [
+        (Key::F, Command::View(ViewCommand::Fit)),
+        (Key::C, Command::View(ViewCommand::Recentre)),
+        (Key::OpenBracket, show(OpenPanels { edit: !panels.edit, ..panels })),
+        (Key::CloseBracket, show(OpenPanels { results: !panels.results, ..panels })),
+        (Key::G, show(OpenPanels { graphs: !panels.graphs, ..panels })),
+        (Key::Space, Command::Playback(PlaybackCommand::TogglePause)),
+        (Key::ArrowRight, Command::Playback(PlaybackCommand::Step)),
+        (Key::ArrowLeft, Command::Playback(PlaybackCommand::StepBack)),
     ] {
         if plain(key) {
-            commands.push(Command::View(ViewCommand::ShowPanels(panels)));
+            commands.push(command);
         }
-    }
-    if plain(Key::Space) {
-        commands.push(Command::Playback(PlaybackCommand::TogglePause));
-    }
-    if plain(Key::ArrowRight) {
-        commands.push(Command::Playback(PlaybackCommand::Step));
-    }
-    if plain(Key::ArrowLeft) {
-        commands.push(Command::Playback(PlaybackCommand::StepBack));
     }
     drive(ctx, state, commands);
     if plain(Key::R) {
@@ -112,6 +91,23 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     // An open menu or list closes first, and only it; what is typed is dropped first.
     if !egui::Popup::is_any_open(ctx) && !field::was_typed_in(ctx) && plain(Key::Escape) {
         commands.push(Command::View(ViewCommand::Select(None)));
+    }
+}
+
+/// The shortcuts of files and of the palette, which act while text is typed, too.
+fn file_shortcuts(ctx: &Context, commands: &mut Vec<Command>) {
+    // The longer shortcut first: ctrl+shift+S contains ctrl+S.
+    for (shortcut, command) in [
+        (SAVE_AS, Command::File(FileCommand::AskSaveAs)),
+        (SAVE, Command::File(FileCommand::Save)),
+        (OPEN, Command::File(FileCommand::AskOpen)),
+        (NEW, Command::File(FileCommand::New)),
+        (QUIT, Command::File(FileCommand::Quit)),
+        (PALETTE, Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() })))),
+    ] {
+        if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
+            commands.push(command);
+        }
     }
 }
 

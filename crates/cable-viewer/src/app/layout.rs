@@ -151,16 +151,13 @@ impl WindowShare {
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     highlight::set_target(ui.ctx(), tutorial_bar::points_at(state));
     let [width, height] = ui.ctx().content_rect().size().into();
-    let graphs = height >= MIN_GRAPHS_WINDOW_HEIGHT;
+    let graphs_below = height >= MIN_GRAPHS_WINDOW_HEIGHT;
     let open = state.ui.panels;
-    let wide = width >= MIN_TWO_PANELS_WIDTH && graphs;
+    let wide = width >= MIN_TWO_PANELS_WIDTH && graphs_below;
     // The worst warning stands above what scrolls in a panel, or else in the strip above the
     // canvas.
     let told_in_panel = if wide { open.results } else { open.edit || open.results };
-    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
-    if state.ui.tutorial.is_some() {
-        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
-    }
+    bars_at_the_top(ui, state, commands);
     state.ui.results_beside = wide && open.results;
     // The keyboard goes through panels in the order in which they are drawn. They are drawn as they
     // are read, from the left to the right and down; those at the lower edge, which come last, keep
@@ -169,20 +166,15 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let playback_height = HeightKept::of(ui, "playback", PLAYBACK_HEIGHT);
     let mut main = child(ui, "main", below_menu.with_max_y(below_menu.max.y - playback_height.points));
     if !wide && (open.edit || open.results) {
-        tabs(&mut main, state, !graphs, commands);
+        let graphs_tab = if graphs_below { GraphsTab::None } else { GraphsTab::Shown };
+        tabs(&mut main, state, graphs_tab, commands);
     }
     let main = main.available_rect_before_wrap();
     let inspector_width = if state.ui.results_beside { INSPECTOR_WIDTH.of(width) } else { 0.0 };
     let beside_inspector = main.with_max_x(main.max.x - inspector_width);
-    // A past that is shown must not be forgotten about.
-    let past = state.live.recording.shown_s.is_some();
     let graphs_height = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
-    let drawer = match (graphs && open.graphs, past) {
-        (true, _) => Some(("plots", graphs_height)),
-        (false, true) => Some(("timeline", PLAYBACK_HEIGHT)),
-        (false, false) => None,
-    };
-    let drawer = drawer.map(|(name, usual)| HeightKept::of(ui, name, usual));
+    let shown_graphs_height = (graphs_below && open.graphs).then_some(graphs_height);
+    let drawer = drawer_below(ui, state, shown_graphs_height);
     let drawer_height = drawer.as_ref().map_or(0.0, |drawer| drawer.points);
     let mut picture = child(ui, "picture", beside_inspector.with_max_y(beside_inspector.max.y - drawer_height));
     if wide && open.edit {
@@ -192,42 +184,80 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if !told_in_panel {
         strip_above(&mut picture, state, commands);
     }
-    let canvas = CentralPanel::no_frame().frame(Frame::NONE);
-    let canvas = canvas.show(&mut picture, |ui| canvas::ui(ui, state, commands)).response.rect;
-    canvas::follow::offer(&picture, canvas, state, commands);
-    first_step_hints::ui(&picture, canvas, state, commands);
+    canvas_with_hints(&mut picture, state, commands);
     if state.ui.results_beside {
         side(&mut child(ui, "inspector", main), Panel::right("read"), inspector_width, |ui| {
-            legend::beside(ui, state);
-            safe_reach::legend_beside(ui, state);
-            panels::readouts::head(ui, state, commands);
-            panels::warnings::worst(ui, state, commands);
-            ui.separator();
-            scroll(ui, Column::Results, state, commands);
+            inspector(ui, state, commands);
         });
     }
     // Below outline and canvas, and so wider than the canvas.
     if let Some(kept) = drawer {
         let mut below = child(ui, "below", beside_inspector);
-        let drawn = if kept.name == "plots" {
-            let frame = Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(5, 2));
-            let drawer = Panel::bottom("plots").frame(frame).resizable(true).default_size(graphs_height);
-            drawer.size_range(GRAPHS_HEIGHT.1..=500.0).show(&mut below, |ui| {
-                // A panel takes the height of what is in it: without this it shrinks by a margin a
-                // frame.
-                ui.set_min_height(ui.available_height());
-                panels::plots::ui(ui, state, commands);
-            })
-        } else {
-            Panel::bottom("timeline").show(&mut below, |ui| panels::timeline::ui(ui, state, commands))
+        let height = match kept.name {
+            "plots" => graphs(&mut below, graphs_height, state, commands),
+            _ => timeline(&mut below, state, commands),
         };
-        kept.keep(ui, drawn.response.rect.height());
+        kept.keep(ui, height);
     }
     let mut foot = child(ui, "foot", below_menu);
     let drawn = Panel::bottom("playback").show(&mut foot, |ui| panels::playback::ui(ui, state, commands));
     playback_height.keep(ui, drawn.response.rect.height());
     highlight::frame(ui.ctx());
     focus::frame(ui.ctx());
+}
+
+/// The menu, and the step of a tutorial.
+fn bars_at_the_top(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
+    if state.ui.tutorial.is_some() {
+        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
+    }
+}
+
+/// The height kept for what is drawn below the canvas: graphs of a usual height (points), if they
+/// are shown, else the timeline of a past that is shown, which must not be forgotten about.
+fn drawer_below(ui: &Ui, state: &AppState, graphs_height: Option<f32>) -> Option<HeightKept> {
+    let past = state.live.recording.shown_s.is_some();
+    let graphs = graphs_height.map(|usual| ("plots", usual));
+    let drawer = graphs.or_else(|| past.then_some(("timeline", PLAYBACK_HEIGHT)));
+    drawer.map(|(name, usual)| HeightKept::of(ui, name, usual))
+}
+
+/// The canvas, with what is offered on it.
+fn canvas_with_hints(picture: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
+    let canvas = CentralPanel::no_frame().frame(Frame::NONE);
+    let canvas = canvas.show(picture, |ui| canvas::ui(ui, state, commands)).response.rect;
+    canvas::follow::offer(picture, canvas, state, commands);
+    first_step_hints::ui(picture, canvas, state, commands);
+}
+
+/// The panel on the right.
+fn inspector(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    legend::beside(ui, state);
+    safe_reach::legend_beside(ui, state);
+    panels::readouts::head(ui, state, commands);
+    panels::warnings::worst(ui, state, commands);
+    ui.separator();
+    scroll(ui, Column::Results, state, commands);
+}
+
+/// Draws the graphs, with the timeline, at the foot of a part of the window, at first in a height
+/// (points). Returns the height that they take.
+fn graphs(below: &mut Ui, height: f32, state: &AppState, commands: &mut Vec<Command>) -> f32 {
+    let frame = Frame::side_top_panel(below.style()).inner_margin(egui::Margin::symmetric(5, 2));
+    let drawer = Panel::bottom("plots").frame(frame).resizable(true).default_size(height);
+    let drawn = drawer.size_range(GRAPHS_HEIGHT.1..=500.0).show(below, |ui| {
+        // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
+        ui.set_min_height(ui.available_height());
+        panels::plots::ui(ui, state, commands);
+    });
+    drawn.response.rect.height()
+}
+
+/// Draws the timeline alone there, and returns its height.
+fn timeline(below: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> f32 {
+    let drawn = Panel::bottom("timeline").show(below, |ui| panels::timeline::ui(ui, state, commands));
+    drawn.response.rect.height()
 }
 
 /// A part of the window by itself.
@@ -298,8 +328,15 @@ enum Tab {
     Graphs,
 }
 
+/// Tells whether the one panel of a small window has the graphs, too.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum GraphsTab {
+    Shown,
+    None,
+}
+
 /// One panel for all in a window that has no room for two, or none for graphs below the canvas.
-fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>) {
+fn tabs(ui: &mut Ui, state: &AppState, graphs_tab: GraphsTab, commands: &mut Vec<Command>) {
     // A large scale on a small screen: half of it stays for the picture.
     let most = 0.5 * ui.ctx().content_rect().width();
     let range = most.min(220.0)..=most.min(420.0);
@@ -317,7 +354,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
                 .on_hover_text("The outline, and what edits the selected thing");
             ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
-            if graphs {
+            if graphs_tab == GraphsTab::Shown {
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
                     .on_hover_text("Tension and more, over time and along the cable");
             }
@@ -329,7 +366,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         panels::warnings::worst(ui, state, commands);
         ui.separator();
         match tab {
-            Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
+            Tab::Graphs if graphs_tab == GraphsTab::Shown => panels::plots::ui(ui, state, commands),
             Tab::Read => scroll(ui, Column::Results, state, commands),
             Tab::Edit | Tab::Graphs => scroll(ui, Column::Edit, state, commands),
         }

@@ -34,7 +34,7 @@ use std::time::{Duration, Instant};
 
 use cable_core::Scene;
 
-use crate::app::frame_pacing::{FramePacing, SOFTWARE_FRAME_INTERVAL};
+use crate::app::frame_pacing::{FramePacing, NextFrame, SOFTWARE_FRAME_INTERVAL};
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::{Autosave, Changes};
@@ -57,12 +57,21 @@ const MAX_PENDING_EDITS: usize = 64;
 /// a superseded solve would be given up late.
 const SOLVING_REPAINT: Duration = Duration::from_millis(30);
 
+/// The thread on which the worker solves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum WorkerKind {
+    /// A thread of its own.
+    Thread,
+    /// The thread of the window, within each frame.
+    Inline,
+}
+
 /// The eframe application.
 pub struct ViewerApp {
     /// Everything on screen.
     pub state: AppState,
     worker: Worker,
-    threaded: bool,
+    worker_kind: WorkerKind,
     frame_pacing: FramePacing,
     /// As last sent to the window.
     title: String,
@@ -93,28 +102,26 @@ impl ViewerApp {
     /// Opens a scene with a solver thread.
     #[must_use]
     pub fn new(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
-        let threaded = true;
-        Self::start(ctx, scene, path, threaded)
+        Self::start(ctx, scene, path, WorkerKind::Thread)
     }
 
     /// Opens a scene that is solved within each frame, for tests and still pictures.
     #[must_use]
     pub fn inline(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>) -> Self {
-        let threaded = false;
-        Self::start(ctx, scene, path, threaded)
+        Self::start(ctx, scene, path, WorkerKind::Inline)
     }
 
-    fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
+    fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, worker_kind: WorkerKind) -> Self {
         theme::install(ctx);
         ctx.add_plugin(held_clicks::HeldClicks::default());
         // A press that stays where it is is a click, however long a frame takes meanwhile.
         ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
         let frame_pacing = FramePacing::default();
-        let worker = new_worker(ctx, threaded, &frame_pacing);
+        let worker = new_worker(ctx, worker_kind, &frame_pacing);
         let mut app = Self {
             state: AppState::new(scene, path),
             worker,
-            threaded,
+            worker_kind,
             frame_pacing,
             title: String::new(),
             autosave: None,
@@ -239,7 +246,7 @@ impl ViewerApp {
                 scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
-            self.worker = new_worker(ctx, self.threaded, &self.frame_pacing);
+            self.worker = new_worker(ctx, self.worker_kind, &self.frame_pacing);
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
@@ -286,7 +293,7 @@ impl ViewerApp {
         self.update_friction_range(ctx);
         self.state.solver.status = self.worker.status();
         self.time_solve(ctx);
-        if !self.threaded && !self.state.live.playback.paused {
+        if self.worker_kind == WorkerKind::Inline && !self.state.live.playback.paused {
             ctx.request_repaint();
         }
         if matches!(self.state.solver.status, WorkerStatus::Dead(_)) {
@@ -384,7 +391,7 @@ impl ViewerApp {
         }
         self.apply(&ctx, commands);
         let runs = !self.state.live.playback.paused && self.pending_edits.is_empty();
-        self.frame_pacing.drawn(Instant::now(), runs);
+        self.frame_pacing.drawn(Instant::now(), if runs { NextFrame::Step } else { NextFrame::Answer });
         self.update_autosave(&ctx);
         if let Some((list, written)) = &mut self.recent_list
             && *written != self.state.ui.recent
@@ -457,17 +464,19 @@ impl ViewerApp {
         if let Some((_, began)) = self.pending_edits.drain(..answered).next() {
             // Without a thread a frame waits for its answer: that time says nothing of the
             // window's.
-            state.solver.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
+            state.solver.edit_latency_s =
+                (self.worker_kind == WorkerKind::Thread).then(|| began.elapsed().as_secs_f64());
         }
     }
 }
 
-fn new_worker(ctx: &egui::Context, threaded: bool, frame_pacing: &FramePacing) -> Worker {
-    if threaded {
-        let (ctx, frame_pacing) = (ctx.clone(), frame_pacing.clone());
-        Worker::thread(move || ctx.request_repaint_after(frame_pacing.wait(Instant::now())))
-    } else {
-        Worker::inline()
+fn new_worker(ctx: &egui::Context, kind: WorkerKind, frame_pacing: &FramePacing) -> Worker {
+    match kind {
+        WorkerKind::Thread => {
+            let (ctx, frame_pacing) = (ctx.clone(), frame_pacing.clone());
+            Worker::thread(move || ctx.request_repaint_after(frame_pacing.wait(Instant::now())))
+        }
+        WorkerKind::Inline => Worker::inline(),
     }
 }
 

@@ -19,33 +19,33 @@ use crate::render::colour::{ColourMap, ColourScale};
 use crate::state::{AppState, GraphRequest, Item, Layers};
 
 /// A command and the name that it is shown and found by.
-pub type Entry = (String, Command);
+pub type PaletteEntry = (String, Command);
 
 /// All of them that the present scene has.
-pub fn entries(state: &AppState) -> Vec<Entry> {
-    let groups: [fn(&AppState) -> Vec<Entry>; 9] =
+pub fn entries(state: &AppState) -> Vec<PaletteEntry> {
+    let groups: [fn(&AppState) -> Vec<PaletteEntry>; 9] =
         [layers, edits, things, graphs, analyses, robot_entries, forms, places, guides];
     groups.iter().flat_map(|group| group(state)).collect()
 }
 
-fn view(name: impl Into<String>, command: ViewCommand) -> Entry {
+fn view(name: impl Into<String>, command: ViewCommand) -> PaletteEntry {
     (name.into(), Command::View(command))
 }
 
-fn scene(name: impl Into<String>, command: SceneCommand) -> Entry {
+fn scene(name: impl Into<String>, command: SceneCommand) -> PaletteEntry {
     (name.into(), Command::Scene(command))
 }
 
-fn play(name: impl Into<String>, command: PlaybackCommand) -> Entry {
+fn play(name: impl Into<String>, command: PlaybackCommand) -> PaletteEntry {
     (name.into(), Command::Playback(command))
 }
 
-fn select(name: impl Into<String>, item: Item) -> Entry {
+fn select(name: impl Into<String>, item: Item) -> PaletteEntry {
     view(name, ViewCommand::Select(Some(item)))
 }
 
 /// The layers of the canvas and its colours.
-fn layers(state: &AppState) -> Vec<Entry> {
+fn layers(state: &AppState) -> Vec<PaletteEntry> {
     let shown = state.view.layers;
     let layers = [
         ("Grid", Layers { grid: !shown.grid, ..shown }),
@@ -57,7 +57,7 @@ fn layers(state: &AppState) -> Vec<Entry> {
         ("Shape at the start", Layers { start_shape: !shown.start_shape, ..shown }),
         ("Snap to grid", Layers { snap: !shown.snap, ..shown }),
     ];
-    let mut all: Vec<Entry> =
+    let mut all: Vec<PaletteEntry> =
         layers.map(|(name, layers)| view(format!("{name}: on or off"), ViewCommand::SetLayers(layers))).into();
     let colour = state.view.colour;
     all.extend(
@@ -72,7 +72,7 @@ fn layers(state: &AppState) -> Vec<Entry> {
 }
 
 /// Edits of what is selected, and of the scene as a whole.
-fn edits(state: &AppState) -> Vec<Entry> {
+fn edits(state: &AppState) -> Vec<PaletteEntry> {
     let mut all = vec![
         scene("Copy", SceneCommand::Copy),
         scene("Cut", SceneCommand::Cut),
@@ -100,7 +100,7 @@ fn edits(state: &AppState) -> Vec<Entry> {
 }
 
 /// The rows of the outline, and what takes a thing out.
-fn things(state: &AppState) -> Vec<Entry> {
+fn things(state: &AppState) -> Vec<PaletteEntry> {
     let of = &state.document.scene;
     let supports = of.cables.iter().enumerate().flat_map(|(cable, c)| {
         let items = (0..c.supports.len()).map(move |support| Item::Support { cable, support });
@@ -121,9 +121,9 @@ fn things(state: &AppState) -> Vec<Entry> {
 }
 
 /// The graphs and the timeline.
-fn graphs(state: &AppState) -> Vec<Entry> {
+fn graphs(state: &AppState) -> Vec<PaletteEntry> {
     let shown = |name: String, request| view(name, ViewCommand::AskGraph(request));
-    let mut all: Vec<Entry> =
+    let mut all: Vec<PaletteEntry> =
         Measure::ALL.map(|m| shown(format!("Graph of {}", m.name().to_lowercase()), GraphRequest::Measure(m))).into();
     all.push(shown("Follow: graphs keep up with the data".to_owned(), GraphRequest::Follow));
     all.push(play("Loop: on or off", PlaybackCommand::SetLoop(!state.live.recording.looped)));
@@ -131,7 +131,7 @@ fn graphs(state: &AppState) -> Vec<Entry> {
 }
 
 /// Questions that are asked beside the answer.
-fn analyses(state: &AppState) -> Vec<Entry> {
+fn analyses(state: &AppState) -> Vec<PaletteEntry> {
     let reach = state.analysis.safe_reach.choice;
     let friction = &state.analysis.friction_range;
     let both_ways = crate::jobs::safe_reach::SafeReachOptions { round_trip: !reach.round_trip, ..reach };
@@ -158,8 +158,8 @@ fn analyses(state: &AppState) -> Vec<Entry> {
 }
 
 /// Driving the robot, its path, and which it is.
-fn robot_entries(state: &AppState) -> Vec<Entry> {
-    let mut all: Vec<Entry> =
+fn robot_entries(state: &AppState) -> Vec<PaletteEntry> {
+    let mut all: Vec<PaletteEntry> =
         robot_presets().iter().map(|p| (format!("Robot: {}", p.name), robot_form::chosen(state, p))).collect();
     let Some(present) = &state.document.scene.robot else { return all };
     let speed = robot::hand_speed(state);
@@ -187,7 +187,7 @@ fn robot_entries(state: &AppState) -> Vec<Entry> {
 }
 
 /// Boxes and small buttons of forms: they are ticked where their figures stand.
-fn forms(state: &AppState) -> Vec<Entry> {
+fn forms(state: &AppState) -> Vec<PaletteEntry> {
     let of = &state.document.scene;
     let cable = state.current_cable();
     let own = |name: &str, item| select(format!("{name}…"), item);
@@ -233,10 +233,10 @@ fn forms(state: &AppState) -> Vec<Entry> {
 }
 
 /// The places that figures have on the cable.
-fn places(state: &AppState) -> Vec<Entry> {
+fn places(state: &AppState) -> Vec<PaletteEntry> {
     let index = state.current_cable();
     let to = |name: &str, at: [f64; 2]| view(format!("Show {name}"), ViewCommand::ZoomOn(at));
-    let mut all: Vec<Entry> =
+    let mut all: Vec<PaletteEntry> =
         warnings::places(state).into_iter().map(|(title, command)| (format!("Details of {title}"), command)).collect();
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let answer = state.live.snapshot.solution.as_deref();
@@ -277,7 +277,7 @@ fn places(state: &AppState) -> Vec<Entry> {
 }
 
 /// The guide that is on, and the hints of the first minute.
-fn guides(state: &AppState) -> Vec<Entry> {
+fn guides(state: &AppState) -> Vec<PaletteEntry> {
     let mut all = Vec::new();
     if !state.ui.first_steps.open().is_empty() {
         all.push(view("Hide these hints", ViewCommand::HideFirstSteps));

@@ -79,7 +79,7 @@ const BADGE_AFTER_S: [f64; 2] = [0.25, 0.8];
 
 /// Shows that an answer is being sought and for how long, with a button that ends the search.
 fn badge(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
-    let Some(seconds) = state.solving().filter(|s| *s > BADGE_AFTER_S[0]) else { return };
+    let Some(seconds) = state.solving_for_s().filter(|s| *s > BADGE_AFTER_S[0]) else { return };
     let top = egui::pos2(rect.center().x, rect.min.y + 12.0);
     let area = egui::Area::new(Id::unique("solving")).fixed_pos(top).pivot(egui::Align2::CENTER_TOP);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {

@@ -9,7 +9,7 @@ use cable_core::{Cable, Obstacle};
 
 use crate::command::effects::Effects;
 use crate::command::move_item::shifted;
-use crate::command::support_kind::of_kind;
+use crate::command::support_kind::{SupportPlace, of_kind};
 use crate::command::unique_name::unique;
 use crate::command::waypoint::waypoint_place;
 use crate::geometry::hit_test;
@@ -143,8 +143,7 @@ fn put_support(state: &mut AppState, cable: usize, support: &Support, at_m: Poin
         SupportKind::Free | SupportKind::Robot => SupportKind::Pulley,
         kind => kind,
     };
-    let is_end = false;
-    let mut put = of_kind(support, kind, at_m, arc_length_m, is_end);
+    let mut put = of_kind(support, kind, at_m, arc_length_m, SupportPlace::Between);
     put.at_m = put.at_m.map(|_| at_m);
     put.arc_length_m = put.arc_length_m.map(|_| arc_length_m);
     if let (Some(motion), Some(was)) = (&mut put.motion, support.at_m) {

@@ -16,7 +16,7 @@ use crate::io::graph_file;
 use crate::io::graph_in_view::GraphInView;
 use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
-use crate::record::kept_run::Run;
+use crate::record::kept_run::KeptRun;
 use crate::record::sample::Sample;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::live::ReopenedRun;
@@ -124,10 +124,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
         }
         FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
         FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
-        FileCommand::Open(path) => match scene_file::load(&path) {
-            Ok(scene) => open(state, scene, Some(path), effects),
-            Err(text) => show_error(state, &format!("“{}” was not opened", path.display()), text),
-        },
+        FileCommand::Open(path) => open_file(state, path, effects),
         FileCommand::OpenCatalogue(id) => {
             if let Some((_, scene)) = catalog::all().into_iter().find(|(k, _)| *k == id) {
                 open(state, scene, None, effects);
@@ -167,15 +164,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             Ok(()) => written(state, path),
             Err(text) => show_error(state, &format!("The run was not written to “{}”", path.display()), text),
         },
-        FileCommand::OpenRun(path) => match read_run(&path) {
-            Ok(opened) => {
-                open(state, opened.scene, None, effects);
-                state.live.reopened_run =
-                    Some(ReopenedRun { answers: opened.answers, wall_time_s: opened.wall_time_s });
-                remark(state, &path, &opened.remarks);
-            }
-            Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
-        },
+        FileCommand::OpenRun(path) => open_run(state, &path, effects),
         FileCommand::AddReferenceRun(path) => match read_run(&path) {
             Ok(opened) => hold(state, &path, opened),
             Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
@@ -201,6 +190,26 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
             state.ui.closing = true;
             effects.quit = true;
         }
+    }
+}
+
+/// Opens the scene of a file.
+fn open_file(state: &mut AppState, path: PathBuf, effects: &mut Effects) {
+    match scene_file::load(&path) {
+        Ok(scene) => open(state, scene, Some(path), effects),
+        Err(text) => show_error(state, &format!("“{}” was not opened", path.display()), text),
+    }
+}
+
+/// Opens the scene of a recorded run, with its answers.
+fn open_run(state: &mut AppState, path: &Path, effects: &mut Effects) {
+    match read_run(path) {
+        Ok(opened) => {
+            open(state, opened.scene, None, effects);
+            state.live.reopened_run = Some(ReopenedRun { answers: opened.answers, wall_time_s: opened.wall_time_s });
+            remark(state, path, &opened.remarks);
+        }
+        Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
     }
 }
 
@@ -310,7 +319,7 @@ fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
 fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
-    let run = Run::of(samples.iter(), &opened.answers, events).map(Arc::new);
+    let run = KeptRun::of(samples.iter(), &opened.answers, events).map(Arc::new);
     state.ui.dialog = None;
     remark(state, path, &opened.remarks);
     if let (Some(solution), true) =

@@ -78,45 +78,55 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
         PlaybackCommand::ResumeFromShown => resume_from_shown(state, effects),
         PlaybackCommand::SetLoop(looped) => state.live.recording.looped = looped,
-        PlaybackCommand::Reset => {
-            state.live.playback.paused = true;
-            state.live.show_time(None);
-            let (scene, robot_speed_command) = (state.document.scene.clone(), state.live.robot_speed_command.take());
-            state.live.reset_asked = Some(ResetOrigin { scene, robot_speed_command });
-            let number = next_number(state);
-            effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
-        }
+        PlaybackCommand::Reset => reset(state, effects),
         PlaybackCommand::UndoRestart => undo_restart(state, effects),
         PlaybackCommand::CancelSolve => {
             state.live.playback.paused = true;
             effects.request.merge(Request { cancel: true, number: next_number(state), ..Request::default() });
         }
         PlaybackCommand::Solve => submit_edit(state, effects),
-        PlaybackCommand::DriveRobot(order) => {
-            // Driving the robot lets time run from the present on, so that it is seen.
-            if order.is_some_and(|v| v != 0.0) {
-                state.live.show_time(None);
-                state.live.playback.paused = false;
-            }
-            if state.live.robot_speed_command != order {
-                state.live.robot_speed_command = order;
-                effects.request.merge(Request { robot: Some(order), ..Request::default() });
-            }
-        }
+        PlaybackCommand::DriveRobot(order) => drive_robot(state, order, effects),
         PlaybackCommand::PullPastLength(pulls) => state.solver.pulls_past_length = pulls,
-        PlaybackCommand::SetRobotSpeed(speed) => {
-            if speed.is_finite() && speed > 0.0 {
-                state.live.manual_robot_speed = Some(speed);
-                // A robot that is being driven goes on at the new speed.
-                if let Some(order) = state.live.robot_speed_command.filter(|v| *v != 0.0) {
-                    let order = Some(speed.copysign(order));
-                    state.live.robot_speed_command = order;
-                    effects.request.merge(Request { robot: Some(order), ..Request::default() });
-                }
-            }
-        }
+        PlaybackCommand::SetRobotSpeed(speed) => set_robot_speed(state, speed, effects),
     }
     send(state, effects);
+}
+
+/// Takes the cables back to the start, and remembers what is needed to undo that.
+fn reset(state: &mut AppState, effects: &mut Effects) {
+    state.live.playback.paused = true;
+    state.live.show_time(None);
+    let (scene, robot_speed_command) = (state.document.scene.clone(), state.live.robot_speed_command.take());
+    state.live.reset_asked = Some(ResetOrigin { scene, robot_speed_command });
+    let number = next_number(state);
+    effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
+}
+
+/// Drives the robot by hand at a speed, or lets it follow its path.
+fn drive_robot(state: &mut AppState, order: Option<f64>, effects: &mut Effects) {
+    // Driving the robot lets time run from the present on, so that it is seen.
+    if order.is_some_and(|v| v != 0.0) {
+        state.live.show_time(None);
+        state.live.playback.paused = false;
+    }
+    if state.live.robot_speed_command != order {
+        state.live.robot_speed_command = order;
+        effects.request.merge(Request { robot: Some(order), ..Request::default() });
+    }
+}
+
+/// Sets the speed at which the robot is driven by hand.
+fn set_robot_speed(state: &mut AppState, speed: f64, effects: &mut Effects) {
+    if !(speed.is_finite() && speed > 0.0) {
+        return;
+    }
+    state.live.manual_robot_speed = Some(speed);
+    // A robot that is being driven goes on at the new speed.
+    if let Some(order) = state.live.robot_speed_command.filter(|v| *v != 0.0) {
+        let order = Some(speed.copysign(order));
+        state.live.robot_speed_command = order;
+        effects.request.merge(Request { robot: Some(order), ..Request::default() });
+    }
 }
 
 /// Returns true if the user wants time to stand.

@@ -1,8 +1,8 @@
 //! A support that changes its kind gets what the new kind needs and loses what it cannot have.
 
-use cable_core::Support;
 use cable_core::math::Point;
 use cable_core::scene::SupportKind;
+use cable_core::{Scene, Support};
 
 /// The kinds in the order of the picker, with name and explanation.
 pub const KINDS: [(SupportKind, &str, &str); 6] = [
@@ -14,13 +14,24 @@ pub const KINDS: [(SupportKind, &str, &str); 6] = [
     (SupportKind::Free, "Free", "Nothing holds it"),
 ];
 
+/// The part of a cable that a support holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SupportPlace {
+    /// Its start or its end.
+    CableEnd,
+    /// A point between them.
+    Between,
+}
+
 /// Returns why a kind cannot be chosen here, if it cannot.
 #[must_use]
-pub fn refusal(kind: SupportKind, is_end: bool, has_robot: bool) -> Option<&'static str> {
+pub fn refusal(kind: SupportKind, place: SupportPlace, scene: &Scene) -> Option<&'static str> {
     match kind {
-        SupportKind::Pulley if is_end => Some("A pulley cannot hold an end: the cable slides through"),
-        SupportKind::Free if !is_end => Some("Only an end of the cable can be free"),
-        SupportKind::Robot if !has_robot => Some("The scene has no robot"),
+        SupportKind::Pulley if place == SupportPlace::CableEnd => {
+            Some("A pulley cannot hold an end: the cable slides through")
+        }
+        SupportKind::Free if place == SupportPlace::Between => Some("Only an end of the cable can be free"),
+        SupportKind::Robot if scene.robot.is_none() => Some("The scene has no robot"),
         _ => None,
     }
 }
@@ -29,10 +40,9 @@ pub fn refusal(kind: SupportKind, is_end: bool, has_robot: bool) -> Option<&'sta
 /// presets.
 const FIRST_LOAD_N: Point = [0.0, -10.0];
 
-/// The support as another kind. `at_m` and `arc_length_m` are its present place; `end` is true for
-/// the cable's start or end.
+/// The support as another kind. `at_m` and `arc_length_m` are where it is at present.
 #[must_use]
-pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: f64, end: bool) -> Support {
+pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: f64, place: SupportPlace) -> Support {
     let mut new = Support::new(support.name.clone(), kind);
     let held = matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
     if held {
@@ -44,7 +54,7 @@ pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: 
     }
     // A support between the ends states its arc length; those at the ends have none.
     let grips = !matches!(kind, SupportKind::Pulley | SupportKind::Free);
-    if grips && !end {
+    if grips && place == SupportPlace::Between {
         new.arc_length_m = support.arc_length_m.or(Some(arc_length_m));
     }
     match kind {
@@ -75,13 +85,14 @@ mod tests {
     use super::*;
 
     /// The hanging span with a support in the middle, or at its end, that went through two kinds.
-    fn changed(through: [SupportKind; 2], end: bool) -> cable_core::Scene {
+    fn changed(through: [SupportKind; 2], part: SupportPlace) -> Scene {
         let mut scene = catalog::hanging_span();
         let supports = &mut scene.cables[0].supports;
+        let end = part == SupportPlace::CableEnd;
         let place = if end { ([10.0, 5.0], 12.0) } else { ([5.0, 4.5], 6.0) };
         let mut support = if end { supports[1].clone() } else { Support::pulley("middle", place.0) };
         for kind in through {
-            support = of_kind(&support, kind, place.0, place.1, end);
+            support = of_kind(&support, kind, place.0, place.1, part);
         }
         if end {
             supports[1] = support;
@@ -93,12 +104,12 @@ mod tests {
 
     #[test]
     fn every_change_of_kind_leaves_a_scene_that_can_be_solved() {
-        let (mut tried, has_robot) = (0, false);
-        for end in [false, true] {
+        let (mut tried, scene) = (0, catalog::hanging_span());
+        for place in [SupportPlace::Between, SupportPlace::CableEnd] {
             for (from, ..) in KINDS {
                 for (to, ..) in KINDS {
-                    if refusal(from, end, has_robot).is_none() && refusal(to, end, has_robot).is_none() {
-                        assert_eq!(changed([from, to], end).validate(), Ok(()), "{from:?} to {to:?}, end: {end}");
+                    if refusal(from, place, &scene).is_none() && refusal(to, place, &scene).is_none() {
+                        assert_eq!(changed([from, to], place).validate(), Ok(()), "{from:?} to {to:?}: {place:?}");
                         tried += 1;
                     }
                 }

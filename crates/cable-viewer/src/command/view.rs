@@ -8,7 +8,7 @@ use cable_core::math::Point;
 use crate::command::effects::Effects;
 use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
 use crate::jobs::{model_comparison, neglected_bending, work_precision};
-use crate::record::kept_run::Run;
+use crate::record::kept_run::KeptRun;
 use crate::render::colour::ColourScale;
 use crate::state::job_questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
@@ -113,14 +113,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
             (state.selection.selected, state.selection.also_selected) = (item, Vec::new());
         }
-        ViewCommand::ToggleSelected(item) => {
-            let mut picks = state.selection.selected_items();
-            match picks.iter().position(|i| *i == item) {
-                Some(k) => drop(picks.remove(k)),
-                None => picks.push(item),
-            }
-            select_all(state, picks);
-        }
+        ViewCommand::ToggleSelected(item) => toggle_selected(state, item),
         ViewCommand::SelectAll(items) => select_all(state, items),
         ViewCommand::SetTensionMarker(probe) => state.analysis.tension_marker = probe,
         ViewCommand::SetMarquee(corners) => state.selection.marquee_m = corners,
@@ -149,14 +142,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         }
         ViewCommand::ZoomOn(p) => zoom_on(state, p),
         ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
-        ViewCommand::UseTool(section, command) => {
-            apply(state, *command, effects);
-            if section == ToolSection::Solver {
-                apply(state, ViewCommand::Select(Some(Item::Solver)), effects);
-            }
-            state.ui.panels.results = true;
-            state.ui.section_request = (state.ui.section_request.0 + 1, Some(section));
-        }
+        ViewCommand::UseTool(section, command) => use_tool(state, section, *command, effects),
         ViewCommand::AskGraph(request) => {
             state.ui.panels.graphs = true;
             state.ui.graph_request = (state.ui.graph_request.0 + 1, Some(request));
@@ -174,13 +160,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         }
         ViewCommand::SearchSafeReach => search_safe_reach(state, effects),
         ViewCommand::SetSafeReachOptions(choice) => state.analysis.safe_reach.choice = choice,
-        ViewCommand::SetFrictionRange { shown, factors: [low, high] } => {
-            state.analysis.friction_range.on = shown;
-            if low >= 0.0 && high.is_finite() {
-                // The scene's own friction lies in between.
-                state.analysis.friction_range.factors = [low.min(1.0), high.max(1.0)];
-            }
-        }
+        ViewCommand::SetFrictionRange { shown, factors } => set_friction_range(state, shown, factors),
         ViewCommand::AskBending => {
             state.analysis.neglected_bending = neglected_bending::NeglectedBendingState {
                 query: bending_query(state),
@@ -209,6 +189,35 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 state.analysis.references.remove(k);
             }
         }
+    }
+}
+
+/// Selects a thing in addition to the others, or no longer.
+fn toggle_selected(state: &mut AppState, item: Item) {
+    let mut picks = state.selection.selected_items();
+    match picks.iter().position(|i| *i == item) {
+        Some(k) => drop(picks.remove(k)),
+        None => picks.push(item),
+    }
+    select_all(state, picks);
+}
+
+/// Applies the command of a tool and brings the section in which it is answered into sight.
+fn use_tool(state: &mut AppState, section: ToolSection, command: ViewCommand, effects: &mut Effects) {
+    apply(state, command, effects);
+    if section == ToolSection::Solver {
+        apply(state, ViewCommand::Select(Some(Item::Solver)), effects);
+    }
+    state.ui.panels.results = true;
+    state.ui.section_request = (state.ui.section_request.0 + 1, Some(section));
+}
+
+/// Shows the ribbon of less and more friction or not, and sets its factors.
+fn set_friction_range(state: &mut AppState, shown: bool, [low, high]: [f64; 2]) {
+    state.analysis.friction_range.on = shown;
+    if low >= 0.0 && high.is_finite() {
+        // The scene's own friction lies in between.
+        state.analysis.friction_range.factors = [low.min(1.0), high.max(1.0)];
     }
 }
 
@@ -254,7 +263,7 @@ fn add_reference(state: &mut AppState) {
         && state.analysis.references.len() < Reference::MAX_COUNT
     {
         let recording = &state.live.recording;
-        let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
+        let run = KeptRun::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
         let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);
         let changes = state.analysis.changes_to(&scene, &state.document.saved);
         state.analysis.references.push(Reference { scene, changes, folder: None, solution, wall_s, run });

@@ -33,10 +33,20 @@ const SWATCH: f64 = 20.0;
 /// Width of a letter, points: fonts of a reader are wider or narrower, and must not overlap.
 const LETTER_WIDTH: f64 = 7.0;
 
-/// Places of the entries of the legend, points from the left and lines from above, so that none
+/// The name of a line above the graph.
+#[derive(Debug)]
+struct LegendEntry {
+    name: String,
+    /// Its place, points from the left.
+    at: f64,
+    /// Its place, lines from above.
+    row: usize,
+}
+
+/// The entries of the legend with their places, so that none
 /// leaves the picture or lies on another; longer names are cut. Lines come first, then the ribbon.
 /// Last: how many lines of text there are.
-fn legend(graph: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
+fn legend(graph: &GraphInView) -> (Vec<LegendEntry>, usize) {
     let widest = SIZE[0] - MARGINS[0] - MARGINS[2];
     let most = ((widest - SWATCH - 6.0) / LETTER_WIDTH) as usize;
     let (mut at, mut row, mut entries) = (MARGINS[0], 0, Vec::new());
@@ -51,7 +61,7 @@ fn legend(graph: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
         if at > MARGINS[0] && at + width > SIZE[0] - MARGINS[2] {
             (at, row) = (MARGINS[0], row + 1);
         }
-        entries.push((name, at, row));
+        entries.push(LegendEntry { name, at, row });
         at += width + 16.0;
     }
     let rows = if entries.is_empty() { 0 } else { row + 1 };
@@ -124,69 +134,109 @@ struct Drawing {
 
 impl Drawing {
     fn of(graph: &GraphInView) -> Self {
-        let [left, bottom, right, top] = graph.bounds;
         let (entries, rows) = legend(graph);
         let under = MARGINS[1] + LEGEND_LINE * rows as f64;
         let [width, height] = [SIZE[0] - MARGINS[0] - MARGINS[2], SIZE[1] - MARGINS[1] - LEGEND_LINE - MARGINS[3]];
-        let x = |v: f64| MARGINS[0] + (v - left) / (right - left) * width;
-        let y = |v: f64| under + (top - v) / (top - bottom) * height;
         let frame = [MARGINS[0], under, MARGINS[0] + width, under + height];
         // The graph keeps its height however many lines are named above it.
         let size = [SIZE[0], frame[3] + MARGINS[3]];
-        let mut marks = Vec::new();
-        let ribbon = graph.known_ribbon();
-        if !ribbon.is_empty() {
-            let [r, g, b, _] = LINES[0].to_array();
-            let colour = [r, g, b].map(|c| 255 - ((255 - u16::from(c)) * RIBBON_PERCENT / 100) as u8);
-            marks.push(Mark::Area(ribbon.iter().map(|r| [x(r[0]), y(r[2]), y(r[1])]).collect(), colour));
-            if let Some((name, at, row)) = entries.last() {
-                let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
-                marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], (colour, 8.0, None)));
-                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
-            }
+        let mut drawing = Self { size, frame, marks: Vec::new() };
+        drawing.ribbon(graph, entries.last());
+        drawing.grid(graph);
+        for k in 0..graph.lines.len() {
+            drawing.line(graph, k, entries.get(k));
         }
+        drawing.limits(graph);
+        drawing.titles(graph);
+        drawing
+    }
+
+    /// Where a value of the horizontal axis is.
+    fn x(&self, graph: &GraphInView, v: f64) -> f64 {
+        let [left, _, right, _] = graph.bounds;
+        self.frame[0] + (v - left) / (right - left) * (SIZE[0] - MARGINS[0] - MARGINS[2])
+    }
+
+    /// Where a value of the vertical axis is.
+    fn y(&self, graph: &GraphInView, v: f64) -> f64 {
+        let [_, bottom, _, top] = graph.bounds;
+        self.frame[1] + (top - v) / (top - bottom) * (SIZE[1] - MARGINS[1] - LEGEND_LINE - MARGINS[3])
+    }
+
+    /// The name of a line above the graph, beside a sample of it.
+    fn legend_entry(&mut self, LegendEntry { name, at, row }: &LegendEntry, pen: StrokeStyle) {
+        let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
+        self.marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen));
+        self.marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
+    }
+
+    fn ribbon(&mut self, graph: &GraphInView, entry: Option<&LegendEntry>) {
+        let ribbon = graph.known_ribbon();
+        if ribbon.is_empty() {
+            return;
+        }
+        let [r, g, b, _] = LINES[0].to_array();
+        let colour = [r, g, b].map(|c| 255 - ((255 - u16::from(c)) * RIBBON_PERCENT / 100) as u8);
+        let area = ribbon.iter().map(|r| [self.x(graph, r[0]), self.y(graph, r[2]), self.y(graph, r[1])]).collect();
+        self.marks.push(Mark::Area(area, colour));
+        if let Some(entry) = entry {
+            self.legend_entry(entry, (colour, 8.0, None));
+        }
+    }
+
+    fn grid(&mut self, graph: &GraphInView) {
+        let ([left, bottom, right, top], frame) = (graph.bounds, self.frame);
         for v in ticks(left, right) {
-            marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
-            let at = [x(v), frame[3] + 16.0];
-            marks.push(Mark::Text(TextLabel::new(at, TextAnchor::Middle, tick_text(v, [left, right]))));
+            let x = self.x(graph, v);
+            self.marks.push(Mark::Line([[x, frame[1]], [x, frame[3]]], (GRID, 1.0, None)));
+            let at = [x, frame[3] + 16.0];
+            self.marks.push(Mark::Text(TextLabel::new(at, TextAnchor::Middle, tick_text(v, [left, right]))));
         }
         for v in ticks(bottom, top) {
-            marks.push(Mark::Line([[frame[0], y(v)], [frame[2], y(v)]], (GRID, 1.0, None)));
+            let y = self.y(graph, v);
+            self.marks.push(Mark::Line([[frame[0], y], [frame[2], y]], (GRID, 1.0, None)));
             let text = tick_text(v, [bottom, top]);
-            marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y(v) + 4.0], TextAnchor::End, text)));
+            self.marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y + 4.0], TextAnchor::End, text)));
         }
-        for (k, line) in graph.lines.iter().enumerate() {
-            let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
-            let pen = |width: f64| ([r, g, b], width, line.reference.map(|_| [6.0, 4.0]));
-            let points = visible(line, graph).iter().filter(|p| p[1].is_finite());
-            let path = points.map(|p| [x(p[0] / graph.si[0]), y(p[1] / graph.si[1])]).collect();
-            marks.push(Mark::Path(path, pen(1.8)));
-            if let Some((name, at, row)) = entries.get(k) {
-                let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
-                marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen(2.5)));
-                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
-            }
+    }
+
+    fn line(&mut self, graph: &GraphInView, k: usize, entry: Option<&LegendEntry>) {
+        let line = &graph.lines[k];
+        let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
+        let pen = |width: f64| ([r, g, b], width, line.reference.map(|_| [6.0, 4.0]));
+        let points = visible(line, graph).iter().filter(|p| p[1].is_finite());
+        let path = points.map(|p| [self.x(graph, p[0] / graph.si[0]), self.y(graph, p[1] / graph.si[1])]).collect();
+        self.marks.push(Mark::Path(path, pen(1.8)));
+        if let Some(entry) = entry {
+            self.legend_entry(entry, pen(2.5));
         }
+    }
+
+    fn limits(&mut self, graph: &GraphInView) {
+        let [left, under, right, _] = self.frame;
         for (limit, name, colour) in limits(graph) {
-            let at = y(limit);
-            marks.push(Mark::Line([[frame[0], at], [frame[2], at]], (colour, 1.0, Some([8.0, 4.0]))));
+            let at = self.y(graph, limit);
+            self.marks.push(Mark::Line([[left, at], [right, at]], (colour, 1.0, Some([8.0, 4.0]))));
             // A limit at the top has its name below it: beside the names above the graph it would
             // be taken for one.
             let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
             let unit = graph.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
             let text = format!("{name} {} {unit}", significant(limit, 4));
-            let words = TextLabel::new([frame[2] - 6.0, low], TextAnchor::End, text.trim_end());
-            marks.push(Mark::Text(TextLabel { colour, ..words }));
+            let words = TextLabel::new([right - 6.0, low], TextAnchor::End, text.trim_end());
+            self.marks.push(Mark::Text(TextLabel { colour, ..words }));
         }
-        let middle = [(frame[0] + frame[2]) / 2.0, (frame[1] + frame[3]) / 2.0];
-        marks.push(Mark::Text(TextLabel::new([middle[0], size[1] - 14.0], TextAnchor::Middle, &graph.across[0])));
+    }
+
+    /// The names of the axes and the title.
+    fn titles(&mut self, graph: &GraphInView) {
+        let ([left, top, right, bottom], height) = (self.frame, self.size[1]);
+        let middle = [(left + right) / 2.0, (top + bottom) / 2.0];
+        let across = TextLabel::new([middle[0], height - 14.0], TextAnchor::Middle, &graph.across[0]);
         let up = TextLabel::new([16.0, middle[1]], TextAnchor::Middle, &graph.up[0]);
-        marks.push(Mark::Text(TextLabel { upwards: true, ..up }));
-        marks.push(Mark::Text(TextLabel {
-            title: true,
-            ..TextLabel::new([MARGINS[0], 18.0], TextAnchor::Start, &graph.title)
-        }));
-        Self { size, frame, marks }
+        let title = TextLabel::new([MARGINS[0], 18.0], TextAnchor::Start, &graph.title);
+        self.marks.push(Mark::Text(across));
+        self.marks.push(Mark::Text(TextLabel { upwards: true, ..up }));
+        self.marks.push(Mark::Text(TextLabel { title: true, ..title }));
     }
 }
 
@@ -375,9 +425,9 @@ mod tests {
         let mut many = GraphInView { lines: lines.collect(), ..graph() };
         many.lines[3].name = "a name without end ".repeat(20);
         let (entries, rows) = legend(&many);
-        let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER_WIDTH * name.chars().count() as f64;
-        assert!(entries.iter().all(|e| end(e) <= SIZE[0] && e.2 < rows), "{entries:?}");
-        assert!(entries.windows(2).all(|e| e[0].2 < e[1].2 || end(&e[0]) < e[1].1), "{entries:?}");
+        let end = |e: &LegendEntry| e.at + SWATCH + 6.0 + LETTER_WIDTH * e.name.chars().count() as f64;
+        assert!(entries.iter().all(|e| end(e) <= SIZE[0] && e.row < rows), "{entries:?}");
+        assert!(entries.windows(2).all(|e| e[0].row < e[1].row || end(&e[0]) < e[1].at), "{entries:?}");
         let text = svg(&many);
         let height: f64 = text.split("height=\"").nth(1).and_then(|t| t.split('"').next()).unwrap().parse().unwrap();
         for y in text.split(" y=\"").skip(1).filter_map(|t| t.split('"').next()) {

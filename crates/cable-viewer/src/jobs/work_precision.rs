@@ -19,7 +19,7 @@ const MAX_REPEATS: usize = 5;
 
 /// The result of a setting.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct MeasuredSetting {
     /// Model and mesh.
     pub setting: Setting,
     /// The difference of its answer and the wall time it took (s), or the reason for having none.
@@ -34,7 +34,7 @@ pub struct Outcome {
     /// Its answer with the settings in use, and the wall time that took, s.
     pub given: (Arc<Solution>, f64),
     /// The settings so far.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<MeasuredSetting>,
 }
 
 /// Progress so far.
@@ -59,7 +59,7 @@ pub fn start(scene: Scene, model: Model, settings: Settings, shown: impl Fn() + 
                 return Err(ended());
             }
             let result = timed(|| answer_with(*setting, &found.scene, &found.given.0, settings));
-            found.entries.push(Entry { setting: *setting, result });
+            found.entries.push(MeasuredSetting { setting: *setting, result });
         }
         Ok(found)
     };
@@ -90,7 +90,7 @@ impl Outcome {
     /// The quickest setting whose answer is within a part of the greatest tension of the given one.
     #[must_use]
     pub fn quickest(&self, within: f64) -> Option<(Setting, f64)> {
-        let good = |e: &Entry| {
+        let good = |e: &MeasuredSetting| {
             let (compared, wall_s) = e.result.as_ref().ok()?;
             (compared.force_difference <= within).then_some((e.setting, *wall_s))
         };
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn the_quickest_of_those_that_are_good_enough_is_named() {
-        let entry = |elements, force_difference, wall_s| Entry {
+        let entry = |elements, force_difference, wall_s| MeasuredSetting {
             setting: Setting { model: Model::Fem, elements: Some(elements) },
             result: Ok((
                 Compared { greatest_tension_n: 1.0, force_difference, shape_difference_m: 0.0, stated_error: None },

@@ -165,7 +165,7 @@ fn status(state: &AppState) -> Vec<StatusItem> {
         items.push(plain(model, sentence(&solution.reason), Importance::Model));
     }
     let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);
-    let (text, help) = match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
+    let (text, help) = match (state.solving_for_s(), state.freshness(), state.solver.edit_latency_s) {
         (Some(seconds), ..) => (labels::solving(seconds), "The answer to the last edits is being sought".to_owned()),
         (None, Freshness::Outdated, _) => {
             ("Not solved".to_owned(), "The scene has no answer: see the warnings".to_owned())

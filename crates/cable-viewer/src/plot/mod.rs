@@ -12,8 +12,8 @@ mod keys;
 mod line_corners;
 pub mod over_time;
 
-use egui::{Align2, Color32, Id, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
-use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotTransform, PlotUi};
+use egui::{Align2, Color32, Id, Pos2, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotResponse, PlotTransform, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
 use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
@@ -140,64 +140,53 @@ pub struct GraphResponse {
     pub export: Option<Box<GraphInView>>,
 }
 
+/// The units and ranges in which a graph is drawn.
+#[derive(Clone, Copy)]
+struct GraphScale {
+    /// Symbol and SI value of the unit of the horizontal axis, and those of the vertical one.
+    across: (&'static str, f64),
+    up: (&'static str, f64),
+    /// Least and greatest value of the vertical axis, SI.
+    low: f64,
+    high: f64,
+}
+
+impl GraphScale {
+    fn of(graph: &Graph<'_>, lines: &[Series]) -> Self {
+        let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
+        let Unit { symbol, si, .. } = graph.across.1.display();
+        Self { across: (symbol, si), up: graph.measure.unit(high), low, high }
+    }
+
+    /// The SI values of the units of both axes.
+    fn si(&self) -> [f64; 2] {
+        [self.across.1, self.up.1]
+    }
+}
+
 /// Draws lines (SI values) with their limits.
 pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
-    let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
-    let (symbol, si) = graph.measure.unit(high);
-    let Unit { symbol: across_symbol, si: x_si, .. } = graph.across.1.display();
-    let read = |x: f64| values_at(lines, x, [(across_symbol, x_si), (symbol, si)]);
-    let follow = graph.follow;
+    let scale = GraphScale::of(graph, lines);
+    let [x_si, si] = scale.si();
     let top = ui.cursor().top();
     let (title, export) = legend(ui, graph, lines);
     let mut cursors = Cursors::load(ui, graph.group);
     // Those of a run that is no more read nothing.
     cursors.forget_without_data(ui, graph.group, graph.last);
-    let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
+    let cursor_text = cursors.text([scale.across, scale.up], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(MIN_HEIGHT);
     let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
     let width = ui.available_width() - VALUES_WIDTH;
-    let rows = f64::from((height - TICK_LABELS_HEIGHT) / Y_TICK_SPACING).max(1.0);
-    // Numbers are as far apart as they are asked to be: none of them is faint.
-    let axis = |hints: AxisHints<'static>| hints.label_spacing(Rangef::new(1.0, 2.0));
-    let across_axis = axis(AxisHints::new_x());
-    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, across_symbol, width));
-    let up_axis = axis(AxisHints::new_y()).min_thickness(VALUES_WIDTH);
-    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, symbol));
-    let plot = Plot::new(graph.title)
-        .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
-        .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
-        .height(height)
-        // As fine as that of the canvas: lines of data stand off it.
-        .grid_color(theme::palette(ui.visuals()).grid_zero)
-        .allow_drag(!follow)
-        .allow_zoom(!follow)
-        .allow_boxed_zoom(!follow)
-        .allow_double_click_reset(!follow)
-        .allow_scroll(false)
-        .allow_axis_zoom_drag(!follow)
-        .x_grid_spacer(|input| grid_marks(input, columns))
-        .y_grid_spacer(|input| grid_marks(input, rows))
-        .custom_x_axes(vec![across_axis])
-        .custom_y_axes(vec![up_axis])
-        .label_formatter(|at| {
-            let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
-            Some(read(position.x))
-        });
+    let plot = axes(ui, graph, scale, [columns, f64::from(height)]).label_formatter(|at| {
+        let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
+        Some(values_at(lines, position.x, [scale.across, scale.up]))
+    });
     let moved_mark = moved_mark(ui, graph);
     let response = plot.show(ui, |plot| {
-        if follow {
-            let [left, right] = graph.range.map(|x| x / x_si);
-            plot.set_plot_bounds(PlotBounds::from_min_max([left, low / si], [right, high / si]));
-        } else if let Some(mark) = moved_mark {
-            let [left, right] = [plot.plot_bounds().min()[0], plot.plot_bounds().max()[0]];
-            if !(left..=right).contains(&(mark / x_si)) {
-                let half = 0.5 * (right - left);
-                plot.set_plot_bounds_x(mark / x_si - half..=mark / x_si + half);
-            }
-        }
+        set_bounds(plot, graph, scale, moved_mark);
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         draw_lines(plot, graph, lines, [x_si, si]);
-        draw_limits(plot, graph, high, si);
+        draw_limits(plot, graph, scale.high, si);
         if let Some(hint) = graph.hint {
             let words = RichText::new(hint).color(plot.ctx().global_style().visuals.weak_text_color());
             plot.text(egui_plot::Text::new("hint", plot.plot_bounds().center(), words).allow_hover(false));
@@ -208,38 +197,96 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         let asked = keys::read(plot, places.last().copied());
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
-    name_limits(ui, graph, &response.transform, high, si);
-    write_ends_across(ui, &response.transform, columns, across_symbol, width);
-    let asked = response.inner;
+    name_limits(ui, graph, &response.transform, scale.high, si);
+    write_ends_across(ui, &response.transform, columns, scale.across.0, width);
+    move_cursors(ui, graph, &response, &mut cursors, x_si);
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
     ui.data_mut(|d| d.insert_temp(Id::unique(("in view", graph.title)), ends));
-    let over = response.response.hover_pos().map(|p| response.transform.value_from_position(p).x * x_si);
+    if response.response.has_focus() {
+        let stroke = ui.visuals().selection.stroke;
+        ui.painter().rect_stroke(response.response.rect, 2.0, stroke, egui::StrokeKind::Outside);
+    }
+    // A graph that follows is not moved by hand: a drag in it moves the playhead.
+    let dragged = graph.follow && graph.group == TIME && response.response.dragged_by(egui::PointerButton::Primary);
+    let at = response.response.interact_pointer_pos().filter(|_| dragged);
+    let answer = GraphResponse {
+        zoomed: response.inner.zoomed,
+        scrubbed_s: at.map(|at| response.transform.value_from_position(at).x * x_si),
+        export: (export || graph.export).then(|| Box::new(graph_in_view(graph, lines, scale.high, bounds))),
+    };
+    let figure = response.response.labelled_by(title);
+    let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
+    let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol: scale.up.0, si, cursors: cursor_text };
+    set_accessible_text(&figure, &spoken);
+    answer
+}
+
+/// Sets cursors where the pointer clicks and where keys ask for them, and stores what the pointer
+/// is over.
+fn move_cursors(
+    ui: &mut Ui,
+    graph: &Graph<'_>,
+    drawn: &PlotResponse<keys::KeyInput>,
+    cursors: &mut Cursors,
+    x_si: f64,
+) {
+    let (response, asked) = (&drawn.response, &drawn.inner);
+    let x_at = |at: Pos2| drawn.transform.value_from_position(at).x;
+    let over = response.hover_pos().map(|p| x_at(p) * x_si);
     ui.data_mut(|d| d.insert_temp(hovered_id(graph.group), over));
-    if response.response.clicked() {
-        let at = response.response.interact_pointer_pos();
-        let place = at.map_or(asked.next, |at| response.transform.value_from_position(at).x);
+    if response.clicked() {
+        let place = response.interact_pointer_pos().map_or(asked.next, x_at);
         cursors.click(ui, graph.group, place * x_si);
     }
     if let Some(place) = asked.cursor {
         cursors.put_last(ui, graph.group, place * x_si);
     }
-    if response.response.has_focus() {
-        let stroke = ui.visuals().selection.stroke;
-        ui.painter().rect_stroke(response.response.rect, 2.0, stroke, egui::StrokeKind::Outside);
-    }
-    let figure = response.response.labelled_by(title);
-    let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
-    let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol, si, cursors: cursor_text };
-    set_accessible_text(&figure, &spoken);
-    // A graph that follows is not moved by hand: a drag in it moves the playhead.
-    let dragged = follow && graph.group == TIME && figure.dragged_by(egui::PointerButton::Primary);
-    let at = figure.interact_pointer_pos().filter(|_| dragged);
-    let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
-    GraphResponse {
-        zoomed: asked.zoomed,
-        scrubbed_s,
-        export: (export || graph.export).then(|| Box::new(graph_in_view(graph, lines, high, bounds))),
+}
+
+/// The empty graph with its axes and grid; `size` is the number of columns, and the height in
+/// points.
+fn axes<'a>(ui: &Ui, graph: &Graph<'_>, scale: GraphScale, [columns, height]: [f64; 2]) -> Plot<'a> {
+    let follow = graph.follow;
+    let width = ui.available_width() - VALUES_WIDTH;
+    let rows = ((height - f64::from(TICK_LABELS_HEIGHT)) / f64::from(Y_TICK_SPACING)).max(1.0);
+    // Numbers are as far apart as they are asked to be: none of them is faint.
+    let axis = |hints: AxisHints<'static>| hints.label_spacing(Rangef::new(1.0, 2.0));
+    let across_axis = axis(AxisHints::new_x());
+    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, scale.across.0, width));
+    let up_axis = axis(AxisHints::new_y()).min_thickness(VALUES_WIDTH);
+    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, scale.up.0));
+    Plot::new(graph.title)
+        .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
+        .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
+        .height(height as f32)
+        // As fine as that of the canvas: lines of data stand off it.
+        .grid_color(theme::palette(ui.visuals()).grid_zero)
+        .allow_drag(!follow)
+        .allow_zoom(!follow)
+        .allow_boxed_zoom(!follow)
+        .allow_double_click_reset(!follow)
+        .allow_scroll(false)
+        .allow_axis_zoom_drag(!follow)
+        .x_grid_spacer(move |input| grid_marks(input, columns))
+        .y_grid_spacer(move |input| grid_marks(input, rows))
+        .custom_x_axes(vec![across_axis])
+        .custom_y_axes(vec![up_axis])
+}
+
+/// Shows the range of a graph that follows its data; another one goes along with a mark that was
+/// moved out of it.
+fn set_bounds(plot: &mut PlotUi<'_>, graph: &Graph<'_>, scale: GraphScale, moved_mark: Option<f64>) {
+    let [x_si, si] = scale.si();
+    if graph.follow {
+        let [left, right] = graph.range.map(|x| x / x_si);
+        plot.set_plot_bounds(PlotBounds::from_min_max([left, scale.low / si], [right, scale.high / si]));
+    } else if let Some(mark) = moved_mark {
+        let [left, right] = [plot.plot_bounds().min()[0], plot.plot_bounds().max()[0]];
+        if !(left..=right).contains(&(mark / x_si)) {
+            let half = 0.5 * (right - left);
+            plot.set_plot_bounds_x(mark / x_si - half..=mark / x_si + half);
+        }
     }
 }
 
@@ -443,17 +490,18 @@ fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: O
 /// Returns what the colours mean, on one line above the graph, where it hides nothing; what finds
 /// no room is told on hover. Limits are named at their lines.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> (Id, bool) {
-    let mut entries: Vec<(String, Color32, bool)> =
-        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.reference.is_some())).collect();
+    let dashes = |l: &Series| if l.reference.is_some() { Dashes::Dashed } else { Dashes::Solid };
+    let mut entries: Vec<(String, Color32, Dashes)> =
+        lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, dashes(l))).collect();
     if graph.ribbon.len() >= 2 {
-        entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), false));
+        entries.push((RIBBON.to_owned(), LINES[0].gamma_multiply(0.5), Dashes::Solid));
     }
     let row = ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing = vec2(5.0, 2.0);
         let title = ui.label(RichText::new(graph.title).strong().small()).id;
         let small = TextStyle::Small.resolve(ui.style());
         let mut left_out = Vec::new();
-        for (name, colour, dashed) in entries {
+        for (name, colour, dashes) in entries {
             let galley = ui.painter().layout_no_wrap(name.clone(), small.clone(), colour);
             if !left_out.is_empty()
                 || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() - EXPORT_BUTTON_WIDTH
@@ -461,7 +509,7 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> (Id, bool) {
                 left_out.push(name);
                 continue;
             }
-            swatch(ui, colour, dashed);
+            swatch(ui, colour, dashes);
             ui.label(RichText::new(&name).small());
         }
         if !left_out.is_empty() {
@@ -478,9 +526,19 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> (Id, bool) {
     row.inner
 }
 
-fn swatch(ui: &mut Ui, colour: Color32, dashed: bool) {
+/// The way in which a line of the legend is drawn.
+#[derive(Clone, Copy)]
+enum Dashes {
+    Solid,
+    Dashed,
+}
+
+fn swatch(ui: &mut Ui, colour: Color32, dashes: Dashes) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, 10.0), Sense::hover());
-    let parts: &[[f32; 2]] = if dashed { &[[0.0, 0.4], [0.6, 1.0]] } else { &[[0.0, 1.0]] };
+    let parts: &[[f32; 2]] = match dashes {
+        Dashes::Solid => &[[0.0, 1.0]],
+        Dashes::Dashed => &[[0.0, 0.4], [0.6, 1.0]],
+    };
     for [from, to] in parts {
         let x = |f: f32| rect.left() + f * rect.width();
         ui.painter().hline(x(*from)..=x(*to), rect.center().y, Stroke::new(2.0, colour));

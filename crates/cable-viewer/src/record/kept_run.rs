@@ -18,7 +18,7 @@ const MAX_ANSWERS: usize = 600;
 
 /// The description of a run.
 #[derive(Clone, Debug, Default)]
-pub struct Run {
+pub struct KeptRun {
     /// The leading line of each measure over time, SI, in the order of [`Measure::PRIMARY_LINES`].
     lines: Vec<Pyramid>,
     /// The greatest of each of them: looked for once, not in every frame.
@@ -38,7 +38,7 @@ pub struct Peak {
     pub time_s: f64,
 }
 
-impl Run {
+impl KeptRun {
     /// The run that was recorded; None while it has fewer than two instants.
     #[must_use]
     pub fn of<'a>(

@@ -73,9 +73,25 @@ fn path_line(stroke: &PathStroke, points: &[Pos2]) -> String {
     line(Stroke::new(stroke.width, color))
 }
 
-fn path(out: &mut String, points: &[Pos2], closed: bool, inside: Color32, stroke: &PathStroke) {
+/// The element of SVG for a line through points.
+#[derive(Clone, Copy)]
+enum LineElement {
+    Polygon,
+    Polyline,
+}
+
+impl LineElement {
+    fn of(closed: bool) -> Self {
+        if closed { Self::Polygon } else { Self::Polyline }
+    }
+}
+
+fn path(out: &mut String, points: &[Pos2], element: LineElement, inside: Color32, stroke: &PathStroke) {
     let words: Vec<String> = points.iter().map(|p| format!("{:.2},{:.2}", p.x, p.y)).collect();
-    let name = if closed { "polygon" } else { "polyline" };
+    let name = match element {
+        LineElement::Polygon => "polygon",
+        LineElement::Polyline => "polyline",
+    };
     let _ = writeln!(
         out,
         "<{name} points=\"{}\"{}{} stroke-linejoin=\"round\"/>",
@@ -120,7 +136,7 @@ fn draw(out: &mut String, shape: &Shape) {
             line(*stroke)
         ),
         Shape::Path(p) => {
-            path(out, &p.points, p.closed, p.fill, &p.stroke);
+            path(out, &p.points, LineElement::of(p.closed), p.fill, &p.stroke);
             Ok(())
         }
         Shape::Rect(r) => {
@@ -137,12 +153,12 @@ fn draw(out: &mut String, shape: &Shape) {
         }
         Shape::QuadraticBezier(c @ QuadraticBezierShape { closed, .. }) => {
             let points: Vec<Pos2> = (0..=STEPS).map(|k| c.sample(f32::from(k) / f32::from(STEPS))).collect();
-            path(out, &points, *closed, c.fill, &c.stroke);
+            path(out, &points, LineElement::of(*closed), c.fill, &c.stroke);
             Ok(())
         }
         Shape::CubicBezier(c @ CubicBezierShape { closed, .. }) => {
             let points: Vec<Pos2> = (0..=STEPS).map(|k| c.sample(f32::from(k) / f32::from(STEPS))).collect();
-            path(out, &points, *closed, c.fill, &c.stroke);
+            path(out, &points, LineElement::of(*closed), c.fill, &c.stroke);
             Ok(())
         }
         Shape::Noop | Shape::Band(_) | Shape::Callback(_) => Ok(()),
@@ -204,7 +220,7 @@ fn triangles(out: &mut String, m: &Mesh) {
             u8::try_from(sum / 3).unwrap_or(u8::MAX)
         };
         let ink = Color32::from_rgba_premultiplied(mean(0), mean(1), mean(2), mean(3));
-        path(out, &[a.pos, b.pos, c.pos], true, ink, &PathStroke::new(0.4, ink));
+        path(out, &[a.pos, b.pos, c.pos], LineElement::Polygon, ink, &PathStroke::new(0.4, ink));
     }
 }
 

@@ -9,7 +9,7 @@ use cable_core::{Scene, Solution};
 
 use crate::jobs::model_comparison::{self, Outcome};
 use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision};
-use crate::record::kept_run::Run;
+use crate::record::kept_run::KeptRun;
 
 /// The questions beyond the answer itself.
 #[derive(Debug, Default)]
@@ -66,7 +66,7 @@ pub struct Reference {
     /// does not say.
     pub wall_s: f64,
     /// The run it is the end of, where time ran.
-    pub run: Option<Arc<Run>>,
+    pub run: Option<Arc<KeptRun>>,
 }
 
 impl Reference {

@@ -26,15 +26,11 @@ pub fn start(shared: &Arc<Shared>, shown: &UpdateCallback, engine: Engine, threa
 }
 
 fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
-    let frame = Duration::from_secs_f64(FRAME_S);
-    let mut next_tick = Instant::now();
-    let mut last_tick = next_tick;
-    // Times at which a draft is replaced by the answer, and an answer is asked for other histories.
-    let mut refine_at = next_tick;
-    let mut edited_at: Option<Instant> = None;
+    let mut schedule = Schedule::new();
     loop {
-        let Ok(request) = wait_for_work(shared, &engine, thread, [next_tick, refine_at]) else { return };
-        let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
+        let Ok(request) = wait_for_work(shared, &engine, thread, &schedule) else { return };
+        let refines =
+            request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= schedule.refine_at);
         if refines || request.as_ref().is_some_and(Request::solves) {
             let seeks_histories = request.is_none() && engine.seeks_histories();
             let (began, engine) = (Instant::now(), Box::new(engine.checkpoint()));
@@ -42,46 +38,8 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
             shared.lock().solve = Some(solve);
         }
         let report = match request {
-            Some(request) => {
-                let drag = request.drag.is_some();
-                // A single edit is answered at once, a hand that goes on is waited for.
-                let draft_s = if engine.draft() || request.came_during_solve {
-                    let between = edited_at.map_or(IDLE_S, |at| at.elapsed().as_secs_f64());
-                    (IDLE_EDIT_INTERVALS * between).clamp(MIN_IDLE_S, IDLE_S)
-                } else {
-                    0.0
-                };
-                if request.edit.is_some() {
-                    edited_at = Some(Instant::now());
-                }
-                let mut report = catch_panic(&mut engine, |e| e.handle(request));
-                let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
-                if drag && engine.playing() && passed > MIN_FRAME_FRACTION {
-                    // The hand does not wait for the next frame: what has passed of this one is let
-                    // pass.
-                    last_tick = Instant::now();
-                    next_tick = last_tick + frame;
-                    report.merge(catch_panic(&mut engine, |e| e.advance_part_of_frame(passed)));
-                }
-                let pause_s = if engine.draft() { draft_s } else { MIN_IDLE_S };
-                refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
-                if engine.draft() {
-                    next_tick = Instant::now() + frame;
-                }
-                report
-            }
-            None if !engine.playing() && engine.settling() && Instant::now() < refine_at => {
-                next_tick = Instant::now() + frame;
-                catch_panic(&mut engine, Engine::settle_frame)
-            }
-            None if !engine.playing() => catch_panic(&mut engine, Engine::refine),
-            None => {
-                // A late frame is not made up for: time runs slower instead of falling behind for
-                // ever.
-                last_tick = Instant::now();
-                next_tick = last_tick.max(next_tick + frame);
-                catch_panic(&mut engine, Engine::advance_frame)
-            }
+            Some(request) => answer(&mut engine, request, &mut schedule),
+            None => go_on(&mut engine, &mut schedule),
         };
         let mut slots = shared.lock();
         if slots.thread != thread {
@@ -95,6 +53,74 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     }
 }
 
+/// The times at which work of the engine is due.
+struct Schedule {
+    /// The next frame of time that runs, or of a draft.
+    next_tick: Instant,
+    /// The frame before.
+    last_tick: Instant,
+    /// A draft is replaced by the answer, and an answer is asked for other histories.
+    refine_at: Instant,
+    /// The last edit came.
+    edited_at: Option<Instant>,
+}
+
+impl Schedule {
+    fn new() -> Self {
+        let now = Instant::now();
+        Self { next_tick: now, last_tick: now, refine_at: now, edited_at: None }
+    }
+}
+
+/// Answers a request.
+fn answer(engine: &mut Engine, request: Request, schedule: &mut Schedule) -> Report {
+    let drag = request.drag.is_some();
+    // A single edit is answered at once, a hand that goes on is waited for.
+    let draft_s = if engine.draft() || request.came_during_solve {
+        let between = schedule.edited_at.map_or(IDLE_S, |at| at.elapsed().as_secs_f64());
+        (IDLE_EDIT_INTERVALS * between).clamp(MIN_IDLE_S, IDLE_S)
+    } else {
+        0.0
+    };
+    if request.edit.is_some() {
+        schedule.edited_at = Some(Instant::now());
+    }
+    let mut report = catch_panic(engine, |e| e.handle(request));
+    let passed = schedule.last_tick.elapsed().as_secs_f64() / FRAME_S;
+    if drag && engine.playing() && passed > MIN_FRAME_FRACTION {
+        // The hand does not wait for the next frame: what has passed of this one is let pass.
+        schedule.last_tick = Instant::now();
+        schedule.next_tick = schedule.last_tick + frame();
+        report.merge(catch_panic(engine, |e| e.advance_part_of_frame(passed)));
+    }
+    let pause_s = if engine.draft() { draft_s } else { MIN_IDLE_S };
+    schedule.refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
+    if engine.draft() {
+        schedule.next_tick = Instant::now() + frame();
+    }
+    report
+}
+
+/// Does what is due without a request: a frame of a draft, the answer that replaces it, or a frame
+/// of time that runs.
+fn go_on(engine: &mut Engine, schedule: &mut Schedule) -> Report {
+    if engine.playing() {
+        // A late frame is not made up for: time runs slower instead of falling behind for ever.
+        schedule.last_tick = Instant::now();
+        schedule.next_tick = schedule.last_tick.max(schedule.next_tick + frame());
+        catch_panic(engine, Engine::advance_frame)
+    } else if engine.settling() && Instant::now() < schedule.refine_at {
+        schedule.next_tick = Instant::now() + frame();
+        catch_panic(engine, Engine::settle_frame)
+    } else {
+        catch_panic(engine, Engine::refine)
+    }
+}
+
+fn frame() -> Duration {
+    Duration::from_secs_f64(FRAME_S)
+}
+
 /// The thread has to end: the window closes, or another thread has taken its place.
 struct Stopped;
 
@@ -104,7 +130,7 @@ fn wait_for_work(
     shared: &Shared,
     engine: &Engine,
     thread: u64,
-    [next_tick, refine_at]: [Instant; 2],
+    &Schedule { next_tick, refine_at, .. }: &Schedule,
 ) -> Result<Option<Request>, Stopped> {
     let mut slots = shared.lock();
     if slots.thread == thread {

@@ -8,7 +8,7 @@ use cable_core::scene::catalog;
 use cable_core::solution::Node;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::record::kept_run::Run;
+use cable_viewer::record::kept_run::KeptRun;
 use cable_viewer::record::plotted_quantity::Measure;
 use cable_viewer::record::sample::Sample;
 use cable_viewer::state::AppState;
@@ -172,7 +172,7 @@ fn speed_of_a_million_samples() {
         .collect();
     let began = Instant::now();
     let answers = state(&harness).live.recording.answers().to_vec();
-    let run = Run::of(samples.iter(), &answers, 0).map(Arc::new);
+    let run = KeptRun::of(samples.iter(), &answers, 0).map(Arc::new);
     let built = began.elapsed().as_secs_f64() * 1e3;
     harness.state_mut().state.analysis.references[0].run = run.clone();
     // All of it in view.

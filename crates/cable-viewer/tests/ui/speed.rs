@@ -281,7 +281,7 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 /// printed and not asserted: a 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
-    use cable_viewer::record::kept_run::Run;
+    use cable_viewer::record::kept_run::KeptRun;
     use cable_viewer::record::sample::Sample;
     use cable_viewer::record::sample_history::History;
     let sample = |k: u32| {
@@ -313,7 +313,8 @@ fn speed_of_graphs() {
         (0..live).for_each(|k| state.live.history.push(sample(k)));
         if held > 0 {
             let samples: Vec<Sample> = (0..held).map(sample).collect();
-            let run = Run::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
+            let run =
+                KeptRun::of(samples.iter(), &[(*solution).clone(), (*solution).clone()], 0).map(std::sync::Arc::new);
             assert_eq!(
                 run.as_ref().map(|r| r
                     .line(cable_viewer::record::plotted_quantity::Measure::ALL[0])

@@ -1,9 +1,10 @@
 //! This module solves for the equilibrium: the slipping pulleys, the material at pulleys, and the
 //! tangent points on wheels.
 
-use super::layout::AnchorLayout;
-use super::sliding_problem::{Mode, SlidingProblem, SpanSolutions, WheelArc};
+use super::layout::SupportLayout;
+use super::sliding_problem::{BalanceForm, PulleyMode, SlidingProblem, SpanSolutions, WheelArc};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
+use crate::linalg::{TridiagonalRow as Row, solve_tridiagonal};
 use crate::math::larger;
 use crate::model::Model;
 use crate::numerics::{MAX_HALVINGS, backtrack};
@@ -14,7 +15,7 @@ use crate::problem::Problem;
 pub(super) struct Equilibrium {
     /// Material point at each anchor, m.
     pub sigma: Vec<f64>,
-    pub modes: Vec<Mode>,
+    pub modes: Vec<PulleyMode>,
     pub arcs: Vec<WheelArc>,
     pub stretches: SpanSolutions,
     pub iterations: usize,
@@ -25,12 +26,12 @@ pub(super) struct Equilibrium {
 }
 
 /// Initial unknowns of a solve and the slip that friction remembers.
-pub(super) struct Start<'a> {
+pub(super) struct SlidingStart<'a> {
     /// Material points that friction holds, m.
     pub held: &'a [f64],
     /// First guess of the material points, m.
     pub sigma: Vec<f64>,
-    pub modes: Vec<Mode>,
+    pub modes: Vec<PulleyMode>,
     pub arcs: Vec<WheelArc>,
 }
 
@@ -54,8 +55,8 @@ const LEAVING_FRACTION: f64 = 1e-2;
 const CONE_TOLERANCE: f64 = 1e-10;
 
 /// Finds the balance.
-pub(super) fn solve(p: &Problem, layout: &AnchorLayout, start: Start<'_>) -> Result<Equilibrium, SolveError> {
-    let Start { held, mut sigma, mut modes, mut arcs } = start;
+pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>) -> Result<Equilibrium, SolveError> {
+    let SlidingStart { held, mut sigma, mut modes, mut arcs } = start;
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
     let mut iterations = 0;
     let (mut lifted, mut near) = (None, None);
@@ -83,9 +84,9 @@ pub(super) fn solve(p: &Problem, layout: &AnchorLayout, start: Start<'_>) -> Res
 /// connects both tensions, with the weight on the arc. With the m of a point, ln(T₂/T₁)/turn, the
 /// material on the wheel would jump when it begins to slip, by 0.1 mm in one of 300 random wheels,
 /// for which neither state was then an equilibrium.
-pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k: usize, mode: Mode) -> f64 {
+pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k: usize, mode: PulleyMode) -> f64 {
     let (Some(b), Some(a)) = SlidingProblem::forces(s, k) else { return 0.0 };
-    if let Mode::Slip(m) = mode {
+    if let PulleyMode::Slip(m) = mode {
         return m;
     }
     let turn = slide.turn(k, b, a);
@@ -101,7 +102,7 @@ pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k
     m
 }
 
-fn not_converged(p: &Problem, layout: &AnchorLayout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
+fn not_converged(p: &Problem, layout: &SupportLayout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
     let place = layout.anchors.get(anchor).map(|a| Place {
         arc_length_m: a.held.unwrap_or(f64::NAN),
         at_m: a.at,
@@ -122,7 +123,7 @@ fn contact(
     held: &[f64],
     mut sigma: Vec<f64>,
     mut near: Option<SpanSolutions>,
-    mut modes: Vec<Mode>,
+    mut modes: Vec<PulleyMode>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
     let (mut iterations, joint) = (0, layout.settings.joint_mode_rounds);
@@ -142,13 +143,17 @@ fn contact(
             }
             let (Some(b), Some(f)) = SlidingProblem::forces(&found.stretches, k) else { continue };
             let next = match modes[k] {
-                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
-                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
+                PulleyMode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => {
+                    PulleyMode::Slip(a.friction)
+                }
+                PulleyMode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => {
+                    PulleyMode::Slip(-a.friction)
+                }
                 // Friction +μ acts against material that moves to the side after the pulley, so σ
                 // must have fallen.
-                Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
+                PulleyMode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
                     sigma[k] = held[k];
-                    Mode::Stick
+                    PulleyMode::Stick
                 }
                 same => same,
             };
@@ -165,9 +170,9 @@ fn contact(
 
 /// Finds the equilibrium with the given modes, starting without friction at slipping pulleys (an
 /// energy is minimised, so any start converges) and raising friction to its value.
-fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
-    let with = |part: f64| -> Vec<Mode> {
-        modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
+fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[PulleyMode]) -> Result<Equilibrium, SolveError> {
+    let with = |part: f64| -> Vec<PulleyMode> {
+        modes.iter().map(|m| if let PulleyMode::Slip(m) = m { PulleyMode::Slip(part * m) } else { *m }).collect()
     };
     let mut found = newton(slide, sigma, None, &with(0.0))?;
     let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
@@ -189,31 +194,31 @@ fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[Mode]) -> R
     Err(not_converged(slide.problem, slide.layout, 0, iterations, f64::NAN))
 }
 
-/// One row of the three-diagonal system.
-type Row = [f64; 3];
-
 /// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative
 /// residual.
 fn rows(
     slide: &SlidingProblem<'_>,
     s: &SpanSolutions,
-    modes: &[Mode],
-    smooth: bool,
+    modes: &[PulleyMode],
+    form: BalanceForm,
 ) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
     let n = modes.len();
     let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
     let (mut worst, mut newtons) = (0.0f64, 0.0f64);
     for k in 0..n {
-        let Mode::Slip(m) = modes[k] else { continue };
-        let (rk, mut row) = slide.row(s, k, m, smooth)?;
-        if k == 0 || modes[k - 1] == Mode::Stick {
+        let PulleyMode::Slip(m) = modes[k] else { continue };
+        let (rk, mut row) = slide.row(s, k, m, form)?;
+        if k == 0 || modes[k - 1] == PulleyMode::Stick {
             row[0] = 0.0;
         }
-        if k + 1 == n || modes[k + 1] == Mode::Stick {
+        if k + 1 == n || modes[k + 1] == PulleyMode::Stick {
             row[2] = 0.0;
         }
         let tension = SlidingProblem::forces(s, k).1?.norm();
-        let relative = if smooth { rk.abs() / (slide.problem.thermal_stretch * tension) } else { rk.abs() };
+        let relative = match form {
+            BalanceForm::Energy => rk.abs() / (slide.problem.thermal_stretch * tension),
+            BalanceForm::SlipLaw => rk.abs(),
+        };
         worst = larger(worst, relative);
         newtons = larger(newtons, relative * tension);
         (r[k], j[k]) = (rk, row);
@@ -221,32 +226,19 @@ fn rows(
     Some((r, j, worst, newtons))
 }
 
-/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are
-/// positive, so that the step goes down in energy.
-fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
-    let n = r.len();
+/// −J⁻¹ r for a three-diagonal J, by elimination; in the form of an energy the pivots are lifted
+/// until all are positive, so that the step goes down in energy.
+fn step(r: &[f64], j: &[Row], form: BalanceForm) -> Option<Vec<f64>> {
     let largest = j.iter().fold(0.0f64, |m, row| if row[1].abs() > m { row[1].abs() } else { m });
     let mut shift = 0.0;
-    'shifted: for _ in 0..60 {
-        let (mut d, mut p) = (vec![0.0; n], vec![0.0; n]);
-        for k in 0..n {
-            let (mut pivot, mut rhs) = (j[k][1] + shift, -r[k]);
-            if k > 0 {
-                let factor = j[k][0] / d[k - 1];
-                pivot -= factor * j[k - 1][2];
-                rhs -= factor * p[k - 1];
-            }
-            if descend && !(pivot > 1e-12 * largest) {
-                shift = if shift > 0.0 { 4.0 * shift } else { 1e-3 * largest };
-                continue 'shifted;
-            }
-            (d[k], p[k]) = (pivot, rhs);
+    for _ in 0..60 {
+        let lifted: Vec<Row> = j.iter().map(|[before, own, after]| [*before, own + shift, *after]).collect();
+        let mut p: Vec<f64> = r.iter().map(|r| -r).collect();
+        let will_do = |pivot: &f64| form == BalanceForm::SlipLaw || *pivot > 1e-12 * largest;
+        if solve_tridiagonal(&lifted, &mut p, |pivot| Some(pivot).filter(will_do)) {
+            return p.iter().all(|v| v.is_finite()).then_some(p);
         }
-        for k in (0..n).rev() {
-            let next = if k + 1 < n { j[k][2] * p[k + 1] } else { 0.0 };
-            p[k] = (p[k] - next) / d[k];
-        }
-        return p.iter().all(|v| v.is_finite()).then_some(p);
+        shift = if shift > 0.0 { 4.0 * shift } else { 1e-3 * largest };
     }
     None
 }
@@ -312,18 +304,13 @@ fn max_feasible_step(slide: &SlidingProblem<'_>, s: &SpanSolutions, p: &[f64]) -
     alpha
 }
 
-/// True if no slipping pulley has friction.
-fn is_smooth(modes: &[Mode]) -> bool {
-    modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)))
-}
-
 /// Newton's method for σ with the given modes, from a first σ and the stretches near it if known.
 /// An unstable equilibrium is returned only if leaving it leads to no other.
 fn newton(
     slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
     near: Option<&SpanSolutions>,
-    modes: &[Mode],
+    modes: &[PulleyMode],
 ) -> Result<Equilibrium, SolveError> {
     let mut left = None;
     let mut from = |sigma: Vec<f64>, first: f64| descend(slide, sigma, near, modes, first, &mut left);
@@ -337,18 +324,18 @@ fn descend(
     slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
     near: Option<&SpanSolutions>,
-    modes: &[Mode],
+    modes: &[PulleyMode],
     first: f64,
     left: &mut Option<Equilibrium>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
-    let smooth = is_smooth(modes);
+    let form = BalanceForm::of(modes);
     let mut sigma = sigma;
     let lost = |iterations| not_converged(slide.problem, layout, 0, iterations, f64::NAN);
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
     let (mut iterations, mut before) = (s.iterations, f64::INFINITY);
     for _ in 0..layout.settings.max_iterations {
-        let (r, j, worst, newtons) = rows(slide, &s, modes, smooth).ok_or_else(|| lost(iterations))?;
+        let (r, j, worst, newtons) = rows(slide, &s, modes, form).ok_or_else(|| lost(iterations))?;
         // Newton's method gains far more than a half there, unless what is left is rounding.
         let rounding = worst <= BALANCE_ACCEPTED && worst > 0.5 * before;
         before = worst;
@@ -365,7 +352,7 @@ fn descend(
             None
         } else {
             run_off(slide, &s)?;
-            let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
+            let p = step(&r, &j, form).ok_or_else(|| lost(iterations))?;
             let (next, spent) = search(slide, &sigma, &s, &r, &p, modes);
             iterations += spent;
             next
@@ -378,7 +365,7 @@ fn descend(
             return Err(not_converged(slide.problem, layout, 0, iterations, newtons));
         }
         let Some(way) = runs_away(&j) else { return Ok(end(sigma, s, newtons)) };
-        if !smooth {
+        if form == BalanceForm::SlipLaw {
             return Err(lost(iterations));
         }
         let next = leave_unstable(slide, &sigma, &s, &way, first);
@@ -398,9 +385,9 @@ fn search(
     s: &SpanSolutions,
     r: &[f64],
     p: &[f64],
-    modes: &[Mode],
+    modes: &[PulleyMode],
 ) -> (Option<(Vec<f64>, SpanSolutions)>, usize) {
-    let smooth = is_smooth(modes);
+    let form = BalanceForm::of(modes);
     let mut spent = 0;
     let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
     let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
@@ -409,10 +396,10 @@ fn search(
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
         let t = slide.stretches(&trial, Some(s))?;
         spent += t.iterations;
-        let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
-        let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
+        let down = form == BalanceForm::Energy && t.energy - energy <= 1e-4 * alpha * slope;
+        let noise = form == BalanceForm::SlipLaw || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
         let closer =
-            noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+            noise && rows(slide, &t, modes, form).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
         (down || closer).then_some((trial, t))
     });
     (found, spent)

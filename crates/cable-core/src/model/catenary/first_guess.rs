@@ -1,18 +1,18 @@
 //! This module makes the first guess: straight lines from wheel to wheel, with the material spread
 //! evenly along them.
 
-use super::layout::{Anchor, AnchorLayout, angle_of};
+use super::layout::{SupportLayout, SupportNode, angle_of};
 use super::sliding_problem::WheelArc;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// The arcs of straight ways from wheel to wheel.
-pub(super) fn first_arcs(layout: &AnchorLayout) -> Vec<WheelArc> {
+pub(super) fn first_arcs(layout: &SupportLayout) -> Vec<WheelArc> {
     let all = &layout.anchors;
     let hang = |force: Vec2| if force.norm() > 0.0 { force } else { layout.weight };
     let hanging = |way: Vec2| (way, Some(angle_of(way)));
-    let arc = |k: usize, a: &Anchor| {
+    let arc = |k: usize, a: &SupportNode| {
         let before = k.checked_sub(1).and_then(|j| all.get(j));
         // The ways from and to the neighbours, or along the loads, and the angles of the tangents.
         let (from, arrive) = match before {
@@ -34,7 +34,7 @@ pub(super) fn first_arcs(layout: &AnchorLayout) -> Vec<WheelArc> {
 /// Direction of the straight line that touches two anchors one after the other, rad. With t along
 /// it, n = perp t and the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in
 /// one place.
-fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
+fn tangent(from: &SupportNode, to: &SupportNode) -> Option<f64> {
     let d = to.at - from.at;
     let apart = d.norm();
     let aside = (to.facing * to.radius - from.facing * from.radius) / apart;
@@ -46,7 +46,7 @@ fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
 ///
 /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
 /// end takes what a taut cable leaves over.
-pub(super) fn spread(layout: &AnchorLayout, p: &Problem) -> Vec<f64> {
+pub(super) fn spread(layout: &SupportLayout, p: &Problem) -> Vec<f64> {
     let way = way(layout, p);
     let (n, total) = (layout.anchors.len(), way.1);
     let way = way.0;
@@ -92,7 +92,7 @@ pub(super) fn spread(layout: &AnchorLayout, p: &Problem) -> Vec<f64> {
 }
 
 /// Returns the distance of each anchor along the way, and the length of the whole way, m.
-fn way(layout: &AnchorLayout, p: &Problem) -> (Vec<f64>, f64) {
+fn way(layout: &SupportLayout, p: &Problem) -> (Vec<f64>, f64) {
     if p.route.len() > 1 {
         let (mut from, mut total) = (0.0, 0.0);
         let mut out = Vec::with_capacity(layout.anchors.len());
@@ -112,7 +112,7 @@ fn way(layout: &AnchorLayout, p: &Problem) -> (Vec<f64>, f64) {
 
 /// Returns the distance (m) of each anchor along a taut cable: from tangent point to tangent point,
 /// and round the wheels to their marks.
-pub(super) fn taut_arc_lengths(layout: &AnchorLayout) -> Vec<f64> {
+pub(super) fn taut_arc_lengths(layout: &SupportLayout) -> Vec<f64> {
     let arcs = first_arcs(layout);
     let mut out = Vec::with_capacity(layout.anchors.len());
     let touches = |k: usize| {

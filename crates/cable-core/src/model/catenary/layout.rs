@@ -12,7 +12,7 @@ use crate::scene::SupportKind;
 
 /// A point where the cable is held or slides through.
 #[derive(Clone, Debug)]
-pub(super) struct Anchor {
+pub(super) struct SupportNode {
     /// Index of the support.
     pub support: usize,
     /// Position (of a wheel, its centre), m.
@@ -29,9 +29,9 @@ pub(super) struct Anchor {
 
 /// The cable's holds and loads at an instant.
 #[derive(Clone, Debug)]
-pub(super) struct AnchorLayout {
+pub(super) struct SupportLayout {
     /// In order along the cable; at least one.
-    pub anchors: Vec<Anchor>,
+    pub anchors: Vec<SupportNode>,
     /// Dead loads in order, those at the very ends of a dangling cable included, N.
     pub loads: Vec<PointForce>,
     /// Load per metre of unstretched length, N/m.
@@ -53,7 +53,7 @@ fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
     Some(dragged.unwrap_or(p))
 }
 
-impl AnchorLayout {
+impl SupportLayout {
     /// The layout at a time.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl AnchorLayout {
                     }
                 }
                 (_, None) => {}
-                (SupportKind::Pulley, Some(at)) => anchors.push(Anchor {
+                (SupportKind::Pulley, Some(at)) => anchors.push(SupportNode {
                     support: k,
                     at,
                     held: None,
@@ -80,9 +80,14 @@ impl AnchorLayout {
                     friction: s.friction,
                     facing: 0.0,
                 }),
-                (_, Some(at)) => {
-                    anchors.push(Anchor { support: k, at, held: s.arc_length, radius: 0.0, friction: 0.0, facing: 0.0 })
-                }
+                (_, Some(at)) => anchors.push(SupportNode {
+                    support: k,
+                    at,
+                    held: s.arc_length,
+                    radius: 0.0,
+                    friction: 0.0,
+                    facing: 0.0,
+                }),
             }
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
@@ -101,19 +106,13 @@ impl AnchorLayout {
         if layout.anchors.is_empty() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
-        layout.hint_weight(p);
+        // Where a weightless cable is slack, any shape is at rest.
+        if !(layout.weight.norm() > 0.0) {
+            let loads = layout.loads.iter().map(|l| l.force.norm()).sum();
+            (layout.weight, layout.hint) = auxiliary_weight(p, loads);
+        }
         layout.face_wheels(p);
         Ok(layout)
-    }
-
-    /// Gives a weightless cable an auxiliary weight that no force shows: where it is slack any
-    /// shape is at rest, and this selects that of a very light cable.
-    fn hint_weight(&mut self, p: &Problem) {
-        if self.weight.norm() > 0.0 {
-            return;
-        }
-        let loads: f64 = self.loads.iter().map(|l| l.force.norm()).sum();
-        (self.weight, self.hint) = auxiliary_weight(p, loads);
     }
 
     /// Sets the side of its wheel on which the cable runs, seen along it.
@@ -148,7 +147,7 @@ pub(super) fn angle_of(v: Vec2) -> f64 {
     v.y.atan2(v.x)
 }
 
-impl Anchor {
+impl SupportNode {
     /// Returns the point (m) at which the centre line touches the wheel if its direction is `angle`
     /// (rad).
     pub fn touch(&self, angle: f64) -> Vec2 {

@@ -29,13 +29,13 @@ mod wheel;
 use crate::numerics::{HalvedSteps, MAX_HALVINGS};
 use std::sync::Arc;
 
-use self::equilibrium::{Equilibrium, Start, solve};
+use self::equilibrium::{Equilibrium, SlidingStart, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
-use self::layout::{AnchorLayout, unsupported};
+use self::layout::{SupportLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::results::{report, straight};
 pub use self::settings::CatenarySettings;
-use self::sliding_problem::Mode;
+use self::sliding_problem::PulleyMode;
 use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
@@ -136,18 +136,18 @@ impl CatenaryModel {
     }
 
     /// The layout at a time.
-    fn layout(&self, time_s: f64) -> Result<AnchorLayout, SolveError> {
-        Ok(AnchorLayout { settings: self.tuned, ..AnchorLayout::new(&self.problem, &self.dragged, time_s)? })
+    fn layout(&self, time_s: f64) -> Result<SupportLayout, SolveError> {
+        Ok(SupportLayout { settings: self.tuned, ..SupportLayout::new(&self.problem, &self.dragged, time_s)? })
     }
 
     /// Balance of a layout.
-    fn balance(&self, layout: &AnchorLayout, begin: InitialMaterial) -> Result<Equilibrium, SolveError> {
+    fn balance(&self, layout: &SupportLayout, begin: InitialMaterial) -> Result<Equilibrium, SolveError> {
         let spread = spread(layout, &self.problem);
         let (mut sigma, mut arcs) = (spread, first_arcs(layout));
-        let mut modes: Vec<Mode> = layout
+        let mut modes: Vec<PulleyMode> = layout
             .anchors
             .iter()
-            .map(|a| if a.held.is_none() && a.friction <= 0.0 { Mode::Slip(0.0) } else { Mode::Stick })
+            .map(|a| if a.held.is_none() && a.friction <= 0.0 { PulleyMode::Slip(0.0) } else { PulleyMode::Stick })
             .collect();
         for (i, a) in layout.anchors.iter().enumerate() {
             if a.held.is_some() {
@@ -162,7 +162,7 @@ impl CatenaryModel {
             }
         }
         let held = sigma.clone();
-        let start = Start { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
+        let start = SlidingStart { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
         let found = solve(&self.problem, layout, start);
         if found.is_ok() || begin == InitialMaterial::EvenSpread {
             return found;
@@ -170,10 +170,10 @@ impl CatenaryModel {
         // The last slip directions may be a bad start: from all holding.
         for (m, a) in modes.iter_mut().zip(&layout.anchors) {
             if a.friction > 0.0 {
-                *m = Mode::Stick;
+                *m = PulleyMode::Stick;
             }
         }
-        solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
+        solve(&self.problem, layout, SlidingStart { held: &held, sigma: held.clone(), modes, arcs })
     }
 
     /// Accepts an equilibrium as the state at a time; on an error nothing has changed. Nodes cost
@@ -181,7 +181,7 @@ impl CatenaryModel {
     /// meet an obstacle.
     fn accept(
         &mut self,
-        layout: &AnchorLayout,
+        layout: &SupportLayout,
         e: Equilibrium,
         time_s: f64,
         instant: StepStage,
@@ -208,7 +208,7 @@ impl CatenaryModel {
 
     /// Refuses obstacles, unless the cable hangs clear of them and gets there from its first shape
     /// without meeting any.
-    fn refuse_contact(&self, layout: &AnchorLayout, nodes: &[Node]) -> Result<(), SolveError> {
+    fn refuse_contact(&self, layout: &SupportLayout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
             return Ok(());
@@ -272,7 +272,7 @@ impl CatenaryModel {
 }
 
 /// The way the cable is laid, its material spread evenly along it.
-fn laid(p: &Problem, layout: &AnchorLayout) -> State {
+fn laid(p: &Problem, layout: &SupportLayout) -> State {
     let mut state = State::default();
     if p.route.len() > 1 {
         let total: f64 = p.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();

@@ -7,11 +7,11 @@
 use std::sync::Arc;
 
 use super::CatenaryModel;
-use super::equilibrium::{Equilibrium, Start, solve};
+use super::equilibrium::{Equilibrium, SlidingStart, solve};
 use super::first_guess::{first_arcs, taut_arc_lengths};
-use super::layout::{Anchor, AnchorLayout};
+use super::layout::{SupportLayout, SupportNode};
 use super::results::report;
-use super::sliding_problem::Mode;
+use super::sliding_problem::PulleyMode;
 use crate::math::{larger, smaller};
 use crate::model::Settings;
 use crate::problem::Problem;
@@ -40,7 +40,7 @@ fn tensions(nodes: &[Node]) -> [f64; 3] {
 
 /// The material at the anchors with the slack of one part of the cable in one of its spans, for
 /// each span, m.
-fn starts(problem: &Problem, layout: &AnchorLayout, sigma: &[f64]) -> Vec<Vec<f64>> {
+fn starts(problem: &Problem, layout: &SupportLayout, sigma: &[f64]) -> Vec<Vec<f64>> {
     let way: Vec<f64> = taut_arc_lengths(layout).into_iter().map(|w| w / problem.thermal_stretch).collect();
     let last = sigma.len() - 1;
     let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
@@ -79,13 +79,14 @@ pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s
     }
     let model = CatenaryModel::new(Arc::new(problem.clone()), Settings::default()).ok()?;
     let layout = model.layout(time_s).ok()?;
-    let slides = |held: Option<f64>| if held.is_none() { Mode::Slip(0.0) } else { Mode::Stick };
-    let modes: Vec<Mode> = layout.anchors.iter().map(|a| slides(a.held)).collect();
+    let slides = |held: Option<f64>| if held.is_none() { PulleyMode::Slip(0.0) } else { PulleyMode::Stick };
+    let modes: Vec<PulleyMode> = layout.anchors.iter().map(|a| slides(a.held)).collect();
     let from = |sigma: Vec<f64>| -> Option<Equilibrium> {
         let held = sigma.clone();
-        solve(problem, &layout, Start { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) }).ok()
+        solve(problem, &layout, SlidingStart { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) })
+            .ok()
     };
-    let material = |a: &Anchor| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
+    let material = |a: &SupportNode| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
     let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;
     let mut found = vec![shown];
     for start in starts(problem, &layout, &found[0].sigma) {

@@ -2,7 +2,7 @@
 //! support reactions.
 
 use super::equilibrium::{Equilibrium, required_friction};
-use super::layout::AnchorLayout;
+use super::layout::SupportLayout;
 use super::sliding_problem::SlidingProblem;
 use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
@@ -129,7 +129,7 @@ impl<'a> Nodes<'a> {
 }
 
 /// Nodes and reactions of a balance.
-pub(super) fn report(p: &Problem, layout: &AnchorLayout, e: &Equilibrium) -> (Vec<Node>, Vec<SupportReaction>) {
+pub(super) fn report(p: &Problem, layout: &SupportLayout, e: &Equilibrium) -> (Vec<Node>, Vec<SupportReaction>) {
     let slide = SlidingProblem { problem: p, layout, arcs: &e.arcs };
     let greatest = e.stretches.all.iter().flatten().fold(0.0f64, |m, s| {
         let t = if s.start.norm() > s.end.norm() { s.start.norm() } else { s.end.norm() };
@@ -227,7 +227,7 @@ fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[
 
 /// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends
 /// straight along their load.
-pub(super) fn straight(p: &Problem, layout: &AnchorLayout, sigma: &[f64]) -> Vec<Node> {
+pub(super) fn straight(p: &Problem, layout: &SupportLayout, sigma: &[f64]) -> Vec<Node> {
     let hang = |force: Vec2| {
         let f = if force.norm() > 0.0 { force } else { layout.weight };
         if f.norm() > 0.0 { f / f.norm() } else { -perp(Vec2::x()) }

@@ -15,7 +15,7 @@
 //! Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
-use super::layout::{Anchor, AnchorLayout, angle_of};
+use super::layout::{SupportLayout, SupportNode, angle_of};
 use super::wheel::traverse_wheel;
 use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};
@@ -24,11 +24,28 @@ use crate::problem::wheel_passage::angle_near;
 
 /// State of a pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Mode {
+pub(super) enum PulleyMode {
     /// Friction holds: σ stays.
     Stick,
     /// Slides with this m = ±μ (0: smooth): ln(T_a/T_b) = m·turn.
     Slip(f64),
+}
+
+/// Form of the balance of forces at the pulleys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BalanceForm {
+    /// Derivative of the energy, with a symmetric matrix: only without friction.
+    Energy,
+    /// Logarithm of the slip law.
+    SlipLaw,
+}
+
+impl BalanceForm {
+    /// The form for pulleys in these modes.
+    pub fn of(modes: &[PulleyMode]) -> Self {
+        let is_smooth = modes.iter().all(|m| matches!(m, PulleyMode::Stick | PulleyMode::Slip(0.0)));
+        if is_smooth { Self::Energy } else { Self::SlipLaw }
+    }
 }
 
 /// One pulley's wheel as it stands (all zero for a point).
@@ -79,7 +96,7 @@ pub(super) struct SpanSolution {
 /// Everything fixed while σ is sought.
 pub(super) struct SlidingProblem<'a> {
     pub problem: &'a Problem,
-    pub layout: &'a AnchorLayout,
+    pub layout: &'a SupportLayout,
     pub arcs: &'a [WheelArc],
 }
 
@@ -110,7 +127,7 @@ impl SlidingProblem<'_> {
 
     /// Points where the cable arrives at an anchor and leaves it, m.
     pub fn touches(&self, k: usize) -> (Vec2, Vec2) {
-        let (a, arc): (&Anchor, &WheelArc) = (&self.layout.anchors[k], &self.arcs[k]);
+        let (a, arc): (&SupportNode, &WheelArc) = (&self.layout.anchors[k], &self.arcs[k]);
         if a.radius == 0.0 { (a.at, a.at) } else { (a.touch(arc.arrive), a.touch(arc.arrive - a.facing * arc.turn)) }
     }
 
@@ -232,14 +249,12 @@ impl SlidingProblem<'_> {
 
     /// Residual of a slipping pulley and its derivatives by σ of the pulley before, itself, and the
     /// one after.
-    ///
-    /// `smooth`: in energy form (symmetric), else the logarithm of the slip law.
-    pub fn row(&self, s: &SpanSolutions, k: usize, m: f64, smooth: bool) -> Option<(f64, [f64; 3])> {
+    pub fn row(&self, s: &SpanSolutions, k: usize, m: f64, form: BalanceForm) -> Option<(f64, [f64; 3])> {
         let (b, a) = (s.all.get(k).copied().flatten()?, s.all.get(k + 1).copied().flatten()?);
         let (fb, fa) = (b.end, a.start);
         let (tb, ta) = (fb.norm(), fa.norm());
         // dF_b by (σ_{k−1}, σ_k), dF_a by (σ_k, σ_{k+1}).
-        if smooth {
+        if form == BalanceForm::Energy {
             let e = |t: f64| self.problem.thermal_stretch * (1.0 + t / self.problem.axial_stiffness);
             let (p1, p2) = self.touches(k);
             let r = self.psi(ta) - self.psi(tb) + self.layout.weight.dot(&(p2 - p1));

@@ -63,7 +63,7 @@ fn a_smooth_wheel_conserves_tension_energy_and_height() {
         let r = &m.reactions[1];
         let (tb, ta) = (r.tension_before_n.expect("a pulley"), r.tension_after_n.expect("a pulley"));
         let e = m.balance.as_ref().expect("a balance");
-        let (layout, arc) = (AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout"), e.arcs[1]);
+        let (layout, arc) = (SupportLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout"), e.arcs[1]);
         let a = &layout.anchors[1];
         let rise = (a.touch(arc.arrive - a.facing * arc.turn) - a.touch(arc.arrive)).y;
         let psi = |t: f64| t + t * t / 2e5;
@@ -118,7 +118,7 @@ fn a_rubbing_wheel_slips_by_the_heavy_capstan() {
     let half = std::f64::consts::FRAC_PI_2;
     let most = (before - part(-half)) * (mu * turn).exp() + part(half);
     match e.modes[1] {
-        Mode::Slip(m) if m > 0.0 => assert!((after - most).abs() < 1e-5 * most, "{after} {most}"),
+        PulleyMode::Slip(m) if m > 0.0 => assert!((after - most).abs() < 1e-5 * most, "{after} {most}"),
         _ => assert!(after <= most * (1.0 + 1e-9), "{after} {most}"),
     }
 }
@@ -182,7 +182,7 @@ fn refusals_name_the_feature() {
 fn nodes_are_close_enough_to_draw_straight_lines_between() {
     let mut m = model(&scene(24.0, vec![Support::fixed("a", [0.0, 5.0]), Support::fixed("b", [10.0, 6.0])]));
     m.settle().expect("rest");
-    let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
+    let layout = SupportLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
     let slide = sliding_problem::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let s = e.stretches.all[1].expect("a stretch");
@@ -234,13 +234,13 @@ fn rests_by_the_heavy_capstan([mu, r, axial_stiffness, pull]: [f64; 4], a: [f64;
     balance(&m);
     let r = &m.reactions[1];
     let (tb, ta) = (r.tension_before_n.expect("a pulley"), r.tension_after_n.expect("a pulley"));
-    let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
+    let layout = SupportLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
     let slide = sliding_problem::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let (from, turn) = (e.arcs[1].arrive, e.arcs[1].turn);
     let by = |mu: f64| wheel::traverse_wheel(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
     assert!(ta > by(-mu) * (1.0 - 1e-6) && ta < by(mu) * (1.0 + 1e-6), "{ta} {} {}", by(-mu), by(mu));
-    if let Mode::Slip(m) = e.modes[1] {
+    if let PulleyMode::Slip(m) = e.modes[1] {
         assert!((ta - by(m)).abs() < 1e-6 * ta, "{ta} {}", by(m));
     }
 }

@@ -14,7 +14,7 @@
 //! for points; in between it misplaces material by at most (ΔT/EA)·(arc length), because the
 //! distribution of friction along an arc that has not slid is unknown.
 
-use super::layout::{Anchor, direction};
+use super::layout::{SupportNode, direction};
 use crate::catenary::Chain;
 use crate::math::perp;
 
@@ -35,7 +35,7 @@ pub(super) struct WheelTraverse {
 /// `turn` rad.
 pub(super) fn traverse_wheel(
     chain: &Chain<'_>,
-    a: &Anchor,
+    a: &SupportNode,
     tension: f64,
     from: f64,
     turn: f64,

@@ -30,13 +30,13 @@ pub struct LeavableWheels {
     /// has left none.
     left: Option<Arc<WheelsAsPosts>>,
     /// Places to which supports were moved, m, and by what.
-    led: Vec<Option<SupportTarget>>,
+    led: Vec<Option<SupportMove>>,
     robot_pose: Option<RigidPose>,
 }
 
 /// A place to which a support was moved, m.
 #[derive(Clone, Copy, Debug)]
-enum SupportTarget {
+enum SupportMove {
     /// The support is there.
     Dragged(Vec2),
     /// A hand holds it there by a spring.
@@ -95,8 +95,8 @@ impl LeavableWheels {
         for (k, lead) in self.led.iter().enumerate() {
             let Some(inner) = this.inner_index(k) else { continue };
             match lead {
-                Some(SupportTarget::Dragged(at)) => this.inner.drag_support(inner, *at),
-                Some(SupportTarget::Pulled(at)) => this.inner.pull_support(inner, *at),
+                Some(SupportMove::Dragged(at)) => this.inner.drag_support(inner, *at),
+                Some(SupportMove::Pulled(at)) => this.inner.pull_support(inner, *at),
                 None => {}
             }
         }
@@ -119,15 +119,15 @@ impl LeavableWheels {
 
     /// Moves a support. A wheel that was replaced by a post stays so if its path is clear of the
     /// cable; else it becomes a wheel again, because posts stand still.
-    fn lead(&mut self, support: usize, lead: SupportTarget) {
+    fn lead(&mut self, support: usize, lead: SupportMove) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
         }
         match (self.inner_index(support), lead) {
-            (Some(inner), SupportTarget::Dragged(at)) => self.inner.drag_support(inner, at),
-            (Some(inner), SupportTarget::Pulled(at)) => self.inner.pull_support(inner, at),
+            (Some(inner), SupportMove::Dragged(at)) => self.inner.drag_support(inner, at),
+            (Some(inner), SupportMove::Pulled(at)) => self.inner.pull_support(inner, at),
             (None, lead) => {
-                let clear = matches!(lead, SupportTarget::Dragged(to) if self.goes_clear(support, to));
+                let clear = matches!(lead, SupportMove::Dragged(to) if self.goes_clear(support, to));
                 if !(clear && self.move_posts())
                     && let Ok(inner) = self.built(None, Some(&self.inner.state()))
                 {
@@ -167,8 +167,8 @@ impl LeavableWheels {
     /// Some wheels as posts at their present places; None if a hand holds one by a spring.
     fn posts(&self, replaced: &[bool]) -> Option<Arc<WheelsAsPosts>> {
         let places = self.led.iter().zip(replaced).map(|(lead, replaced)| match lead {
-            Some(SupportTarget::Pulled(_)) if *replaced => Err(()),
-            Some(SupportTarget::Dragged(at)) if *replaced => Ok(Some(*at)),
+            Some(SupportMove::Pulled(_)) if *replaced => Err(()),
+            Some(SupportMove::Dragged(at)) if *replaced => Ok(Some(*at)),
             _ => Ok(None),
         });
         self.wheels.as_posts(replaced, &places.collect::<Result<Vec<_>, ()>>().ok()?)
@@ -323,11 +323,11 @@ impl Layer for LeavableWheels {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.lead(support, SupportTarget::Dragged(target_m));
+        self.lead(support, SupportMove::Dragged(target_m));
     }
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.lead(support, SupportTarget::Pulled(hand_m));
+        self.lead(support, SupportMove::Pulled(hand_m));
     }
 
     fn set_robot_pose(&mut self, to: RigidPose) {

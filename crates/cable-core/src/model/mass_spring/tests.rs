@@ -180,21 +180,29 @@ fn mechanics(scene: &Scene) -> MassSpringModel {
 
 /// Kinetic energy, stretch and height, J.
 fn energy(m: &MassSpringModel) -> f64 {
-    let p = &m.chain.mesh.problem;
-    let body = p.body_force(m.chain.clock.time_s);
+    let p = &m.cable.chain.mesh.problem;
+    let body = p.body_force(m.cable.chain.clock.time_s);
     let mut out = 0.0;
-    for e in 0..m.chain.mesh.rest_length.len() {
-        let r = m.chain.mesh.element(e);
-        let stretch = (r.length - m.chain.mesh.rest_length[e]).max(0.0);
-        out += 0.5 * p.axial_stiffness * stretch * stretch / m.chain.mesh.rest_length[e]
-            - body.dot(&(r.middle * m.chain.mesh.straight_length[e] + r.arc_moment));
+    for e in 0..m.cable.chain.mesh.rest_length.len() {
+        let r = m.cable.chain.mesh.element(e);
+        let stretch = (r.length - m.cable.chain.mesh.rest_length[e]).max(0.0);
+        out += 0.5 * p.axial_stiffness * stretch * stretch / m.cable.chain.mesh.rest_length[e]
+            - body.dot(&(r.middle * m.cable.chain.mesh.straight_length[e] + r.arc_moment));
     }
-    for i in 0..m.chain.mesh.position.len() {
-        if !m.chain.mesh.supported[i] {
-            out += 0.5 * m.chain.mesh.mass[i] * m.chain.mesh.velocity[i].norm_squared();
+    for i in 0..m.cable.chain.mesh.position.len() {
+        if !m.cable.chain.mesh.supported[i] {
+            out += 0.5 * m.cable.chain.mesh.mass[i] * m.cable.chain.mesh.velocity[i].norm_squared();
         }
     }
-    out + m.chain.mesh.wheels.pulleys.iter().map(|p| 0.5 * p.mass * p.sliding_speed * p.sliding_speed).sum::<f64>()
+    out + m
+        .cable
+        .chain
+        .mesh
+        .wheels
+        .pulleys
+        .iter()
+        .map(|p| 0.5 * p.mass * p.sliding_speed * p.sliding_speed)
+        .sum::<f64>()
 }
 
 #[test]
@@ -204,21 +212,24 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
         scene.cables[0].supports[1].friction = Some(2.0);
         let mut m = mechanics(&scene);
         m.settle().unwrap();
-        m.chain.mesh.wheels.pulleys[0].friction = 0.0;
+        m.cable.chain.mesh.wheels.pulleys[0].friction = 0.0;
         let start = energy(&m);
         let mut slid = [f64::INFINITY, f64::NEG_INFINITY];
         let (mut most, mut last, mut counts) = (0.0f64, start, std::collections::BTreeSet::new());
         for _ in 0..200 {
             m.advance(0.02, Inertia::Dynamic).unwrap();
-            let node = m.chain.mesh.wheels.pulleys[0].node;
+            let node = m.cable.chain.mesh.wheels.pulleys[0].node;
             counts.insert(node);
-            slid = [slid[0].min(m.chain.mesh.arc_length[node]), slid[1].max(m.chain.mesh.arc_length[node])];
+            slid = [slid[0].min(m.cable.chain.mesh.arc_length[node]), slid[1].max(m.cable.chain.mesh.arc_length[node])];
             last = energy(&m);
             most = most.max(last - start);
-            assert_eq!(m.chain.mesh.material_length.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
-            let mass = m.chain.mesh.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
+            assert_eq!(
+                m.cable.chain.mesh.material_length.iter().sum::<f64>().to_bits() & !0xff,
+                11.0f64.to_bits() & !0xff
+            );
+            let mass = m.cable.chain.mesh.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
             assert!(mass.abs() < 1e-12, "mass {mass:e}");
-            assert!(m.chain.mesh.arc_length.windows(2).all(|w| w[1] > w[0]));
+            assert!(m.cable.chain.mesh.arc_length.windows(2).all(|w| w[1] > w[0]));
         }
         println!("R {radius}: made {most:.2e} J, end {:.2e} J, slid {slid:?}, nodes {counts:?}", last - start);
         assert!(slid[1] - slid[0] > 0.3 && counts.len() > 1, "it slides, nodes come and go");
@@ -238,7 +249,7 @@ fn a_cable_that_snaps_taut_gains_no_energy() {
     for _ in 0..100 {
         m.advance(0.02, Inertia::Dynamic).unwrap();
         let made = energy(&m) - start;
-        assert!(made < 0.1, "{made} J at {} s", m.chain.clock.time_s);
+        assert!(made < 0.1, "{made} J at {} s", m.cable.chain.clock.time_s);
     }
 }
 
@@ -257,7 +268,7 @@ fn a_preview_does_not_depend_on_the_frames() {
             let report = m.advance(dt, Inertia::Dynamic).unwrap();
             assert_eq!(report.warnings.len(), 1, "{:?}", report.warnings);
             assert!(report.warnings[0].to_string().contains("preview"));
-            if m.chain.clock.time_s > 2.04 - 1e-9 {
+            if m.cable.chain.clock.time_s > 2.04 - 1e-9 {
                 return m.solution();
             }
         }
@@ -281,7 +292,7 @@ fn a_preview_rests_where_the_springs_rest() {
     settled.settle().unwrap();
     let rest = settled.solution();
     let mut m = settled.clone();
-    m.settings.stepping = Stepping::Preview;
+    m.cable.settings.stepping = Stepping::Preview;
     for _ in 0..120 {
         assert!(m.advance(1.0 / 60.0, Inertia::Dynamic).unwrap().warnings.is_empty());
     }
@@ -296,8 +307,8 @@ fn a_preview_rests_where_the_springs_rest() {
 #[test]
 fn a_preview_that_runs_away_is_cut_and_said() {
     let mut m = mechanics(&swinging(0.0, 1e8));
-    m.settings.stepping = Stepping::Preview;
-    m.chain.mesh.velocity.fill(crate::math::Vec2::new(0.0, 1e4));
+    m.cable.settings.stepping = Stepping::Preview;
+    m.cable.chain.mesh.velocity.fill(crate::math::Vec2::new(0.0, 1e4));
     let report = m.advance(0.02, Inertia::Dynamic).unwrap();
     let said: Vec<_> = report.warnings.iter().map(|w| w.to_string()).collect();
     assert!(said.iter().any(|s| s.contains("velocity was cut")), "{said:?}");

@@ -6,7 +6,8 @@ use toml::de::{DeTable, DeValue};
 
 use super::deserialize::{DeserializeError, Document};
 use super::key_path::Path;
-use crate::error::{DocumentFault, SceneError, SceneFault, TextPosition};
+use super::text_position::{placed, position};
+use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::scene::{Scene, VERSION, preset};
 
 /// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its
@@ -98,38 +99,5 @@ fn check_version(table: &DeTable<'_>) -> Result<(), SceneError> {
             Err(at.fault(SceneFault::Version { value: i.as_str().parse().unwrap_or(f64::NAN) }))
         }
         _ => Ok(()),
-    }
-}
-
-/// Adds where in the text the path of a fault is, or the nearest place above it.
-fn placed(mut error: SceneError, text: &str, table: &DeTable<'_>) -> SceneError {
-    error.at = locate(table, &error.path).map(|offset| position(text, offset));
-    error
-}
-
-fn locate(table: &DeTable<'_>, path: &str) -> Option<usize> {
-    let mut found: Option<&Spanned<DeValue<'_>>> = None;
-    for step in path.split(['.', '[']) {
-        let next = match (step.strip_suffix(']'), found.map(Spanned::get_ref)) {
-            (Some(index), Some(DeValue::Array(items))) => index.parse().ok().and_then(|i: usize| items.get(i)),
-            (None, None) => table.get(step),
-            (None, Some(DeValue::Table(table))) => table.get(step),
-            _ => None,
-        };
-        match next {
-            Some(node) => found = Some(node),
-            None => break,
-        }
-    }
-    found.map(|node| node.span().start)
-}
-
-/// Line and column of a byte, both from 1.
-pub(super) fn position(text: &str, offset: usize) -> TextPosition {
-    let before = text.get(..offset).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |i| i + 1);
-    TextPosition {
-        line: before.bytes().filter(|&b| b == b'\n').count() + 1,
-        column: before[line_start..].chars().count() + 1,
     }
 }

@@ -4,6 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `file.rs` | TOML in and out |
+//! | `text_position.rs` | line and column of a fault |
 //! | `deserialize.rs` | from the parsed tree to a [`Scene`](super::Scene), unknown keys refused with the nearest known one |
 //! | `validate.rs`, `support_rules.rs` | every number in range, every name known, every key where it belongs |
 //! | `checks.rs` | the checks that those share: ranges, series in time, names used once |
@@ -21,4 +22,5 @@ mod range;
 pub mod schema;
 mod self_touch;
 mod support_rules;
+mod text_position;
 pub mod validate;

@@ -16,7 +16,7 @@ const MAX_PAIRS: usize = 60_000_000;
 
 /// Kind of a line's contact with itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SelfTouch {
+pub(super) enum LineSelfTouch {
     /// These edges cross, touch or lie on each other; edge k goes from point k to the next.
     Edges(usize, usize),
     /// Too many edges lie too close together to tell.
@@ -36,7 +36,7 @@ struct EdgeTree<'a> {
 
 /// The first crossing that is found, if any. A closed line has an edge from its last point to its
 /// first.
-pub(super) fn first_self_touch(points: &[Point], ends: LineEnds) -> Option<SelfTouch> {
+pub(super) fn first_self_touch(points: &[Point], ends: LineEnds) -> Option<LineSelfTouch> {
     let rises = |axis: usize| points.windows(2).all(|w| w[1][axis] > w[0][axis]);
     if ends == LineEnds::Open && (rises(0) || rises(1)) {
         return None;
@@ -76,14 +76,14 @@ impl<'a> EdgeTree<'a> {
         (self.points[k], self.points[if k + 1 < self.points.len() { k + 1 } else { 0 }])
     }
 
-    fn search(&self) -> Option<SelfTouch> {
+    fn search(&self) -> Option<LineSelfTouch> {
         let leaves = self.boxes.len() / 2;
         let mut pairs = vec![(1, 1)];
         let mut seen = 0;
         while let Some((a, b)) = pairs.pop() {
             seen += 1;
             if seen > MAX_PAIRS {
-                return Some(SelfTouch::Tangled);
+                return Some(LineSelfTouch::Tangled);
             }
             let apart =
                 |i: usize| self.boxes[a][i][1] < self.boxes[b][i][0] || self.boxes[b][i][1] < self.boxes[a][i][0];
@@ -102,11 +102,11 @@ impl<'a> EdgeTree<'a> {
         None
     }
 
-    fn leaves_meet(&self, a: usize, b: usize) -> Option<SelfTouch> {
+    fn leaves_meet(&self, a: usize, b: usize) -> Option<LineSelfTouch> {
         for i in a * LEAF_EDGES..self.edges.min((a + 1) * LEAF_EDGES) {
             for j in (b * LEAF_EDGES).max(i + 1)..self.edges.min((b + 1) * LEAF_EDGES) {
                 if self.edges_meet(i, j) {
-                    return Some(SelfTouch::Edges(i, j));
+                    return Some(LineSelfTouch::Edges(i, j));
                 }
             }
         }
@@ -157,17 +157,17 @@ mod tests {
     #[test]
     fn crossings_touches_and_folds_are_found() {
         let bow: &[Point] = &[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_self_touch(bow, LineEnds::Joined), Some(SelfTouch::Edges(0, 2)));
-        assert_eq!(first_self_touch(bow, LineEnds::Open), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, LineEnds::Joined), Some(LineSelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, LineEnds::Open), Some(LineSelfTouch::Edges(0, 2)));
         // Through a corner, onto an edge, back on itself, back on itself where it closes, along
         // another edge.
         let through = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, 0.0], [0.5, -1.0]];
         assert!(first_self_touch(&through, LineEnds::Joined).is_some());
         let onto = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_self_touch(&onto, LineEnds::Joined), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(&onto, LineEnds::Joined), Some(LineSelfTouch::Edges(0, 2)));
         assert_eq!(
             first_self_touch(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], LineEnds::Open),
-            Some(SelfTouch::Edges(0, 1))
+            Some(LineSelfTouch::Edges(0, 1))
         );
         let at_close = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0]];
         assert!(first_self_touch(&at_close, LineEnds::Joined).is_some());
@@ -215,7 +215,7 @@ mod tests {
                 let any = (0..line.edges).any(|i| (i + 1..line.edges).any(|j| line.edges_meet(i, j)));
                 let found = first_self_touch(&points, ends);
                 assert_eq!(found.is_some(), any, "{points:?}");
-                if let Some(SelfTouch::Edges(i, j)) = found {
+                if let Some(LineSelfTouch::Edges(i, j)) = found {
                     assert!(line.edges_meet(i, j));
                 }
                 crossed += usize::from(any);
@@ -236,7 +236,7 @@ mod tests {
                 })
                 .collect();
             assert!(
-                !matches!(first_self_touch(&comb, LineEnds::Joined), Some(SelfTouch::Edges(i, j)) if j + 1 < comb.len() && i > 0)
+                !matches!(first_self_touch(&comb, LineEnds::Joined), Some(LineSelfTouch::Edges(i, j)) if j + 1 < comb.len() && i > 0)
             );
         }
     }

@@ -9,7 +9,7 @@ use super::checks::{
 };
 use super::key_path::Path;
 use super::range;
-use super::self_touch::{SelfTouch, first_self_touch};
+use super::self_touch::{LineSelfTouch, first_self_touch};
 use super::{length_check, support_rules};
 use crate::error::{DocumentFault, SceneError, SceneFault};
 use crate::math::Point;
@@ -189,12 +189,12 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
 fn check_not_self_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> CheckResult {
     match first_self_touch(line, ends) {
         None => Ok(()),
-        Some(SelfTouch::Edges(i, j)) => {
+        Some(LineSelfTouch::Edges(i, j)) => {
             let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
             let edges_m = Box::new([j, i].map(|k| [line[k], end(k)]));
             Err(at.index(j).fault(SceneFault::EdgesCross { other: i, edges_m }))
         }
-        Some(SelfTouch::Tangled) => Err(at.document_fault(DocumentFault::Tangled)),
+        Some(LineSelfTouch::Tangled) => Err(at.document_fault(DocumentFault::Tangled)),
     }
 }
 

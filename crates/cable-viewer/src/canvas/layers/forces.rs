@@ -110,10 +110,18 @@ fn tangent_at(cable: &CableSolution, arc_length_m: f64, normal: Point) -> Point 
     if forward { t } else { [-t[0], -t[1]] }
 }
 
-/// A force as text, with its parts to the right and upwards where they are asked for.
-fn figure(force: Point, components: bool) -> String {
+/// The figures beside an arrow of a force.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ForceFigures {
+    Size,
+    /// The size, and the parts to the right and upwards.
+    Components,
+}
+
+/// A force as text.
+fn figure(force: Point, figures: ForceFigures) -> String {
     let size = labels::force(force[0].hypot(force[1]));
-    if !components {
+    if figures == ForceFigures::Size {
         return size;
     }
     let part =
@@ -134,7 +142,8 @@ fn reactions(
             let at = view.at([s.x_m, s.y_m]);
             view.arrow(at, along, Stroke::new(2.0, view.palette.reaction));
             view.avoid_line(at, at + along);
-            let figure = figure([s.reaction_x_n, s.reaction_y_n], state.view.layers.components);
+            let shown = if state.view.layers.components { ForceFigures::Components } else { ForceFigures::Size };
+            let figure = figure([s.reaction_x_n, s.reaction_y_n], shown);
             figures.push((at + along, figure, view.palette.reaction));
         }
     }
@@ -156,7 +165,8 @@ fn loads(
         view.arrow(tail, along, Stroke::new(2.6, colour));
         view.avoid_line(tail, tail + along);
         view.painter.circle_filled(tail, 3.5, colour);
-        let text = figure(force, state.view.layers.components || picked);
+        let components = state.view.layers.components || picked;
+        let text = figure(force, if components { ForceFigures::Components } else { ForceFigures::Size });
         figures.push((tail + along, text, colour));
     };
     for (k, load) in state.document.scene.loads.iter().enumerate() {

@@ -31,36 +31,48 @@ const MAX_LINES: usize = 12;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        let full = state.analysis.references.len() == Reference::MAX_COUNT;
-        let help = if full {
-            "No more can be pinned: unpin one first"
-        } else {
-            "Keeps this result on screen beside later ones"
-        };
-        let can = state.live.snapshot.solution.is_some() && !full;
-        let pin = ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help);
-        highlight::register(&pin, "Pin this result");
-        if pin.clicked() {
-            commands.push(Command::View(ViewCommand::AddReference));
-        }
-        let help = "Reads a recorded run from its folder and pins it";
-        if ui.add_enabled(!full, egui::Button::new("Pin a recorded run…")).on_hover_text(help).clicked() {
-            let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
-            commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
-        }
-        if !state.analysis.references.is_empty()
-            && ui.button("Unpin all").on_hover_text("Removes every pinned result").clicked()
-        {
-            commands.push(Command::View(ViewCommand::RemoveReferences(None)));
-        }
-    });
+    ui.horizontal_wrapped(|ui| pin_buttons(ui, state, commands));
     every_model(ui, state, commands);
     if state.analysis.references.is_empty() {
         ui.weak("Nothing pinned. Pin a result, then change something to compare");
         return;
     }
     let names = pin_names(state);
+    figures(ui, state, &names, commands);
+    runs(ui, state, &names);
+    for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
+        ui.weak(&name.full);
+        for line in remembered(ui, k, held, state).iter() {
+            ui.label(RichText::new(line).small());
+        }
+    }
+}
+
+/// The buttons that pin results and take pins away.
+fn pin_buttons(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let full = state.analysis.references.len() == Reference::MAX_COUNT;
+    let help =
+        if full { "No more can be pinned: unpin one first" } else { "Keeps this result on screen beside later ones" };
+    let can = state.live.snapshot.solution.is_some() && !full;
+    let pin = ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help);
+    highlight::register(&pin, "Pin this result");
+    if pin.clicked() {
+        commands.push(Command::View(ViewCommand::AddReference));
+    }
+    let help = "Reads a recorded run from its folder and pins it";
+    if ui.add_enabled(!full, egui::Button::new("Pin a recorded run…")).on_hover_text(help).clicked() {
+        let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
+        commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
+    }
+    if !state.analysis.references.is_empty()
+        && ui.button("Unpin all").on_hover_text("Removes every pinned result").clicked()
+    {
+        commands.push(Command::View(ViewCommand::RemoveReferences(None)));
+    }
+}
+
+/// The table of the greatest figures: of the present answer, and of what is pinned.
+fn figures(ui: &mut Ui, state: &AppState, names: &[PinName], commands: &mut Vec<Command>) {
     // An answer goes with the scene that it is of, which may not be the one being edited.
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let answer = state.live.snapshot.solution.as_deref();
@@ -81,7 +93,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 });
                 ui.end_row();
             }
-            for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
+            for (k, (held, name)) in state.analysis.references.iter().zip(names).enumerate() {
                 name_above(ui, k, &name.full);
                 ui.end_row();
                 ui.horizontal(|ui| {
@@ -96,13 +108,6 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         });
     });
-    runs(ui, state, &names);
-    for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
-        ui.weak(&name.full);
-        for line in remembered(ui, k, held, state).iter() {
-            ui.label(RichText::new(line).small());
-        }
-    }
 }
 
 /// Length of the line that shows the colour of a pin, points.

@@ -8,7 +8,9 @@ use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
 use egui::{ComboBox, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
-use crate::jobs::safe_reach::{self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions};
+use crate::jobs::safe_reach::{
+    self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions, SafeReachState,
+};
 use crate::state::AppState;
 use crate::state::job_questions::reach_target;
 use crate::units::format;
@@ -36,40 +38,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         _ => None,
     };
     ui.add_enabled_ui(running.is_none(), |ui| choices(ui, state, moved, commands));
-    if let Some(share) = running {
-        let bar = progress::bar(ui, share);
-        field::name(&bar, "Progress of the safe reach");
-        // A place may take a minute without a word: the time left goes on being counted meanwhile.
-        ui.ctx().request_repaint_after(COUNTING_REPAINT);
-        ui.horizontal(|ui| {
-            let help = "Stops the search; what was found stays";
-            if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
-                commands.push(Command::View(ViewCommand::EndSafeReach));
-            }
-            if let Some(left_s) = view.remaining_s() {
-                ui.weak(time_left(left_s)).on_hover_text("Estimated from the part that is done");
-            }
-        });
-    } else {
-        ui.horizontal(|ui| {
-            let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
-                        from where the cable lies now; first coarsely, then finer, between the ends of the ground. The window stays usable meanwhile. Nothing \
-                        limits what moves: the question is what the cable would bear";
-            let find = ui.button("Find safe reach").on_hover_text(help);
-            highlight::register(&find, "Find safe reach");
-            if find.clicked() {
-                commands.push(Command::View(ViewCommand::SearchSafeReach));
-            }
-            let shown = !matches!(view.progress, Progress::None);
-            if ui
-                .add_enabled(shown, egui::Button::new("Clear"))
-                .on_hover_text("Removes the map")
-                .on_disabled_hover_text("There is no map yet")
-                .clicked()
-            {
-                commands.push(Command::View(ViewCommand::EndSafeReach));
-            }
-        });
+    match running {
+        Some(share) => progress_and_cancel(ui, view, share, commands),
+        None => find_and_clear(ui, view, commands),
     }
     if let Progress::Failed(why) = &view.progress {
         field::fault(ui, &format!("No map: {why}"));
@@ -86,6 +57,46 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for line in describe(maps, view.choice.round_trip) {
         ui.label(if running.is_some() { so_far(&line) } else { line });
     }
+}
+
+/// The progress of a search, with a button that ends it.
+fn progress_and_cancel(ui: &mut Ui, view: &SafeReachState, share: f64, commands: &mut Vec<Command>) {
+    let bar = progress::bar(ui, share);
+    field::name(&bar, "Progress of the safe reach");
+    // A place may take a minute without a word: the time left goes on being counted meanwhile.
+    ui.ctx().request_repaint_after(COUNTING_REPAINT);
+    ui.horizontal(|ui| {
+        let help = "Stops the search; what was found stays";
+        if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
+            commands.push(Command::View(ViewCommand::EndSafeReach));
+        }
+        if let Some(left_s) = view.remaining_s() {
+            ui.weak(time_left(left_s)).on_hover_text("Estimated from the part that is done");
+        }
+    });
+}
+
+/// The buttons that begin a search and take its map away.
+fn find_and_clear(ui: &mut Ui, view: &SafeReachState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
+                    from where the cable lies now; first coarsely, then finer, between the ends of the ground. The window stays usable meanwhile. Nothing \
+                    limits what moves: the question is what the cable would bear";
+        let find = ui.button("Find safe reach").on_hover_text(help);
+        highlight::register(&find, "Find safe reach");
+        if find.clicked() {
+            commands.push(Command::View(ViewCommand::SearchSafeReach));
+        }
+        let shown = !matches!(view.progress, Progress::None);
+        if ui
+            .add_enabled(shown, egui::Button::new("Clear"))
+            .on_hover_text("Removes the map")
+            .on_disabled_hover_text("There is no map yet")
+            .clicked()
+        {
+            commands.push(Command::View(ViewCommand::EndSafeReach));
+        }
+    });
 }
 
 /// A line about places of which more are to come.

@@ -9,7 +9,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, P
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::jobs::work_precision::{Entry, Outcome};
+use crate::jobs::work_precision::{MeasuredSetting, Outcome};
 use crate::panels::display_names::capital;
 use crate::plot::TIME_MARK;
 use crate::render::colour;
@@ -85,7 +85,7 @@ fn name(setting: Setting) -> String {
 }
 
 /// Place of an answer in the chart: powers of ten of milliseconds and of the difference.
-fn place(entry: &Entry) -> Option<[f64; 2]> {
+fn place(entry: &MeasuredSetting) -> Option<[f64; 2]> {
     let (compared, wall_s) = entry.result.as_ref().ok()?;
     Some([(wall_s * 1e3).max(1e-6).log10(), compared.force_difference.max(MIN_DIFFERENCE).log10()])
 }
@@ -135,7 +135,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
 const SHAPES: [MarkerShape; 4] = [MarkerShape::Diamond, MarkerShape::Square, MarkerShape::Circle, MarkerShape::Up];
 
 /// A setting in words: what it differs by and takes, and the error that it states.
-fn spoken(entry: &Entry) -> Option<String> {
+fn spoken(entry: &MeasuredSetting) -> Option<String> {
     let (compared, wall_s) = entry.result.as_ref().ok()?;
     let stated = compared.stated_error.map_or_else(String::new, |e| format!(", states {}", format::percent(e)));
     let difference = format::percent(compared.force_difference);
@@ -146,7 +146,7 @@ fn legend(ui: &mut Ui, found: &Outcome) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         for model in Model::SOLVERS {
-            let own: Vec<&Entry> = found.entries.iter().filter(|e| e.setting.model == model).collect();
+            let own: Vec<&MeasuredSetting> = found.entries.iter().filter(|e| e.setting.model == model).collect();
             if own.iter().all(|e| e.result.is_err()) {
                 continue;
             }

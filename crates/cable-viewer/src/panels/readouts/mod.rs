@@ -88,7 +88,7 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if state.live.snapshot.solution.as_ref().is_some_and(|s| s.cables.len() > 1) {
             ui.strong(&solved.name);
         }
-        tension(ui, cable, solved, freshness == Freshness::Current, commands);
+        tension(ui, cable, solved, freshness, commands);
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         let first = summary(scene, cable, solved, time_s);
         let ends: Vec<String> = first.ends.iter().map(|e| format::force(e.tension_n)).collect();
@@ -124,7 +124,7 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The largest tension, where it is, and how much of the limits it takes.
-fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, commands: &mut Vec<Command>) {
+fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, freshness: Freshness, commands: &mut Vec<Command>) {
     let Some((tension_n, node)) = extremes::greatest(solved, |n| n.tension_n) else {
         ui.weak("No tension in this answer");
         return;
@@ -145,7 +145,7 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
         let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
             // No verdict on what is not the answer.
-            .fill(if current && share > 1.0 { above } else { calm })
+            .fill(if freshness == Freshness::Current && share > 1.0 { above } else { calm })
             .text(text.clone())
             .desired_height(16.0)
             .corner_radius(2);

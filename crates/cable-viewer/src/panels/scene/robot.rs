@@ -102,8 +102,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let taken = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);
     let last = scene.cables.get_mut(cable).and_then(|c| c.supports.last_mut());
     if let Some(support) = last.filter(|s| taken(s.kind)) {
-        let is_end = true;
-        *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, is_end);
+        *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, support_kind::SupportPlace::CableEnd);
     }
 }
 

@@ -5,7 +5,7 @@ use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
 use egui::{ComboBox, Response, Ui};
 
-use crate::command::support_kind::{KINDS, of_kind, refusal};
+use crate::command::support_kind::{KINDS, SupportPlace, of_kind, refusal};
 use crate::command::{Command, SceneCommand, waypoint};
 use crate::geometry::supports::{COINCIDENCE_M, is_broken, support_position};
 use crate::panels::scene::loads::FIRST_SPAN_S;
@@ -23,8 +23,7 @@ struct Row<'a> {
     cable: usize,
     support: usize,
     value: &'a Support,
-    /// It is the cable's start or end.
-    end: bool,
+    place: SupportPlace,
     /// Its present place, m, and that on the cable, m.
     now: (Point, f64),
 }
@@ -133,12 +132,12 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value));
     let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
         for (kind, text, help) in KINDS {
-            let refused = refusal(kind, row.end, state.document.scene.robot.is_some());
+            let refused = refusal(kind, row.place, &state.document.scene);
             let entry = ui.add_enabled(refused.is_none(), egui::Button::selectable(kind == row.value.kind, text));
             let entry = entry.on_hover_text(help).on_disabled_hover_text(refused.unwrap_or_default());
             if entry.clicked() && kind != row.value.kind {
                 let (at_m, arc_length_m) = row.now;
-                row.set(of_kind(row.value, kind, at_m, arc_length_m, row.end), commands);
+                row.set(of_kind(row.value, kind, at_m, arc_length_m, row.place), commands);
             }
         }
     });
@@ -149,8 +148,9 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
 pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, commands: &mut Vec<Command>) {
     let Some(of) = state.document.scene.cables.get(cable) else { return };
     let Some(value) = of.supports.get(support) else { return };
-    let end = support == 0 || support + 1 == of.supports.len();
-    let row = &Row { cable, support, value, end, now: place_now(state, cable, support, of) };
+    let is_end = support == 0 || support + 1 == of.supports.len();
+    let place = if is_end { SupportPlace::CableEnd } else { SupportPlace::Between };
+    let row = &Row { cable, support, value, place, now: place_now(state, cable, support, of) };
     let s = row.value;
     let mut faults = Vec::new();
     labelled(ui, "Name", "Support name", |ui| {
@@ -163,7 +163,7 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
     });
     head(ui, state, row, commands, &mut faults);
     place_apart(ui, state, row);
-    if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
+    if s.arc_length_m.is_some() || (row.place == SupportPlace::Between && s.kind != SupportKind::Pulley) {
         let text = ["Arc length", "Where on the cable it grips, m of unstretched length from the start"];
         if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
             row.changed(commands, |s| s.arc_length_m = Some(v));

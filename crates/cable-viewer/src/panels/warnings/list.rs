@@ -233,8 +233,9 @@ fn scene_fault(state: &AppState) -> Option<WarningRow> {
     Some(WarningRow { title, fixes, ..entry(Severity::Stop, text) })
 }
 
-fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> WarningRow {
-    let (severity, title) = match warning.kind {
+/// How grave a warning is, and the few words that name it.
+fn severity_and_title(warning: &Warning) -> (Severity, &'static str) {
+    match warning.kind {
         WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
         WarningKind::Broken => (Severity::Stop, "Broken"),
         WarningKind::MayBreak => (Severity::Caution, "May break"),
@@ -263,7 +264,11 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Warning
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
         WarningKind::NotUnique => (Severity::Note, "Depends on how it was laid"),
         _ => (Severity::Caution, "Warning"),
-    };
+    }
+}
+
+fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> WarningRow {
+    let (severity, title) = severity_and_title(warning);
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(", since {t:.2}\u{a0}s"));
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);

@@ -132,9 +132,17 @@ impl AnswerRefinement {
 
     /// No other histories are to be asked for.
     fn drop_histories(&mut self) {
-        let histories_due = false;
-        self.put_off(histories_due);
+        if self.is_later() {
+            *self = Self::Later { histories_due: false };
+        }
     }
+}
+
+/// The outcome of a request.
+struct RequestOutcome {
+    /// There may be something new to show.
+    solved: bool,
+    result: Result<(), Error>,
 }
 
 /// Wall times, s.
@@ -210,7 +218,37 @@ impl Engine {
         let began = Instant::now();
         let runs = !self.playback.paused;
         let resumed = request.resume.as_ref().map(|r| Arc::clone(&r.answer));
+        let (number, steps) = (request.number, request.steps);
         let dragging = request.drag.is_some() && request.edit.is_none() && request.resume.is_none() && !request.reset;
+        let RequestOutcome { solved, result } = self.carry_out(request);
+        // Time must not run in a scene that is no longer the one on screen.
+        let held_back = self.refused() && runs;
+        self.playback.paused |= held_back;
+        if dragging && self.playing() {
+            // The next frame shows it, not this report.
+            self.steering.drag_number = self.steering.drag_number.max(number);
+            return Report { paused_itself: held_back, ..self.report() };
+        }
+        let snapshot = &mut self.outbox.snapshot;
+        snapshot.edit = number.max(self.steering.drag_number).max(snapshot.edit);
+        if solved {
+            self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+            let resumed = resumed.filter(|_| result.is_ok() && steps == 0);
+            let stepped = result.is_ok() && steps > 0;
+            let between = if stepped { self.answer_between_steps() } else { None };
+            self.show(result);
+            self.outbox.show_between_steps(between);
+            if let Some(answer) = resumed {
+                // No step was taken yet: what held the cable then is known from the recording only.
+                self.outbox.show_recorded(answer);
+            }
+        }
+        Report { paused_itself: held_back, ..self.report() }
+    }
+
+    /// Carries out a request in the order of its parts: what is undone, cancelled or edited, a
+    /// recorded instant to go on from, a drag, a reset, steps.
+    fn carry_out(&mut self, request: Request) -> RequestOutcome {
         let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
         if let Some(edit) = request.undo_reset {
@@ -247,29 +285,7 @@ impl Engine {
                 result = result.and_then(|()| self.let_pass(FRAME_S));
             }
         }
-        // Time must not run in a scene that is no longer the one on screen.
-        let held_back = self.refused() && runs;
-        self.playback.paused |= held_back;
-        if dragging && self.playing() {
-            // The next frame shows it, not this report.
-            self.steering.drag_number = self.steering.drag_number.max(request.number);
-            return Report { paused_itself: held_back, ..self.report() };
-        }
-        let snapshot = &mut self.outbox.snapshot;
-        snapshot.edit = request.number.max(self.steering.drag_number).max(snapshot.edit);
-        if solved {
-            self.outbox.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
-            let resumed = resumed.filter(|_| result.is_ok() && request.steps == 0);
-            let stepped = result.is_ok() && request.steps > 0;
-            let between = if stepped { self.answer_between_steps() } else { None };
-            self.show(result);
-            self.outbox.show_between_steps(between);
-            if let Some(answer) = resumed {
-                // No step was taken yet: what held the cable then is known from the recording only.
-                self.outbox.show_recorded(answer);
-            }
-        }
-        Report { paused_itself: held_back, ..self.report() }
+        RequestOutcome { solved, result }
     }
 
     /// Returns whether a draft is shown that still moves.

@@ -3,7 +3,8 @@
 
 use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{
-    ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
+    ANGLE, ARC, ContactSurface, Elastica, ElasticaPiece, Joint, LENGTH, MOMENT, MOST_WORK, Owner, STATES, force, place,
+    tangent,
 };
 use crate::model::fem::elastica::guess::contacts_of_answer::contact_at;
 use crate::problem::Problem;
@@ -33,9 +34,9 @@ const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 const POINT_CURVATURE_TOLERANCE: f64 = 1e-3;
 
 /// The two free pieces into which a node cuts a piece.
-fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
+fn split(piece: &ElasticaPiece, node: usize) -> (ElasticaPiece, ElasticaPiece) {
     let cut = piece.grid[node];
-    let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
+    let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| ElasticaPiece {
         contact: None,
         grid: grid.iter().map(|g| (g - from) / (to - from)).collect(),
         nodes: nodes
@@ -112,7 +113,7 @@ impl Elastica {
 
     /// The first stretch of contact between free pieces that is too short to be a stretch.
     fn shortest_stretch(&self, problem: &Problem) -> Option<usize> {
-        let short = |p: &Piece| {
+        let short = |p: &ElasticaPiece| {
             let c = p.contact.and_then(|k| self.contacts.get(k));
             c.is_some_and(|c| p.nodes[0][LENGTH] < SHORTEST_STRETCH_FRACTION * c.radius.unwrap_or(problem.radius))
         };
@@ -151,7 +152,7 @@ impl Elastica {
             node[2] += c.curvature() * (way - 0.5 * l);
             node
         });
-        let piece = Piece {
+        let piece = ElasticaPiece {
             contact: Some(contact),
             nodes: nodes.collect(),
             grid: (0..=STRETCH_ELEMENTS).map(|i| i as f64 / STRETCH_ELEMENTS as f64).collect(),
@@ -274,17 +275,17 @@ impl Elastica {
     }
 
     /// Another contact whose obstacle contains the place `x` on contact `c`, if there is one.
-    fn deeper_contact(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
+    fn deeper_contact(&self, problem: &Problem, c: &ContactSurface, x: Vec2, t: Vec2) -> Option<ContactSurface> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
         let other = contact_at(problem, &gap, x, t)?;
-        Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
+        Some(ContactSurface { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
     }
 
     /// The friction that a new contact in a piece mobilises, and whether it slips: the values of
     /// the flexible cable if that lay there, else the mean of the contacts before and after it.
-    fn friction_of_new(&self, new: &Contact, piece: usize, coefficient: f64) -> (f64, bool) {
-        let far = |c: &&Contact| (c.at - new.at).norm();
+    fn friction_of_new(&self, new: &ContactSurface, piece: usize, coefficient: f64) -> (f64, bool) {
+        let far = |c: &&ContactSurface| (c.at - new.at).norm();
         let on_it = self.contacts.iter().filter(|c| c.is_same_surface(new));
         if let Some(known) = on_it.min_by(|a, b| far(a).total_cmp(&far(b))) {
             return (known.mobilised, known.slips);
@@ -295,7 +296,7 @@ impl Elastica {
         };
         let before = self.joints.iter().take(piece).rev().find_map(contact_of);
         let after = self.joints.iter().skip(piece).find_map(contact_of);
-        let beside: Vec<&Contact> = before.into_iter().chain(after).collect();
+        let beside: Vec<&ContactSurface> = before.into_iter().chain(after).collect();
         if beside.is_empty() {
             return (0.0, false);
         }

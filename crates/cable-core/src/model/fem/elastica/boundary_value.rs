@@ -45,7 +45,7 @@ const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// A surface on which the cable can lie, at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Contact {
+pub(super) struct ContactSurface {
     /// Index of the obstacle in the scene, or of the pulley among the supports.
     pub(super) owner: Owner,
     /// Centre of a round, or a point of the line, m, where the centre line of the cable runs.
@@ -70,9 +70,9 @@ pub(super) enum Owner {
 }
 
 /// Appends the residuals of some states.
-type Residual<'a> = dyn Fn(&[[f64; STATES]], &mut Vec<f64>) + 'a;
+type ResidualFn<'a> = dyn Fn(&[[f64; STATES]], &mut Vec<f64>) + 'a;
 
-impl Contact {
+impl ContactSurface {
     /// Gap (m) and outward normal at a place.
     pub(super) fn gap(&self, x: Vec2) -> (f64, Vec2) {
         let d = x - self.at;
@@ -105,7 +105,7 @@ impl Contact {
 
 /// A piece of cable between two joints.
 #[derive(Clone, Debug)]
-pub(super) struct Piece {
+pub(super) struct ElasticaPiece {
     /// The contact it lies on; None: it is free.
     pub(super) contact: Option<usize>,
     /// Places of its nodes along it, 0 to 1.
@@ -149,10 +149,10 @@ pub struct Elastica {
     pub(super) length: f64,
     /// Forces of the scene, N.
     pub(super) scale: f64,
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<ElasticaPiece>,
     pub(super) joints: Vec<Joint>,
     pub(super) ends: [End; 2],
-    pub(super) contacts: Vec<Contact>,
+    pub(super) contacts: Vec<ContactSurface>,
     /// Number of Newton steps so far.
     pub steps: usize,
     /// Sum over these steps of the number of nodes.
@@ -180,13 +180,13 @@ pub(super) fn tension(u: &[f64; STATES]) -> f64 {
 
 /// Sine of the angle between the cable and the tangent of the line or round: zero where the cable
 /// is tangent.
-fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
+fn slant(contact: &ContactSurface, u: &[f64; STATES]) -> f64 {
     contact.gap(place(u)).1.dot(&tangent(u))
 }
 
 impl Elastica {
     /// Force of a contact along its normal, per unstretched metre, on a piece that lies on it, N/m.
-    pub(super) fn pressure(&self, contact: &Contact, u: &[f64; STATES]) -> f64 {
+    pub(super) fn pressure(&self, contact: &ContactSurface, u: &[f64; STATES]) -> f64 {
         let t = tangent(u);
         let pull = force(u).dot(&t);
         let turn = self.thermal_stretch * (1.0 + pull / self.axial_stiffness) * contact.curvature();
@@ -252,7 +252,7 @@ impl Elastica {
 
     /// Normal point force (N) of a contact on an end that lies on it, which balances the load of
     /// that end.
-    pub(super) fn tip_push(&self, which: usize, c: &Contact, u: &[f64; STATES]) -> f64 {
+    pub(super) fn tip_push(&self, which: usize, c: &ContactSurface, u: &[f64; STATES]) -> f64 {
         match self.ends[which] {
             End::Loaded(load) => c.sense * load.dot(&perp(tangent(u))),
             End::Held(..) => 0.0,
@@ -261,14 +261,14 @@ impl Elastica {
 
     /// Appends the four conditions under which a piece lies on its contact. If they hold at its
     /// start, they hold all along it.
-    fn lying_equations(&self, c: &Contact, u: &[f64; STATES], out: &mut Vec<f64>) {
+    fn lying_equations(&self, c: &ContactSurface, u: &[f64; STATES], out: &mut Vec<f64>) {
         let bent = self.bending * c.curvature() * (1.0 + tension(u) / self.axial_stiffness);
         out.extend([c.gap(place(u)).0, slant(c, u), u[MOMENT] - bent, force(u).dot(&perp(tangent(u)))]);
     }
 
     /// Appends the equations where two pieces meet.
     fn joint_equations(&self, joint: Joint, a: &[f64; STATES], b: &[f64; STATES], out: &mut Vec<f64>) {
-        let jump = |c: &Contact| {
+        let jump = |c: &ContactSurface| {
             let (t, d) = (tangent(a), force(b) - force(a));
             let normal = perp(t) * -c.sense;
             d.dot(&t) - c.mobilised * d.dot(&normal)
@@ -376,7 +376,7 @@ impl Elastica {
         let last = self.pieces.len() - 1;
         let (mut first, mut column) = (Vec::new(), 0);
         // Adds the equations of one place, a function of one or two nodes, with their derivatives.
-        let mut add = |column: usize, near: &[[f64; STATES]], of: &Residual<'_>| {
+        let mut add = |column: usize, near: &[[f64; STATES]], of: &ResidualFn<'_>| {
             let row = right.len();
             of(near, &mut right);
             let rows = right.len() - row;

@@ -55,7 +55,7 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use chain::{Chain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
+use chain::{BarChain, ChainInput, LYING_EULER, RestState, StabilityOutcome};
 pub(in crate::model::fem) use results::{refine, solution};
 
 /// Relative accuracy of the forces of another equilibrium that a warning reports. Smaller: more
@@ -113,11 +113,11 @@ pub fn rest(
 /// found, else the chain with bars half as long.
 fn rest_by_chain(
     chain_input: ChainInput<'_>,
-    chain: Option<Chain<'_>>,
+    chain: Option<BarChain<'_>>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
     let (problem, flexible, chain) = (chain_input.problem, chain_input.friction_source, chain?);
-    let bent_from = |chain: &Chain<'_>| {
+    let bent_from = |chain: &BarChain<'_>| {
         let elastica = Elastica::from_chain(chain)?;
         let found = results::stiffen_and_refine(elastica, problem, tolerance)?;
         keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
@@ -202,7 +202,7 @@ pub fn rest_near(
     from: &[Node],
     shape: &[Node],
 ) -> Option<Vec<Node>> {
-    let chain = Chain::rest_near(ChainInput { problem, time_s, dragged, friction_source: None }, shape)?;
+    let chain = BarChain::rest_near(ChainInput { problem, time_s, dragged, friction_source: None }, shape)?;
     let (found, _) = results::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
     keeps_sides(problem, from, &found).then(|| found.nodes.into())
 }

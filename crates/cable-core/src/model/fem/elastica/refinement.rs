@@ -2,7 +2,9 @@
 //! graded into boundary layers, or at half the distance.
 
 use crate::math::{Vec2, cross};
-use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, MOMENT, Piece, STATES, force, tangent};
+use crate::model::fem::elastica::boundary_value::{
+    ANGLE, Elastica, ElasticaPiece, LENGTH, MOMENT, STATES, force, tangent,
+};
 use crate::model::fem::free::places;
 
 /// Step of the differences of a state's slope, as a fraction of an element. Smaller: round-off;
@@ -33,7 +35,7 @@ impl Elastica {
     ///
     /// An element longer than the layer λ does not resolve it: an error δ of the shear would turn
     /// the quintic by (h/λ)² δ/T. Such an element is evaluated by [`Self::outer_state`].
-    pub(super) fn state_in(&self, piece: &Piece, x: f64) -> [f64; STATES] {
+    pub(super) fn state_in(&self, piece: &ElasticaPiece, x: f64) -> [f64; STATES] {
         let e = piece.grid.partition_point(|g| *g <= x).clamp(1, piece.grid.len() - 1) - 1;
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
         let h = piece.grid[e + 1] - piece.grid[e];
@@ -66,7 +68,7 @@ impl Elastica {
     /// There the discrete equations do not damp it, and a cable that turns back and forth from node
     /// to node would satisfy them.
     pub(super) fn resolves_layers(&self) -> bool {
-        let is_resolved = |piece: &Piece| {
+        let is_resolved = |piece: &ElasticaPiece| {
             piece.contact.is_some()
                 || piece.nodes.windows(2).zip(piece.grid.windows(2)).all(|(u, g)| {
                     let layer = self.layer_of_long([&u[0], &u[1]], g[1] - g[0]);
@@ -107,7 +109,7 @@ impl Elastica {
 
     /// Gives free pieces new nodes on the present curve, graded to their present boundary layers.
     pub(super) fn regrid(&mut self) {
-        let regridded = |piece: &Piece| {
+        let regridded = |piece: &ElasticaPiece| {
             let (Some(first), Some(last)) = (piece.nodes.first(), piece.nodes.last()) else { return piece.clone() };
             let l = first[LENGTH];
             if piece.contact.is_some() {
@@ -121,7 +123,7 @@ impl Elastica {
             for u in &mut nodes {
                 u[LENGTH] = l;
             }
-            Piece { contact: None, grid, nodes }
+            ElasticaPiece { contact: None, grid, nodes }
         };
         self.pieces = self.pieces.iter().map(regridded).collect();
     }
@@ -129,7 +131,7 @@ impl Elastica {
     /// Returns the same elastica with every element halved.
     #[must_use]
     pub fn halved(&self) -> Self {
-        let halve = |piece: &Piece| {
+        let halve = |piece: &ElasticaPiece| {
             let mut grid = Vec::with_capacity(2 * piece.grid.len());
             for g in piece.grid.windows(2) {
                 grid.extend([g[0], 0.5 * (g[0] + g[1])]);
@@ -139,7 +141,7 @@ impl Elastica {
             for (k, u) in piece.nodes.iter().enumerate() {
                 nodes[2 * k] = *u;
             }
-            Piece { contact: piece.contact, grid, nodes }
+            ElasticaPiece { contact: piece.contact, grid, nodes }
         };
         Self { pieces: self.pieces.iter().map(halve).collect(), ..self.clone() }
     }

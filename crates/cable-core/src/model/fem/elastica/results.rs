@@ -2,7 +2,8 @@
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
-    ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
+    ANGLE, ARC, ContactSurface, Elastica, ElasticaPiece, End, Joint, LENGTH, MOMENT, Owner, STATES, force, place,
+    tangent, tension,
 };
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
@@ -273,7 +274,7 @@ fn joint_samples(
     problem: &Problem,
     j: usize,
     joint: Joint,
-    stretch: Option<&Piece>,
+    stretch: Option<&ElasticaPiece>,
 ) -> Vec<ContactSample> {
     let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
         return Vec::new();
@@ -293,7 +294,7 @@ fn joint_samples(
 }
 
 /// Force along the normal of a contact on the piece that lies on it, N.
-fn pressed_along(elastica: &Elastica, contact: &Contact, piece: &Piece) -> f64 {
+fn pressed_along(elastica: &Elastica, contact: &ContactSurface, piece: &ElasticaPiece) -> f64 {
     let Some(first) = piece.nodes.first() else { return 0.0 };
     let of_element = |(u, g): (&[[f64; STATES]], &[f64])| {
         let half = elastica.state_in(piece, 0.5 * (g[0] + g[1]));
@@ -332,7 +333,7 @@ fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactRepo
 }
 
 /// The states of a piece at as many places as straight lines need to draw it.
-fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
+fn drawn(elastica: &Elastica, problem: &Problem, piece: &ElasticaPiece) -> Vec<[f64; STATES]> {
     let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
     let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
     for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
@@ -358,7 +359,7 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
 
 /// The place of the greatest tension between two places of a piece, if it is at neither. The nodes
 /// alone would miss part of it, which grows with the square of their distance.
-fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
+fn peak(elastica: &Elastica, piece: &ElasticaPiece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
         let u = elastica.state_in(piece, x);
         let (t, by) = (tangent(&u), elastica.slope(piece.contact, &u));
@@ -375,7 +376,7 @@ fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Opt
 }
 
 /// Samples of the contact force along a piece that lies on its contact.
-fn along(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
+fn along(elastica: &Elastica, problem: &Problem, piece: &ElasticaPiece) -> Vec<ContactSample> {
     let of = |pair: &[[f64; STATES]]| {
         let (a, b) = (&pair[0], &pair[1]);
         let on = force(a) - force(b) - elastica.body * (b[ARC] - a[ARC]);

@@ -1,7 +1,7 @@
 //! This module raises the bending stiffness of an elastica to that of the cable by continuation
 //! from a nearly flexible one.
 
-use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, LENGTH, MOST_WORK, Piece, tension};
+use crate::model::fem::elastica::boundary_value::{ANGLE, Elastica, ElasticaPiece, LENGTH, MOST_WORK, tension};
 use crate::model::fem::elastica::chain::CLAMPED_EULER;
 use crate::problem::Problem;
 
@@ -64,7 +64,7 @@ impl Elastica {
 
     /// True if a free piece is straight and under more compression than Euler's load of a strut
     /// clamped at both ends, 4π²EI/l²: no strut bears that, whatever holds its ends.
-    fn is_crushed_column(&self, piece: &Piece) -> bool {
+    fn is_crushed_column(&self, piece: &ElasticaPiece) -> bool {
         if piece.contact.is_some() {
             return false;
         }

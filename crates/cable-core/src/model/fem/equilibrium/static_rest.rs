@@ -15,11 +15,6 @@ use crate::model::fem::system::{Converged, Failure, FailureCause, load_scale, to
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
-/// Depth, in radii of the cable, from which the cable is reported to run through an obstacle; a
-/// cable that just touches has a depth of 0. Smaller: cables that press on an obstacle are
-/// reported; larger: cables that cut off a corner are not. A choice, tuned on no campaign.
-const MAX_DEPTH_RADII: f64 = 0.9;
-
 /// Returns the reason why a cable held by friction alone does not rest in its present place: the
 /// forces that may be left unbalanced at single nodes add up.
 pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
@@ -30,24 +25,6 @@ pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoE
     let scale = load_scale(&cable.problem).1;
     (left > cable.mesh.tuning.equilibrium.unheld_load_fraction * scale)
         .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
-}
-
-/// Reports the obstacle through which a cable at `x` runs that did not come to rest, because it
-/// cannot get out of there.
-fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
-    let (mesh, world) = (&cable.mesh, &cable.problem.world);
-    if x.len() != mesh.nodes() {
-        return None;
-    }
-    // The centre line is inside the obstacle itself, or nearly so; a cable that touches it is
-    // outside.
-    let least = -MAX_DEPTH_RADII * cable.problem.radius;
-    let clear = |e: usize| mesh.is_break(e) || world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
-    let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
-    let [a, b] = mesh.straight(e, x);
-    let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-    let obstacle = world.obstacle_name(gap.obstacle).to_owned();
-    Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
 }
 
 /// True if two bars of a cable at positions `x` (m) cross.
@@ -153,7 +130,7 @@ impl Stepper {
                     let (residual_n, place) = (f.residual, self.cable.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
-                if let Some(why) = obstacle_run_through(&self.cable, &sought) {
+                if let Some(why) = IntersectionCheck::at(&self.cable, &sought).obstacle_run_through() {
                     return Err(SolveError::NoRestingPlace { why });
                 }
                 let arc_length = self.cable.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);

@@ -46,8 +46,8 @@ pub(in crate::model::fem) struct TwoMeshes {
 
 /// Tells whether the comparison may change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refinement {
-    /// Refinement is allowed: the scene leaves the number of bars open.
+pub enum MeshRefinement {
+    /// MeshRefinement is allowed: the scene leaves the number of bars open.
     Allowed,
     /// The scene or the settings give the number of bars.
     Forbidden,
@@ -60,7 +60,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         settings: Settings,
-        refinement: Refinement,
+        refinement: MeshRefinement,
         fine: &mut Stepper,
         exact: Option<InitialEquilibrium>,
         dragged: &[Option<Vec2>],
@@ -86,7 +86,7 @@ impl TwoMeshes {
         if let Some(exact) = exact {
             let mut answer = fine.solution();
             self.errors = errors_beside(&answer, &exact.answer, problem);
-            while refinement == Refinement::Allowed
+            while refinement == MeshRefinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
                 && 2 * fine.cable.meshing.even_bars <= fine.cable.mesh.tuning.start.max_refined_bars
             {
@@ -116,7 +116,7 @@ impl TwoMeshes {
         &mut self,
         problem: &Arc<Problem>,
         settings: Settings,
-        refinement: Refinement,
+        refinement: MeshRefinement,
         fine: &mut Stepper,
         answer: &CableSolution,
         dragged: &[Option<Vec2>],
@@ -128,7 +128,7 @@ impl TwoMeshes {
         while let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
             (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
             let bars = 2 * fine.cable.meshing.even_bars;
-            if refinement == Refinement::Forbidden
+            if refinement == MeshRefinement::Forbidden
                 || !exceeds(&errors, &fine.solution(), settings)
                 || bars > fine.cable.mesh.tuning.start.max_refined_bars
             {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::equilibrium_search::easier_start::SpansStart;
-use crate::model::fem::equilibrium_search::mesh_error::Refinement;
+use crate::model::fem::equilibrium_search::mesh_error::MeshRefinement;
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
@@ -149,9 +149,9 @@ impl FemModel {
     }
 
     /// Tells whether the mesh may be refined: whether the scene leaves the number of bars open.
-    pub(in crate::model::fem) fn refinement(&self) -> Refinement {
+    pub(in crate::model::fem) fn refinement(&self) -> MeshRefinement {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        if given { Refinement::Forbidden } else { Refinement::Allowed }
+        if given { MeshRefinement::Forbidden } else { MeshRefinement::Allowed }
     }
 
     /// A warning of a mesh that is too coarse for the tolerance.

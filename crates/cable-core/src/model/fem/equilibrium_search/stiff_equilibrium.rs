@@ -4,7 +4,7 @@
 use crate::math::larger;
 use crate::model::fem::elastica::{self, Elastica};
 use crate::model::fem::equilibrium_search::TwoMeshes;
-use crate::model::fem::equilibrium_search::mesh_error::Refinement;
+use crate::model::fem::equilibrium_search::mesh_error::MeshRefinement;
 use crate::model::fem::stepper::Stepper;
 use crate::model::fem::{FemModel, PresentPart, results};
 use crate::model::initial_equilibrium::{initial_equilibrium, meets_itself};
@@ -103,7 +103,7 @@ impl FemModel {
     pub(in crate::model::fem) fn refine_for_bending(&mut self) {
         if !(self.problem.bending_stiffness > 0.0)
             || self.problem.outline.is_some()
-            || self.refinement() == Refinement::Forbidden
+            || self.refinement() == MeshRefinement::Forbidden
         {
             return;
         }

@@ -20,9 +20,9 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::Beam;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::PulleyNetwork;
-use crate::model::fem::free::results::Point;
+use crate::model::fem::free::results::SolutionPoint;
 use crate::model::fem::free::span;
-use crate::model::fem::free::span::{Span, elements};
+use crate::model::fem::free::span::{BarSpan, elements};
 use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 
 /// Maximum number of rounds of the correction.
@@ -96,7 +96,7 @@ pub fn position_error(network: &mut PulleyNetwork) -> f64 {
 
 /// Greatest distance of points of one mesh from those of the same arc length on another, m.
 #[must_use]
-pub fn apart(some: &[Point], others: &[Point]) -> f64 {
+pub fn apart(some: &[SolutionPoint], others: &[SolutionPoint]) -> f64 {
     let mut most = 0.0;
     for p in some {
         let k = others.partition_point(|o| o.arc_length < p.arc_length - NODE_TOLERANCE_M);
@@ -137,7 +137,7 @@ fn force_errors(network: &mut PulleyNetwork) -> Vec<[Vec2; 2]> {
 /// Change of the start force with which the exact catenary closes a span, N. If a fold lies in one
 /// element, its error gives no estimate of the force, and the span is solved on finer elements
 /// until it does.
-fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &Span) -> Vec2 {
+fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &BarSpan) -> Vec2 {
     let (material, goal) = (&network.material, span.span_response.reach);
     if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
         return off;

@@ -4,11 +4,11 @@
 use crate::error::{NoEquilibrium, Place, SolveError};
 use crate::math::Vec2;
 use crate::model::Model;
-use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
+use crate::model::fem::free::pulley_balance::{PulleyFailure, PulleyNetwork};
 use crate::problem::Problem;
 
 /// The error for the user that a failure of a network at a time (s) means.
-pub(super) fn solve_error(problem: &Problem, network: &PulleyNetwork, time: f64, failure: Failure) -> SolveError {
+pub(super) fn solve_error(problem: &Problem, network: &PulleyNetwork, time: f64, failure: PulleyFailure) -> SolveError {
     let name = |k: usize| {
         let support = network.layout.stations.get(k).and_then(|s| s.support).and_then(|i| problem.supports.get(i));
         support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
@@ -22,11 +22,11 @@ pub(super) fn solve_error(problem: &Problem, network: &PulleyNetwork, time: f64,
         }),
     };
     match failure {
-        Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
-        Failure::RunsOut(k) => {
+        PulleyFailure::Span(k, residual) | PulleyFailure::Unbalanced(k, residual) => not_converged(k, residual),
+        PulleyFailure::RunsOut(k) => {
             SolveError::NoRestingPlace { why: NoEquilibrium::RunsOut { pulley: name(k).to_owned() } }
         }
-        Failure::LeavesWheel(k) => {
+        PulleyFailure::LeavesWheel(k) => {
             SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name(k).to_owned() } }
         }
     }

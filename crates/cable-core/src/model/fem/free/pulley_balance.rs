@@ -12,11 +12,12 @@
 //! method stalls or ends at an unstable equilibrium, each pulley in turn is bisected for a change
 //! of ρ from − to +, which occurs only at stable ones. Wheels with a radius are in `wheel_arcs`.
 
+use crate::linalg::{TridiagonalRow, solve_tridiagonal};
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_state::PulleyState;
 use crate::model::fem::free::span;
-use crate::model::fem::free::span::{Span, elements};
+use crate::model::fem::free::span::{BarSpan, SpanEnd, elements};
 use crate::model::fem::free::stations::{Restraint, SpanEnds, StationLayout, Wheel};
 use crate::numerics::backtrack;
 
@@ -25,9 +26,6 @@ const MAX_STEPS: usize = 40;
 
 /// Maximum number of step lengths that are tried.
 const MAX_HALVINGS: usize = 12;
-/// Decades by which the smoothing of a fold is first raised: to a tenth of the load, where any
-/// start converges.
-const FOLD_ROUNDING_DECADES: i32 = 6;
 /// Maximum number of rounds of bisection.
 const MAX_ROUNDS: usize = 60;
 /// Error of ρ below which a pulley is balanced.
@@ -41,7 +39,7 @@ const END_CABLE_FRACTION: f64 = 1e-7;
 
 /// The reason why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
+pub enum PulleyFailure {
     /// The span that starts at this station could not be solved; with the unbalanced force, N.
     Span(usize, f64),
     /// The cable runs out through the pulley at this station.
@@ -62,7 +60,7 @@ pub struct PulleyNetwork {
     /// The stations at each span's ends.
     pub ends: Vec<SpanEnds>,
     /// The solved spans, in the order of `ends`.
-    pub spans: Vec<Span>,
+    pub spans: Vec<BarSpan>,
     /// Tension force just before and just after each station, N.
     pub forces: Vec<[Vec2; 2]>,
     /// Newton steps of all kinds.
@@ -91,7 +89,7 @@ impl PulleyNetwork {
     pub fn new(layout: StationLayout, material: Material) -> Self {
         let ends: Vec<_> = layout.spans().collect();
         let mut network = Self {
-            spans: vec![Span::default(); ends.len()],
+            spans: vec![BarSpan::default(); ends.len()],
             forces: vec![[Vec2::zeros(); 2]; layout.stations.len()],
             held_at: layout.stations.iter().map(|s| s.arc_length).collect(),
             ends,
@@ -123,7 +121,7 @@ impl PulleyNetwork {
     ///
     /// # Errors
     /// The reason why there is no answer.
-    pub fn solve(&mut self) -> Result<(), Failure> {
+    pub fn solve(&mut self) -> Result<(), PulleyFailure> {
         self.steps = 0;
         let wheels = self.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0));
         if wheels {
@@ -136,7 +134,7 @@ impl PulleyNetwork {
     }
 
     /// Solves the spans for the present arc lengths.
-    pub(in crate::model::fem) fn solve_spans(&mut self) -> Result<(), Failure> {
+    pub(in crate::model::fem) fn solve_spans(&mut self) -> Result<(), PulleyFailure> {
         self.residual = 0.0;
         for i in 0..self.ends.len() {
             self.solve_span(i)?;
@@ -145,39 +143,25 @@ impl PulleyNetwork {
         Ok(())
     }
 
-    fn solve_span(&mut self, i: usize) -> Result<(), Failure> {
+    fn solve_span(&mut self, i: usize) -> Result<(), PulleyFailure> {
         let ends = self.ends[i];
         let SpanEnds { first, last } = ends;
         let (Some(a), Some(b)) = (self.layout.stations[first].point(1), self.layout.stations[last].point(0)) else {
-            return Err(Failure::Span(first, f64::NAN));
+            return Err(PulleyFailure::Span(first, f64::NAN));
         };
         let d = b - a;
         let solve = |guess| span::solve(&self.material, &self.layout, ends, d, guess);
         let warm = if self.warm || self.spans[i].steps > 0 { solve(self.spans[i].force) } else { None };
         let guess = span::first_guess(&self.material, &self.layout, ends, d);
-        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold(ends, d, guess));
-        let span = span.ok_or(Failure::Span(first, f64::NAN))?;
+        let span =
+            warm.or_else(|| solve(guess)).or_else(|| span::solve_folded(&self.material, &self.layout, ends, d, guess));
+        let span = span.ok_or(PulleyFailure::Span(first, f64::NAN))?;
         self.steps += span.steps;
         self.residual = larger(self.residual, span.residual);
         self.forces[first][1] = span.force;
         self.forces[last][0] = span.span_response.end_force;
         self.spans[i] = span;
         Ok(())
-    }
-
-    /// Solves a span folded so sharply that the fold lies within one element. D has an angle where
-    /// the tension vanishes; it is smoothed, and the smoothing is reduced tenfold at a time.
-    fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
-        let (mut force, mut steps) = (guess, 0);
-        for power in (0..=FOLD_ROUNDING_DECADES).rev() {
-            let material = Material { smoothing: self.material.smoothing * 10f64.powi(power), ..self.material };
-            let span = span::solve(&material, &self.layout, ends, d, force)?;
-            (force, steps) = (span.force, steps + span.steps);
-            if power == 0 {
-                return Some(Span { steps, ..span });
-            }
-        }
-        None
     }
 
     /// Sets the forces of the stretches that end free: the loads beyond them.
@@ -253,7 +237,7 @@ impl PulleyNetwork {
     }
 
     /// Finds the arc length at every pulley.
-    pub(in crate::model::fem) fn balance(&mut self) -> Result<(), Failure> {
+    pub(in crate::model::fem) fn balance(&mut self) -> Result<(), PulleyFailure> {
         self.solve_spans()?;
         let pulleys = self.pulleys();
         if pulleys.is_empty() {
@@ -275,7 +259,7 @@ impl PulleyNetwork {
         let pulleys = self.pulleys();
         let worst = pulleys.iter().copied().find(|&k| self.wheel(k).and_then(|w| self.imbalance(k, &w)).is_some());
         let station = worst.unwrap_or(0);
-        Err(Failure::Unbalanced(station, self.unbalance(station)))
+        Err(PulleyFailure::Unbalanced(station, self.unbalance(station)))
     }
 
     fn unbalance(&self, station: usize) -> f64 {
@@ -340,7 +324,7 @@ impl PulleyNetwork {
     /// The Newton step of each pulley's arc length, and whether all pivots are positive.
     pub(in crate::model::fem) fn newton_step(&self, pulleys: &[usize], imbalances: &[Option<f64>]) -> (Vec<f64>, bool) {
         let n = pulleys.len();
-        let (mut diagonal, mut below, mut above) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut rows: Vec<TridiagonalRow> = vec![[0.0, 1.0, 0.0]; n];
         let mut right: Vec<f64> = imbalances.iter().map(|f| -f.unwrap_or(0.0)).collect();
         for (i, &k) in pulleys.iter().enumerate() {
             let Some(imbalance) = imbalances[i] else { continue };
@@ -348,31 +332,23 @@ impl PulleyNetwork {
             let [before, after] = self.forces[k];
             let own = self.rates_at(k, k);
             let rate = |r: [Vec2; 2]| self.imbalance_rate(&wheel, imbalance, [before, after], r);
-            diagonal[i] = rate(own);
+            rows[i][1] = rate(own);
             if i > 0 {
-                below[i] = rate(self.rates_at(k, pulleys[i - 1]));
+                rows[i][0] = rate(self.rates_at(k, pulleys[i - 1]));
             }
             if i + 1 < n {
-                above[i] = rate(self.rates_at(k, pulleys[i + 1]));
+                rows[i][2] = rate(self.rates_at(k, pulleys[i + 1]));
             }
         }
         let mut stable = true;
-        for i in 0..n {
-            if i > 0 {
-                let factor = below[i] / diagonal[i - 1];
-                diagonal[i] -= factor * above[i - 1];
-                right[i] -= factor * right[i - 1];
+        let solved = solve_tridiagonal(&rows, &mut right, |pivot| {
+            if pivot > 0.0 {
+                return Some(pivot);
             }
-            if !(diagonal[i] > 0.0) {
-                stable = false;
-                diagonal[i] = if diagonal[i] < 0.0 { -diagonal[i] } else { 1.0 };
-            }
-        }
-        for i in (0..n).rev() {
-            let next = if i + 1 < n { above[i] * right[i + 1] } else { 0.0 };
-            right[i] = (right[i] - next) / diagonal[i];
-        }
-        (right, stable)
+            stable = false;
+            Some(if pivot < 0.0 { -pivot } else { 1.0 })
+        });
+        (right, stable && solved)
     }
 
     /// ∂(force before, force after the pulley at station `k`)/∂(arc length at the pulley of station
@@ -380,18 +356,18 @@ impl PulleyNetwork {
     pub(in crate::model::fem) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
         for (span, &ends) in self.spans.iter().zip(&self.ends) {
-            let by_end = if ends.last == of {
-                true
+            let moved = if ends.last == of {
+                SpanEnd::Last
             } else if ends.first == of {
-                false
+                SpanEnd::First
             } else {
                 continue;
             };
             if ends.last == k {
-                rates[0] += span.force_rates(&self.material, &self.layout, ends, by_end)[1];
+                rates[0] += span.force_rates(&self.material, &self.layout, ends, moved)[1];
             }
             if ends.first == k {
-                rates[1] += span.force_rates(&self.material, &self.layout, ends, by_end)[0];
+                rates[1] += span.force_rates(&self.material, &self.layout, ends, moved)[0];
             }
         }
         if let Some((first, last)) = self.layout.anchored()
@@ -430,12 +406,12 @@ impl PulleyNetwork {
     }
 
     /// Runs one round of bisection over the pulleys.
-    fn bisect_each(&mut self) -> Result<(), Failure> {
+    fn bisect_each(&mut self) -> Result<(), PulleyFailure> {
         (0..self.pulleys().len()).try_for_each(|p| self.bisect(self.pulleys()[p]))
     }
 
     /// Balances one pulley with the others held: finds the change of its imbalance from − to +.
-    fn bisect(&mut self, station: usize) -> Result<(), Failure> {
+    fn bisect(&mut self, station: usize) -> Result<(), PulleyFailure> {
         let Some(wheel) = self.wheel(station) else { return Ok(()) };
         let start = self.layout.stations[station].arc_length;
         let held = if wheel.friction > 0.0 { start - self.slid(station) } else { start };
@@ -453,7 +429,8 @@ impl PulleyNetwork {
         self.try_at(station, limit)?;
         let at_limit = self.imbalance(station, &wheel);
         if at_limit.is_some_and(|f| f * imbalance > 0.0) {
-            return self.pass(station, imbalance < 0.0);
+            let other = if imbalance < 0.0 { station + 1 } else { station - 1 };
+            return self.pass(station, other);
         }
         for _ in 0..60 {
             let middle = 0.5 * (near + far);
@@ -469,7 +446,7 @@ impl PulleyNetwork {
         self.try_at(station, far)
     }
 
-    fn try_at(&mut self, station: usize, arc_length: f64) -> Result<(), Failure> {
+    fn try_at(&mut self, station: usize, arc_length: f64) -> Result<(), PulleyFailure> {
         self.layout.stations[station].arc_length = arc_length;
         for i in 0..self.ends.len() {
             if self.ends[i].first == station || self.ends[i].last == station {
@@ -480,27 +457,26 @@ impl PulleyNetwork {
         Ok(())
     }
 
-    /// Handles a pulley whose balance lies beyond the next station: a load changes to the other
-    /// side; at an end the cable runs out.
-    fn pass(&mut self, station: usize, up: bool) -> Result<(), Failure> {
-        let other = if up { station + 1 } else { station - 1 };
+    /// Handles a pulley whose balance lies beyond the `other` station next to it: a load changes to
+    /// the other side; at an end the cable runs out.
+    fn pass(&mut self, station: usize, other: usize) -> Result<(), PulleyFailure> {
         let inner = other > 0 && other + 1 < self.layout.stations.len();
         if !inner {
-            return Err(Failure::RunsOut(station));
+            return Err(PulleyFailure::RunsOut(station));
         }
         if self.layout.stations[other].anchors() {
-            return Err(Failure::Unbalanced(station, self.unbalance(station)));
+            return Err(PulleyFailure::Unbalanced(station, self.unbalance(station)));
         }
         let element_count = (self.layout.stations[station].element_count, self.layout.stations[other].element_count);
         self.layout.stations.swap(station, other);
         self.held_at.swap(station, other);
         (self.layout.stations[station].element_count, self.layout.stations[other].element_count) = element_count;
-        let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if up { 1.0 } else { -1.0 };
+        let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if other > station { 1.0 } else { -1.0 };
         let load_at = self.layout.stations[station].arc_length;
         self.layout.stations[other].arc_length =
-            load_at + least - if up { 0.0 } else { self.layout.stations[other].material_on_wheel };
+            load_at + least - if other > station { 0.0 } else { self.layout.stations[other].material_on_wheel };
         self.ends = self.layout.spans().collect();
-        self.spans = vec![Span::default(); self.ends.len()];
+        self.spans = vec![BarSpan::default(); self.ends.len()];
         self.warm = false;
         self.solve_spans()
     }

@@ -11,7 +11,7 @@ use crate::solution::{Node, SupportReaction};
 
 /// A point of the cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Point {
+pub struct SolutionPoint {
     /// Arc length, m.
     pub arc_length: f64,
     /// Its position, m.
@@ -25,7 +25,7 @@ pub struct Point {
     pub force: Vec2,
 }
 
-impl Point {
+impl SolutionPoint {
     /// This point as a node of an answer.
     #[must_use]
     pub fn node(&self, problem: &Problem) -> Node {
@@ -46,7 +46,7 @@ impl Point {
 }
 
 /// Appends all points of a solved network in order of arc length to `out`; `cable_radius` is in m.
-pub fn points(network: &PulleyNetwork, cable_radius: f64, out: &mut Vec<Point>) {
+pub fn points(network: &PulleyNetwork, cable_radius: f64, out: &mut Vec<SolutionPoint>) {
     out.clear();
     let layout = &network.layout;
     let Some((first, last)) = layout.anchored() else { return };
@@ -71,7 +71,13 @@ pub fn points(network: &PulleyNetwork, cable_radius: f64, out: &mut Vec<Point>) 
         run(network, SpanEnds { first: last, last: end }, start, network.forces[last][1], out);
         let load = layout.stations[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
-        out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0, force: load });
+        out.push(SolutionPoint {
+            arc_length: layout.length,
+            at: tip,
+            tension: load.norm(),
+            curvature: 0.0,
+            force: load,
+        });
     }
 }
 
@@ -88,7 +94,13 @@ fn free_curvature(force: Vec2, body: Vec2, smoothing: f64) -> f64 {
 }
 
 /// Appends the points between two stations, and the first station itself if it does not anchor.
-fn run(network: &PulleyNetwork, SpanEnds { first, last }: SpanEnds, start: Vec2, force: Vec2, out: &mut Vec<Point>) {
+fn run(
+    network: &PulleyNetwork,
+    SpanEnds { first, last }: SpanEnds,
+    start: Vec2,
+    force: Vec2,
+    out: &mut Vec<SolutionPoint>,
+) {
     let (layout, material) = (&network.layout, &network.material);
     let (mut at, mut force) = (start, force);
     for k in first..last {
@@ -104,7 +116,7 @@ fn run(network: &PulleyNetwork, SpanEnds { first, last }: SpanEnds, start: Vec2,
             if e > 0 || !station.anchors() {
                 let before = if e == 0 { before } else { f };
                 let curvature = free_curvature(f, material.body, material.smoothing);
-                out.push(Point {
+                out.push(SolutionPoint {
                     arc_length: station.leaves() + ds * e as f64,
                     at,
                     tension: larger(before.norm(), f.norm()),
@@ -119,13 +131,13 @@ fn run(network: &PulleyNetwork, SpanEnds { first, last }: SpanEnds, start: Vec2,
 }
 
 /// Appends the point of an anchor, or the points round its wheel.
-fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<Point>) {
+fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<SolutionPoint>) {
     let station = &network.layout.stations[k];
     let [before, after] = network.forces[k];
     let (Some(meets), Some(leaves)) = (station.point(0), station.point(1)) else { return };
     match station.restraint {
         Restraint::Pulley(wheel) if wheel.radius > 0.0 && station.material_on_wheel > 0.0 => {
-            let tangent = |point: Vec2, arc_length: f64, force: Vec2, curvature: f64| Point {
+            let tangent = |point: Vec2, arc_length: f64, force: Vec2, curvature: f64| SolutionPoint {
                 arc_length,
                 at: point,
                 tension: force.norm(),
@@ -152,7 +164,7 @@ fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<Po
         _ => {
             let side = if after.norm_squared() > 0.0 { after } else { before };
             let curvature = free_curvature(side, network.material.body, network.material.smoothing);
-            out.push(Point {
+            out.push(SolutionPoint {
                 arc_length: station.arc_length,
                 at: meets,
                 tension: larger(before.norm(), after.norm()),
@@ -188,7 +200,7 @@ pub fn reactions(
     layout: &StationLayout,
     forces: &[[Vec2; 2]],
     body: Vec2,
-    points: &[Point],
+    points: &[SolutionPoint],
 ) -> Vec<SupportReaction> {
     let mut out = Vec::with_capacity(problem.supports.len());
     for (k, support) in problem.supports.iter().enumerate() {
@@ -225,7 +237,7 @@ pub fn reactions(
     out
 }
 
-fn position_at(points: &[Point], arc_length: f64) -> Vec2 {
+fn position_at(points: &[SolutionPoint], arc_length: f64) -> Vec2 {
     let k = points.partition_point(|p| p.arc_length < arc_length - 1e-9 * arc_length.abs());
     points.get(k).or(points.last()).map_or(Vec2::zeros(), |p| p.at)
 }

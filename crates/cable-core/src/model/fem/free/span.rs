@@ -47,7 +47,7 @@ pub struct SpanResponse {
 
 /// A solved span.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Span {
+pub struct BarSpan {
     /// Tension force just after its first node, N.
     pub force: Vec2,
     /// Its shape.
@@ -58,14 +58,22 @@ pub struct Span {
     pub residual: f64,
 }
 
-impl Span {
-    /// Derivatives of the forces at both ends by the arc length at one end: the last if `by_end`,
-    /// else the first.
+/// An end of a span.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpanEnd {
+    /// Its first node.
+    First,
+    /// Its last node.
+    Last,
+}
+
+impl BarSpan {
+    /// Derivatives of the forces at both ends by the arc length at one `end`.
     #[must_use]
-    pub fn force_rates(&self, material: &Material, layout: &StationLayout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
-        let rate = reach_rate(material, layout, ends, self.force, by_end);
+    pub fn force_rates(&self, material: &Material, layout: &StationLayout, ends: SpanEnds, end: SpanEnd) -> [Vec2; 2] {
+        let rate = reach_rate(material, layout, ends, self.force, end);
         let start = self.span_response.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
-        [start, start + material.body * if by_end { -1.0 } else { 1.0 }]
+        [start, start + material.body * if end == SpanEnd::Last { -1.0 } else { 1.0 }]
     }
 }
 
@@ -113,9 +121,9 @@ fn reach_rate(
     layout: &StationLayout,
     SpanEnds { first, last }: SpanEnds,
     start: Vec2,
-    by_end: bool,
+    end: SpanEnd,
 ) -> Vec2 {
-    let (moving, sign) = if by_end { (last - 1, 1.0) } else { (first, -1.0) };
+    let (moving, sign) = if end == SpanEnd::Last { (last - 1, 1.0) } else { (first, -1.0) };
     let mut rate = Vec2::zeros();
     let mut force = start;
     for k in first..last {
@@ -206,7 +214,7 @@ const CROSS_LOAD_FRACTION: f64 = 1e-6;
 /// Solves a span between points `d` apart (m) from a start force. `None` if Newton's method
 /// diverges.
 #[must_use]
-pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
+pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<BarSpan> {
     let (load, length) = load_and_length(material, layout, ends);
     let size = length.max(d.norm());
     let mut force = guess;
@@ -218,7 +226,8 @@ pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec
         if !(step.x.is_finite() && step.y.is_finite()) {
             return None;
         }
-        let done = |w: SpanResponse, force: Vec2| Some(Span { force, span_response: w, steps, residual: step.norm() });
+        let done =
+            |w: SpanResponse, force: Vec2| Some(BarSpan { force, span_response: w, steps, residual: step.norm() });
         if gap.norm() <= CLOSURE_TOLERANCE * size || step.norm() <= FORCE_ROUNDING * (force.norm() + load.norm()) {
             return done(w, force);
         }
@@ -241,6 +250,32 @@ pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec
             }
             None if gap.norm() <= CLOSURE_LIMIT * size => return done(w, force),
             None => return None,
+        }
+    }
+    None
+}
+
+/// Decades by which the smoothing of a fold is first raised: to a tenth of the load, where any
+/// start converges.
+const FOLD_ROUNDING_DECADES: i32 = 6;
+
+/// Solves a span folded so sharply that the fold lies within one element. D has an angle where the
+/// tension vanishes; it is smoothed, and the smoothing is reduced tenfold at a time.
+#[must_use]
+pub fn solve_folded(
+    material: &Material,
+    layout: &StationLayout,
+    ends: SpanEnds,
+    d: Vec2,
+    guess: Vec2,
+) -> Option<BarSpan> {
+    let (mut force, mut steps) = (guess, 0);
+    for power in (0..=FOLD_ROUNDING_DECADES).rev() {
+        let smoothed = Material { smoothing: material.smoothing * 10f64.powi(power), ..*material };
+        let span = solve(&smoothed, layout, ends, d, force)?;
+        (force, steps) = (span.force, steps + span.steps);
+        if power == 0 {
+            return Some(BarSpan { steps, ..span });
         }
     }
     None

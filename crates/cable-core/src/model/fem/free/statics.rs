@@ -16,9 +16,9 @@ use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::element_material::material_at;
 use crate::model::fem::free::failure_report::solve_error;
-use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
+use crate::model::fem::free::pulley_balance::{PulleyFailure, PulleyNetwork};
 use crate::model::fem::free::results;
-use crate::model::fem::free::results::Point;
+use crate::model::fem::free::results::SolutionPoint;
 use crate::model::fem::free::stations::{Restraint, StationLayout, place};
 use crate::model::fem::free::straight_route::straight_points;
 use crate::model::initial_equilibrium::initial_equilibrium;
@@ -48,7 +48,7 @@ const JOINED_FRACTION: f64 = 0.5;
 
 /// Balances pulleys without friction. On wheels the strain of the material is first taken from a
 /// mean tension (accurate to 1e-7), and then integrated exactly.
-fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, Failure> {
+fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, PulleyFailure> {
     network.solve()?;
     if network.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0)) {
         let mut exact = network.clone();
@@ -78,7 +78,7 @@ pub struct Statics {
     beam: Option<Beam>,
     /// The stations of the last answer and the tension forces before and after them, N.
     rested: Option<(StationLayout, Vec<[Vec2; 2]>)>,
-    points: Vec<Point>,
+    points: Vec<SolutionPoint>,
     estimate: Option<f64>,
     /// Estimated error of the shape, m.
     shape_error: Option<f64>,
@@ -237,7 +237,7 @@ impl Statics {
 
     /// Balances pulleys with friction from their memory, or else from the route. Returns whether it
     /// started from the route.
-    fn begin_rubbing(&self, network: &mut PulleyNetwork, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
+    fn begin_rubbing(&self, network: &mut PulleyNetwork, dragged: &[Option<Vec2>]) -> Result<bool, PulleyFailure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
         {
@@ -346,12 +346,12 @@ impl Statics {
             Outcome::Stable => {}
             Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
             Outcome::Failed => {
-                return Err(solve_error(&self.problem, &network, self.time, Failure::Span(0, beam.residual)));
+                return Err(solve_error(&self.problem, &network, self.time, PulleyFailure::Span(0, beam.residual)));
             }
         }
         self.time = time;
         // On a mesh that the user gives, the answer has values at its nodes only.
-        self.points = beam.points(!given);
+        self.points = if given { beam.node_points() } else { beam.drawn_points() };
         self.rested = Some((beam.layout().clone(), beam.station_forces()));
         (self.estimate, self.shape_error) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), shape_error);
         let cost = Cost { iterations, residual_n: beam.residual, ..Cost::default() };
@@ -420,10 +420,10 @@ impl Statics {
         self.rested = None;
         (self.estimate, self.shape_error) = (None, None);
         self.points.clear();
-        self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
+        self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| SolutionPoint {
             arc_length,
             at,
-            ..Point::default()
+            ..SolutionPoint::default()
         }));
         Ok(())
     }

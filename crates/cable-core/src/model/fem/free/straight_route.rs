@@ -1,13 +1,13 @@
 //! This module lays a cable straight from support to support before its first answer.
 
 use crate::math::Vec2;
-use crate::model::fem::free::results::Point;
+use crate::model::fem::free::results::SolutionPoint;
 use crate::model::fem::free::stations::StationLayout;
 use crate::problem::Problem;
 
 /// The points of the straight way through the supports at time 0, in so many segments; `slid` is
 /// the arc length at each support that slides, m. Hanging ends point down.
-pub(super) fn straight_points(problem: &Problem, segments: usize, slid: &[Option<f64>]) -> Vec<Point> {
+pub(super) fn straight_points(problem: &Problem, segments: usize, slid: &[Option<f64>]) -> Vec<SolutionPoint> {
     let mut layout = StationLayout::new(problem, 0.0, &[], slid);
     layout.cut(segments);
     let Some((first, last)) = layout.anchored() else { return Vec::new() };
@@ -28,7 +28,7 @@ pub(super) fn straight_points(problem: &Problem, segments: usize, slid: &[Option
         let f = if width > 0.0 { (stations[k].arc_length - stations[a].arc_length) / width } else { 0.0 };
         anchor(a) + (anchor(b) - anchor(a)) * f
     };
-    let point = |arc_length: f64, at: Vec2| Point { arc_length, at, ..Point::default() };
+    let point = |arc_length: f64, at: Vec2| SolutionPoint { arc_length, at, ..SolutionPoint::default() };
     let mut points = Vec::new();
     for k in 0..stations.len() - 1 {
         let (a, b, s, d) =

@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
-use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
+use crate::model::fem::free::pulley_balance::{PulleyFailure, PulleyNetwork};
 use crate::model::fem::free::stations::{Restraint, Wheel};
 use crate::problem::wheel_passage::{TURN_ROUNDING, angle_near, facing, turn_through_centre};
 use crate::scene::PulleySide;
@@ -97,17 +97,17 @@ impl PulleyNetwork {
     }
 
     /// Balances the pulleys until contact points and forces agree.
-    pub(in crate::model::fem) fn balance_on_wheels(&mut self) -> Result<(), Failure> {
+    pub(in crate::model::fem) fn balance_on_wheels(&mut self) -> Result<(), PulleyFailure> {
         for round in 1..=WHEEL_ROUNDS {
             self.balance()?;
             let (moved, lifted) = self.update_wheel_contacts();
             match lifted {
                 Some(k) if moved <= CONTACT_ANGLE_TOLERANCE || round == WHEEL_ROUNDS => {
-                    return Err(Failure::LeavesWheel(k));
+                    return Err(PulleyFailure::LeavesWheel(k));
                 }
                 None if moved <= CONTACT_ANGLE_TOLERANCE => break,
                 None if round == WHEEL_ROUNDS && !(moved <= CONTACT_ANGLE_LIMIT) => {
-                    return Err(Failure::Unbalanced(self.pulleys().first().copied().unwrap_or(0), self.residual));
+                    return Err(PulleyFailure::Unbalanced(self.pulleys().first().copied().unwrap_or(0), self.residual));
                 }
                 _ => {}
             }

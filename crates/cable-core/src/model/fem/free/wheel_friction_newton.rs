@@ -21,8 +21,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::turn_between;
-use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
+use crate::model::fem::free::pulley_balance::{PulleyFailure, PulleyNetwork};
 use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState, Unknown};
+use crate::model::fem::free::span::SpanEnd;
 use crate::model::fem::free::stations::{Restraint, Station};
 
 /// Maximum number of Newton steps for one set of modes. Measured: 2 to 8.
@@ -53,6 +54,15 @@ const STEP_TOLERANCE: f64 = 1e-13;
 /// Entries that a pulley changes: two indices and a force each.
 type ForceEntries = Vec<(usize, usize, Vec2)>;
 
+/// The changes between sticking and sliding that are made at once.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum ModeChanges {
+    /// Those of all pulleys.
+    All,
+    /// That of the first pulley that has one.
+    First,
+}
+
 /// The equations of all pulleys at a state.
 struct FrictionEquations {
     residual: DVector<f64>,
@@ -67,7 +77,7 @@ impl PulleyNetwork {
     ///
     /// # Errors
     /// The reason why there is none.
-    pub fn balance_with_friction(&mut self) -> Result<(), Failure> {
+    pub fn balance_with_friction(&mut self) -> Result<(), PulleyFailure> {
         self.steps = 0;
         let pulleys = self.pulleys();
         self.take_unknowns(&pulleys)?;
@@ -75,12 +85,13 @@ impl PulleyNetwork {
         for round in 0..most {
             let solved = self.newton_on_pulleys(&pulleys);
             // After some rounds only one mode changes at a time: together they may cycle.
-            let changed = self.change_modes(&pulleys, round >= most / 2);
+            let changes = if round < most / 2 { ModeChanges::All } else { ModeChanges::First };
+            let changed = self.change_modes(&pulleys, changes);
             match (solved, changed) {
                 (Ok(()), false) => {
                     for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
                         if matches!(r.friction, FrictionState::Wheel(_)) && r.angles[1] < r.angles[0] {
-                            return Err(Failure::LeavesWheel(k));
+                            return Err(PulleyFailure::LeavesWheel(k));
                         }
                     }
                     self.warm_now();
@@ -90,11 +101,11 @@ impl PulleyNetwork {
                 (_, true) => {}
             }
         }
-        Err(Failure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
+        Err(PulleyFailure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
     }
 
     /// Moves the stations to the unknowns and solves the spans between them.
-    fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
+    fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), PulleyFailure> {
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             let station: &mut Station = &mut self.layout.stations[k];
             (station.arc_length, station.material_on_wheel) = (r.material[0], r.material[1] - r.material[0]);
@@ -105,7 +116,7 @@ impl PulleyNetwork {
         let stations = &self.layout.stations;
         let runs_out = (1..stations.len()).find(|&k| !(stations[k].arc_length > stations[k - 1].leaves()));
         if let Some(k) = runs_out {
-            return Err(Failure::RunsOut(if stations[k].support.is_some() && self.wheel(k).is_some() {
+            return Err(PulleyFailure::RunsOut(if stations[k].support.is_some() && self.wheel(k).is_some() {
                 k
             } else {
                 k - 1
@@ -190,7 +201,8 @@ impl PulleyNetwork {
             };
             let ends = self.ends[i];
             let slopes = if material {
-                self.spans[i].force_rates(&self.material, &self.layout, ends, side == 0)
+                let end = if side == 0 { SpanEnd::Last } else { SpanEnd::First };
+                self.spans[i].force_rates(&self.material, &self.layout, ends, end)
             } else if unknown == Unknown::Angle(side)
                 && let (FrictionState::Wheel(w), Some(wheel)) = (&r.friction, self.wheel(k))
             {
@@ -226,7 +238,7 @@ impl PulleyNetwork {
         (matrix, slopes)
     }
 
-    fn newton_on_pulleys(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
+    fn newton_on_pulleys(&mut self, pulleys: &[usize]) -> Result<(), PulleyFailure> {
         let first = pulleys.first().copied().unwrap_or(0);
         let mut e = self.equations(pulleys);
         for _ in 0..MAX_STEPS {
@@ -236,7 +248,7 @@ impl PulleyNetwork {
             if worst <= RESIDUAL_TOLERANCE {
                 return Ok(());
             }
-            let failure = Failure::Unbalanced(first, worst * tension);
+            let failure = PulleyFailure::Unbalanced(first, worst * tension);
             let (matrix, _) = self.tangent(pulleys, &e);
             let step = matrix.lu().solve(&-&e.residual).filter(|s| s.iter().all(|v| v.is_finite()));
             let Some(step) = step else { return Err(failure) };
@@ -255,7 +267,7 @@ impl PulleyNetwork {
             e = next;
         }
         let worst = e.residual.amax();
-        if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
+        if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(PulleyFailure::Unbalanced(first, worst)) }
     }
 
     /// The greatest fraction of a step that keeps the order of the stations and the side of the
@@ -308,12 +320,12 @@ impl PulleyNetwork {
     }
 
     /// Checks for every pulley whether it sticks or slides; true if one changed.
-    fn change_modes(&mut self, pulleys: &[usize], one: bool) -> bool {
+    fn change_modes(&mut self, pulleys: &[usize], changes: ModeChanges) -> bool {
         let on = self.cable_properties();
         let mut changed = false;
         let mut pulley_states = std::mem::take(&mut self.pulley_states);
         for (&k, r) in pulleys.iter().zip(&mut pulley_states) {
-            if changed && one {
+            if changed && changes == ModeChanges::First {
                 break;
             }
             let ends = self.ends_at(k, r);

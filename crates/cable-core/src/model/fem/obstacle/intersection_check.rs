@@ -6,13 +6,18 @@
 //! the corner's edges than the barrier's reach at that end, so there the check is that the tangent
 //! point does not lie over an edge.
 
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Model;
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNode, TangentPath, round_of};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::StepContext;
 use crate::problem::Problem;
+
+/// Depth, in radii of the cable, from which the cable is reported to run through an obstacle; a
+/// cable that just touches has a depth of 0. Smaller: cables that press on an obstacle are
+/// reported; larger: cables that cut off a corner are not. A choice, tuned on no campaign.
+const MAX_DEPTH_RADII: f64 = 0.9;
 
 /// A cable among its obstacles, at given positions.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +39,25 @@ impl<'a> IntersectionCheck<'a> {
     /// The check of a cable at positions `x` (m).
     pub(in crate::model::fem) fn at(cable: &'a CableState, x: &'a [Vec2]) -> Self {
         Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, positions: x }
+    }
+
+    /// The obstacle through which a cable runs that did not come to rest, because it cannot get out
+    /// of there.
+    pub(in crate::model::fem) fn obstacle_run_through(&self) -> Option<NoEquilibrium> {
+        let (mesh, world, x) = (self.mesh, &self.problem.world, self.positions);
+        if x.len() != mesh.nodes() {
+            return None;
+        }
+        // The centre line is inside the obstacle itself, or nearly so; a cable that touches it is
+        // outside.
+        let least = -MAX_DEPTH_RADII * self.problem.radius;
+        let clear =
+            |e: usize| mesh.is_break(e) || world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
+        let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
+        let [a, b] = mesh.straight(e, x);
+        let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
+        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
+        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
     }
 
     /// The check of the cable of a step at positions `x` (m).

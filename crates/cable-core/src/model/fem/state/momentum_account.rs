@@ -26,7 +26,7 @@ pub(in crate::model::fem) type Kinds = [Vec2; 4];
 
 /// The account of momentum since the caller's step began.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::fem) struct Account {
+pub(in crate::model::fem) struct MomentumSums {
     /// The time at which it began, s.
     pub(in crate::model::fem) from: f64,
     /// The time up to which it goes, s.
@@ -45,7 +45,7 @@ pub(in crate::model::fem) struct Account {
     pub(in crate::model::fem) older: Kinds,
 }
 
-impl Account {
+impl MomentumSums {
     /// Sets the end of the caller's step (s): the sum of its inner steps has round-off.
     pub(in crate::model::fem) fn ends_at(&mut self, time: f64) {
         self.to = time;

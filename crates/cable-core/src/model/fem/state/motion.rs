@@ -3,7 +3,7 @@
 
 use crate::math::{RigidPose, Vec2};
 use crate::model::fem::state::energy_account::Energies;
-use crate::model::fem::state::momentum_account::Account;
+use crate::model::fem::state::momentum_account::MomentumSums;
 use crate::model::hand::Hand;
 use crate::model::smoothed_target::SmoothedTarget;
 
@@ -60,7 +60,7 @@ pub(in crate::model::fem) struct NodalMotion {
     /// The pose of the robot's outline, if there is one.
     pub(in crate::model::fem) placement: Option<RigidPose>,
     /// The account of momentum since the caller's step began.
-    pub(in crate::model::fem) account: Account,
+    pub(in crate::model::fem) account: MomentumSums,
     /// The account of energy since the cable began to move.
     pub(in crate::model::fem) energies: Energies,
 }
@@ -119,7 +119,7 @@ impl NodalMotion {
         self.previous_arc_length.extend_from_slice(arc_length);
         self.step_before = 0.0;
         self.branch_forces.clear();
-        (self.account, self.energies) = (Account::unknown(), Energies::default());
+        (self.account, self.energies) = (MomentumSums::unknown(), Energies::default());
     }
 
     /// Begins anew after a break, in which forces jump: with the history from before, BDF2 would

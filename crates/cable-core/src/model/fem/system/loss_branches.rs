@@ -57,14 +57,14 @@ const ROUNDS: usize = 40;
 
 /// A relaxation branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::fem) struct Branch {
+pub(in crate::model::fem) struct RelaxationBranch {
     /// Relaxation time θ, s.
     time: f64,
     /// Stiffness y as a fraction of EA.
     part: f64,
 }
 
-impl Branch {
+impl RelaxationBranch {
     /// The values d and y g of a step of `h` (s).
     pub(in crate::model::fem) fn in_step(&self, h: f64) -> [f64; 2] {
         let r = h / self.time;
@@ -75,7 +75,7 @@ impl Branch {
 /// The loss of a cable's material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model::fem) struct Loss {
-    pub(in crate::model::fem) branches: Vec<Branch>,
+    pub(in crate::model::fem) branches: Vec<RelaxationBranch>,
     /// Time constant of the viscous part of the loss of a taut bar, s.
     pub(in crate::model::fem) viscous: f64,
 }
@@ -104,14 +104,14 @@ impl Loss {
 /// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor). Then each is multiplied
 /// repeatedly by the ratio of the wanted to the present loss factor at its own frequency, which
 /// keeps them positive.
-fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<Branch> {
+fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
     let decades = bounded((highest / lowest).ln() / RATIO.ln(), 0.0, MOST_DECADES);
     let steps = if decades > 1.0 { decades.ceil() } else { 1.0 };
     let ratio = if decades > 0.0 { RATIO.powf(decades / steps) } else { RATIO };
     let power = std::f64::consts::FRAC_2_PI * factor.atan();
     let part = (std::f64::consts::PI * power).sin() / std::f64::consts::PI * ratio.ln();
-    let mut branches: Vec<Branch> = (0..=steps as i32)
-        .map(|k| Branch { time: 1.0 / (lowest * ratio.powi(k)), part: part * ratio.powi(k).powf(power) })
+    let mut branches: Vec<RelaxationBranch> = (0..=steps as i32)
+        .map(|k| RelaxationBranch { time: 1.0 / (lowest * ratio.powi(k)), part: part * ratio.powi(k).powf(power) })
         .collect();
     for _ in 0..ROUNDS {
         let found: Vec<f64> = branches.iter().map(|b| loss_factor(&branches, 1.0 / b.time)).collect();
@@ -123,7 +123,7 @@ fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<Branch> {
 }
 
 /// Im M/Re M at a frequency (rad/s).
-fn loss_factor(branches: &[Branch], omega: f64) -> f64 {
+fn loss_factor(branches: &[RelaxationBranch], omega: f64) -> f64 {
     let (mut real, mut imaginary) = (1.0, 0.0);
     for b in branches {
         let r = omega * b.time;

@@ -3,7 +3,7 @@
 
 use crate::model::mass_spring::contact_memory::ContactMemory;
 use crate::model::mass_spring::dynamics::Clock;
-use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::dynamics::supports::SupportDrives;
 use crate::model::mass_spring::mesh::{Mesh, remesh};
 use crate::solution::{Cost, Warning};
@@ -17,7 +17,7 @@ part! {
         /// Warnings that have not been given to the user yet.
         warnings: Vec<Warning>,
         /// Account of momentum since the caller's step began.
-        account: Account,
+        account: MomentumSums,
     }
 }
 

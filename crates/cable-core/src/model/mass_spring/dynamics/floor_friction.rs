@@ -1,10 +1,10 @@
 //! The floor of a plan view brakes the nodes that slide on it.
 
-use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::Mesh;
 
 /// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s).
-pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut Account, h: f64) {
+pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut MomentumSums, h: f64) {
     let Some((mu, normal)) = mesh.problem.floor_friction else { return };
     for i in 0..mesh.position.len() {
         let before = if i > 0 { mesh.material_length[i - 1] } else { 0.0 };

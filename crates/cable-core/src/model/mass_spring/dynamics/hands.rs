@@ -4,7 +4,7 @@
 
 use crate::model::hand::Hand;
 use crate::model::mass_spring::dynamics::SubStep;
-use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};
 use crate::model::mass_spring::forces::reactions;
 use crate::model::mass_spring::mesh::Mesh;
@@ -30,7 +30,7 @@ pub(in crate::model::mass_spring) fn follow(drives: &mut SupportDrives, mesh: &M
 pub(in crate::model::mass_spring) fn pull(
     drives: &SupportDrives,
     mesh: &mut Mesh,
-    account: &mut Account,
+    account: &mut MomentumSums,
     SubStep { length_s: h, kick_s: kick }: SubStep,
 ) {
     for (hand, &node) in drives.hands.iter().zip(&mesh.support_node) {

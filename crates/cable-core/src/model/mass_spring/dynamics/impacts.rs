@@ -2,7 +2,7 @@
 
 use crate::math::{Vec2, bounded, larger};
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
-use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::Mesh;
 
 /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
@@ -11,7 +11,7 @@ use crate::model::mass_spring::mesh::Mesh;
 pub(in crate::model::mass_spring) fn apply(
     contacts: &mut ContactMemory,
     mesh: &mut Mesh,
-    account: &mut Account,
+    account: &mut MomentumSums,
     h: f64,
 ) {
     contacts.impulses.clear();
@@ -84,7 +84,7 @@ pub(in crate::model::mass_spring) fn displace(contacts: &ContactMemory, mesh: &M
 pub(in crate::model::mass_spring) fn resolve(
     contacts: &mut ContactMemory,
     mesh: &mut Mesh,
-    account: &mut Account,
+    account: &mut MomentumSums,
     h: f64,
 ) -> f64 {
     contacts.impulses.iter_mut().map(|contact| apply_one(contact, mesh, account, h)).fold(0.0, larger)
@@ -98,7 +98,7 @@ fn push(contact: &ContactImpulse, mesh: &mut Mesh, impulse: Vec2) {
 }
 
 /// Returns by how much (m) the impulse of a contact changes its place at the end of a sub-step.
-fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut Account, h: f64) -> f64 {
+fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut MomentumSums, h: f64) -> f64 {
     let tuning = &mesh.tuning.impact;
     let (a, b, c) = (contact.element, contact.element + 1, contact.gap.fraction);
     let inverse = |i: usize| if mesh.supported[i] { 0.0 } else { 1.0 / mesh.mass[i] };

@@ -29,7 +29,7 @@ pub(in crate::model::mass_spring) mod sub_step;
 pub(in crate::model::mass_spring) mod supports;
 
 pub(in crate::model::mass_spring) use chain_state::{ChainState, Report};
-pub(in crate::model::mass_spring) use momentum::Account;
+pub(in crate::model::mass_spring) use momentum::MomentumSums;
 pub(in crate::model::mass_spring) use rollback::{Rollback, transaction};
 pub(in crate::model::mass_spring) use runaway_guard::RunawayGuard;
 pub(in crate::model::mass_spring) use sub_step::integrate;

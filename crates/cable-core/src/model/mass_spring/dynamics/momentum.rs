@@ -8,7 +8,7 @@ use crate::solution::MomentumAccount;
 
 /// Impulses since the caller's step began, N s.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::mass_spring) struct Account {
+pub(in crate::model::mass_spring) struct MomentumSums {
     /// Momentum as the step began, kg m/s; None if no account is kept.
     before: Option<Vec2>,
     over_s: f64,
@@ -18,7 +18,7 @@ pub(in crate::model::mass_spring) struct Account {
     pub(in crate::model::mass_spring) contacts: Vec2,
 }
 
-impl Account {
+impl MomentumSums {
     /// The account of a step of `dt` (s) that begins now.
     pub(in crate::model::mass_spring) fn of_step(mesh: &Mesh, dt: f64) -> Self {
         let before = mesh.wheels.pulleys.is_empty().then(|| mesh.momentum());

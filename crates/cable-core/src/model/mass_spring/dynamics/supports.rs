@@ -4,7 +4,7 @@ use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::hand::Hand;
 use crate::model::mass_spring::dynamics::Clock;
-use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
 use crate::model::smoothed_target::{SmoothedTarget, held_warning, is_led};
 use crate::solution::Warning;
@@ -70,7 +70,7 @@ impl SupportDrives {
         mesh: &mut Mesh,
         clock: &Clock,
         max_speed_m_per_s: f64,
-        account: &mut Account,
+        account: &mut MomentumSums,
         h: f64,
     ) {
         let begins_s = clock.time_s - h;
@@ -118,7 +118,12 @@ impl SupportDrives {
 
     /// Takes back the kick of the time `held_s` (s) in which nodes that were let go as the sub-step
     /// began were still held: their supports carried their forces then.
-    pub(in crate::model::mass_spring) fn correct_released(&self, mesh: &mut Mesh, account: &mut Account, held_s: f64) {
+    pub(in crate::model::mass_spring) fn correct_released(
+        &self,
+        mesh: &mut Mesh,
+        account: &mut MomentumSums,
+        held_s: f64,
+    ) {
         for &i in &self.released {
             let impulse = mesh.force[i] * held_s;
             mesh.velocity[i] -= impulse / mesh.mass[i];

@@ -1,5 +1,4 @@
-//! These modules find equilibria and steps without inertia, and estimate the errors of their
-//! figures.
+//! These modules find equilibria and steps without inertia.
 //!
 //! | room | content |
 //! |---|---|
@@ -9,17 +8,14 @@
 //! | `system.rs` | gradient, banded Hessian and factor; σ in the place of a pulley node's x |
 //! | `assembly.rs` | energies of springs, loads and bending with their derivatives |
 //! | `contact_energy.rs` | contact springs and friction measured from anchors, as energies |
-//! | `mesh_error.rs` | errors by comparison with `spans`, `fem` or coarser meshes |
 
 pub(in crate::model::mass_spring) mod assembly;
 pub(in crate::model::mass_spring) mod contact_energy;
-pub(in crate::model::mass_spring) mod mesh_error;
 pub(in crate::model::mass_spring) mod newton;
 pub(in crate::model::mass_spring) mod quasi_static;
 pub(in crate::model::mass_spring) mod static_rest;
 pub(in crate::model::mass_spring) mod system;
 
 pub(in crate::model::mass_spring) use contact_energy::Anchors;
-pub(in crate::model::mass_spring) use mesh_error::{Estimate, Start};
 pub(in crate::model::mass_spring) use quasi_static::quasi_static_step;
 pub(in crate::model::mass_spring) use static_rest::find_equilibrium;

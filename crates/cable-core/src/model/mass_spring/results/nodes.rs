@@ -14,7 +14,7 @@ const TENSION_JUMP_TOLERANCE: f64 = 1e-9;
 
 /// A side of a pulley.
 #[derive(Clone, Copy)]
-enum Side {
+enum StrandSide {
     Before,
     Beyond,
 }
@@ -42,12 +42,12 @@ impl NodeReader<'_> {
 
     /// Internal force at the end of element `e` on a wheel, N: the force in its middle and the load
     /// from there to the end, which lies `arc` (m) on the wheel.
-    fn beside_pulley(&self, e: usize, side: Side, arc: f64) -> Vec2 {
+    fn beside_pulley(&self, e: usize, side: StrandSide, arc: f64) -> Vec2 {
         let path =
             self.mesh.material_length[e] - 0.5 * self.mesh.straight_length[e] - arc / self.mesh.problem.thermal_stretch;
         let sign = match side {
-            Side::Before => -1.0,
-            Side::Beyond => 1.0,
+            StrandSide::Before => -1.0,
+            StrandSide::Beyond => 1.0,
         };
         self.element_force(e) + self.mesh.problem.body_force(self.time_s) * (sign * path)
     }
@@ -96,8 +96,8 @@ impl NodeReader<'_> {
                 stress_pa: tension_n / self.mesh.problem.cable.area_m2(),
                 curvature_per_m: if p.radius > 0.0 { -p.sense / p.radius } else { 0.0 },
                 force_n: match k {
-                    0 => self.beside_pulley(p.node - 1, Side::Before, p.arc[0]),
-                    k if k == count => self.beside_pulley(p.node, Side::Beyond, p.arc[1]),
+                    0 => self.beside_pulley(p.node - 1, StrandSide::Before, p.arc[0]),
+                    k if k == count => self.beside_pulley(p.node, StrandSide::Beyond, p.arc[1]),
                     _ => t * tension_n,
                 }
                 .into(),

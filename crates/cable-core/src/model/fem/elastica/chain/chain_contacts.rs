@@ -3,7 +3,7 @@
 use crate::contact::Gap;
 use crate::contact::obstacle_pairs::Pair;
 use crate::math::{Vec2, larger};
-use crate::model::fem::elastica::chain::Chain;
+use crate::model::fem::elastica::chain::BarChain;
 use crate::model::fem::elastica::reference_curve::mobilised_friction;
 
 /// Depth to which a chain may lie in an obstacle during relaxation, as a fraction of the cable's
@@ -45,7 +45,7 @@ impl ChainContact {
     }
 }
 
-impl Chain<'_> {
+impl BarChain<'_> {
     /// Passes all pairs of chain and obstacles within `reach` (m) to `out`, with the bar of each.
     fn for_each_pair(&self, x: &[Vec2], reach: f64, mut out: impl FnMut(usize, Pair)) {
         let geometry = self.chain_input.problem.world.geometry();

@@ -1,7 +1,7 @@
 //! This module lays a chain along a curve, with a node at each support and load.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::elastica::chain::{Chain, ChainClamp, ChainInput, ClampedSide};
+use crate::model::fem::elastica::chain::{BarChain, ChainClamp, ChainInput, ClampedSide};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
@@ -73,7 +73,7 @@ fn stations(chain_input: ChainInput<'_>) -> Option<Vec<MeshStation>> {
     Some(stations)
 }
 
-impl<'a> Chain<'a> {
+impl<'a> BarChain<'a> {
     /// The chain along a curve, pushed out of obstacles. None if the scene has things that a chain
     /// does not model (pulleys, a robot, a rough floor, self-contact), or if the curve runs through
     /// an obstacle.

@@ -91,7 +91,7 @@ impl ChainClamp {
 
 /// A chain of bars.
 #[derive(Clone, Debug)]
-pub(super) struct Chain<'a> {
+pub(super) struct BarChain<'a> {
     pub(super) chain_input: ChainInput<'a>,
     /// Weight and wind, N per metre of arc length.
     body: Vec2,
@@ -126,7 +126,7 @@ pub(super) enum StabilityOutcome<'a> {
     /// The chain stays: the answer is stable.
     Stays,
     /// The chain runs away and rests elsewhere.
-    Leaves(Box<Chain<'a>>),
+    Leaves(Box<BarChain<'a>>),
     /// The chain stays where it is, but its second derivative is not positive definite: any
     /// disturbance would move it.
     Unstable,
@@ -151,7 +151,7 @@ pub(super) fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
 
 /// A chain at stable rest, released from the answer for a flexible cable, or from the route if that
 /// answer has folds. None if the chain does not come to rest.
-pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>> {
+pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<BarChain<'_>> {
     let problem = chain_input.problem;
     let usable = |l: &&CableSolution| l.nodes.len() > 1 && l.breaks.is_empty() && !is_folded(problem, l);
     let flexible = chain_input.friction_source.filter(usable);
@@ -160,8 +160,8 @@ pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>>
         return None;
     }
     let of_flexible =
-        flexible.and_then(|l| Chain::along(ChainInput { friction_source: flexible, ..chain_input }, &l.nodes, 1.0));
-    let of_route = || Chain::along(ChainInput { friction_source: None, ..chain_input }, &route, 1.0);
+        flexible.and_then(|l| BarChain::along(ChainInput { friction_source: flexible, ..chain_input }, &l.nodes, 1.0));
+    let of_route = || BarChain::along(ChainInput { friction_source: None, ..chain_input }, &route, 1.0);
     let mut chain = of_flexible.or_else(of_route)?;
     if chain.relax(1.0) != RestState::Stable {
         return None;
@@ -174,7 +174,7 @@ pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>>
 /// Releases a chain from an answer for the stiff cable, with the friction of that answer.
 pub(super) fn test_stability<'a>(chain_input: ChainInput<'a>, answer: &'a CableSolution) -> StabilityOutcome<'a> {
     let chain_input = ChainInput { friction_source: Some(answer), ..chain_input };
-    let Some(mut chain) = Chain::along(chain_input, &answer.nodes, 1.0) else { return StabilityOutcome::Unknown };
+    let Some(mut chain) = BarChain::along(chain_input, &answer.nodes, 1.0) else { return StabilityOutcome::Unknown };
     let from = chain.positions.clone();
     let state = chain.relax(REDUCED_RESISTANCE_FACTOR);
     let near = STABILITY_DISTANCE_BARS * chain.bar;
@@ -187,7 +187,7 @@ pub(super) fn test_stability<'a>(chain_input: ChainInput<'a>, answer: &'a CableS
     }
 }
 
-impl<'a> Chain<'a> {
+impl<'a> BarChain<'a> {
     /// The same cable with bars of half the length, released from this shape, and the state in
     /// which it ends.
     pub(super) fn halved(&self) -> Option<(Self, RestState)> {
@@ -202,7 +202,7 @@ impl<'a> Chain<'a> {
         (chain.relax(REDUCED_RESISTANCE_FACTOR) == RestState::Stable).then_some(chain)
     }
 
-    /// The chain along nodes; see [`Chain::along_curve`].
+    /// The chain along nodes; see [`BarChain::along_curve`].
     fn along(chain_input: ChainInput<'a>, nodes: &[Node], refinement: f64) -> Option<Self> {
         Self::along_curve(chain_input, &ReferenceCurve::new(nodes), refinement)
     }

@@ -11,7 +11,7 @@ use crate::energy::bending::{BendingEnergy, ClampBend};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::{BandFactor, BandMatrix, PivotingBand};
 use crate::math::{Mat2, Vec2, perp};
-use crate::model::fem::elastica::chain::Chain;
+use crate::model::fem::elastica::chain::BarChain;
 use crate::model::fem::elastica::chain::chain_contacts::ChainContact;
 
 /// Maximum number of changes of the active set in a step. Larger: the first steps pay for accuracy
@@ -76,7 +76,14 @@ fn add_force(right: &mut [f64], node: usize, f: Vec2) {
     right[2 * node + 1] += f.y;
 }
 
-impl Chain<'_> {
+/// Tells whether contacts may leave the active set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ContactOpening {
+    Allowed,
+    Forbidden,
+}
+
+impl BarChain<'_> {
     /// Stiffness of contacts, N/m.
     fn contact_stiffness(&self) -> f64 {
         self.scale / (PENALTY_DEPTH_FRACTION * self.chain_input.problem.radius)
@@ -98,7 +105,8 @@ impl Chain<'_> {
                 system.factor.solve_in_place(&mut right);
             }
             step.moves = right.chunks_exact(2).map(|d| Vec2::new(d[0], d[1])).collect();
-            step.contacts_settled = !self.update_active_set(&step.moves, set < RELEASE_ROUNDS);
+            let opening = if set < RELEASE_ROUNDS { ContactOpening::Allowed } else { ContactOpening::Forbidden };
+            step.contacts_settled = !self.update_active_set(&step.moves, opening);
             if step.contacts_settled {
                 break;
             }
@@ -106,17 +114,17 @@ impl Chain<'_> {
         Some(step)
     }
 
-    /// Closes the contacts whose gaps a step would close, and opens the others if they `may_open`:
+    /// Closes the contacts whose gaps a step would close, and opens the others if that is allowed:
     /// without that limit, two contacts could open and close by turns for ever. Returns whether any
     /// gap contradicts the set with which the step was solved.
-    fn update_active_set(&mut self, moves: &[Vec2], may_open: bool) -> bool {
+    fn update_active_set(&mut self, moves: &[Vec2], opening: ContactOpening) -> bool {
         let stiff = self.contact_stiffness();
         let mut changed = false;
         for t in &mut self.contacts {
             let moved = t.shares().iter().fold(0.0, |m, (k, a)| m + a * moves[*k].dot(&t.gap.normal));
             let gap = t.gap.gap_m + moved;
             changed |= t.active != (gap < 0.0);
-            t.active = gap < 0.0 || (t.active && !may_open);
+            t.active = gap < 0.0 || (t.active && opening == ContactOpening::Forbidden);
             // A new contact exerts its force from the next solution on.
             t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
         }

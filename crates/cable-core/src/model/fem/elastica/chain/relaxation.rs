@@ -10,7 +10,7 @@
 use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::elastica::chain::initial_mesh::PAY_OUT_RATE;
 use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
-use crate::model::fem::elastica::chain::{Chain, REDUCED_RESISTANCE_FACTOR};
+use crate::model::fem::elastica::chain::{BarChain, REDUCED_RESISTANCE_FACTOR};
 
 /// Maximum number of Newton steps. Usual are 10 to 20 from a flexible cable, and 200 to 600 from
 /// its route.
@@ -119,7 +119,7 @@ impl Resistance {
     }
 }
 
-impl Chain<'_> {
+impl BarChain<'_> {
     /// Relaxes the chain until it rests. `resistance` is the fraction of the first resistance that
     /// it begins with.
     pub(super) fn relax(&mut self, resistance: f64) -> RestState {
@@ -159,7 +159,8 @@ impl Chain<'_> {
                 resistance.now = larger(resistance.now, REDUCED_RESISTANCE_FACTOR * first);
             }
             resistance.near_rest = paid_out && whole && moved < NEAR_REST_BARS * self.bar;
-            resistance.adapt(part, moved < SHORT_STEP_BARS * self.bar);
+            let is_short = moved < SHORT_STEP_BARS * self.bar;
+            resistance.adapt(part, is_short);
         }
         RestState::NotFound
     }
@@ -338,7 +339,7 @@ mod tests {
             let (problem, straight) = strut(part)?;
             let chain_input =
                 ChainInput { problem: &problem, time_s: 0.0, dragged: &[None, None], friction_source: Some(&straight) };
-            let mut chain = Chain::along(chain_input, &straight.nodes, 1.0).ok_or("no chain")?;
+            let mut chain = BarChain::along(chain_input, &straight.nodes, 1.0).ok_or("no chain")?;
             assert_eq!(chain.relax(REDUCED_RESISTANCE_FACTOR), RestState::Stable, "{part}");
             let off = chain.positions.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
             assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");

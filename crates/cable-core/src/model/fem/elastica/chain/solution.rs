@@ -5,14 +5,14 @@
 //! contact force, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::elastica::chain::{Chain, ChainContact};
+use crate::model::fem::elastica::chain::{BarChain, ChainContact};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Distance between two contacts with one obstacle, in bars, up to which they are merged.
 const CONTACT_MERGE_BARS: f64 = 2.5;
 
-impl Chain<'_> {
+impl BarChain<'_> {
     /// Force of a contact on the cable, N.
     fn force_of(&self, t: &ChainContact) -> Vec2 {
         t.gap.normal * t.push + self.direction(t.node) * (t.mobilised * t.push)

@@ -2,7 +2,9 @@
 //! comes from a flexible cable, else like the nodes of its answer.
 
 use crate::math::{cross, perp};
-use crate::model::fem::elastica::boundary_value::{ANGLE, ARC, End, Joint, MOMENT, Piece, STATES, force, tangent};
+use crate::model::fem::elastica::boundary_value::{
+    ANGLE, ARC, ElasticaPiece, End, Joint, MOMENT, STATES, force, tangent,
+};
 use crate::model::fem::elastica::guess::ElasticaGuess;
 use crate::model::fem::free::nearest_turn;
 
@@ -13,7 +15,7 @@ enum PieceEnd {
     Last,
 }
 
-fn state_at(piece: &Piece, end: PieceEnd) -> Option<[f64; STATES]> {
+fn state_at(piece: &ElasticaPiece, end: PieceEnd) -> Option<[f64; STATES]> {
     match end {
         PieceEnd::First => piece.nodes.first(),
         PieceEnd::Last => piece.nodes.last(),

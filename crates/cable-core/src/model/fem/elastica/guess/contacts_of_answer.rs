@@ -3,7 +3,7 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, perp};
-use crate::model::fem::elastica::boundary_value::{Contact, Joint, Owner};
+use crate::model::fem::elastica::boundary_value::{ContactSurface, Joint, Owner};
 use crate::model::fem::elastica::chain::ChainContact;
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::elastica::reference_curve::{MobilisedFriction, mobilised_friction};
@@ -32,8 +32,13 @@ const SLIPPING_FRACTION: f64 = 0.999;
 
 /// The contact with the surface of a gap at `x`, where the cable has the direction `t`; None if no
 /// cable can lie on that surface.
-pub(in crate::model::fem::elastica) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Option<Contact> {
-    let line = Contact {
+pub(in crate::model::fem::elastica) fn contact_at(
+    problem: &Problem,
+    gap: &Gap,
+    x: Vec2,
+    t: Vec2,
+) -> Option<ContactSurface> {
+    let line = ContactSurface {
         owner: Owner::Obstacle(gap.obstacle),
         at: x - gap.normal * gap.gap_m,
         radius: None,
@@ -46,7 +51,7 @@ pub(in crate::model::fem::elastica) fn contact_at(problem: &Problem, gap: &Gap, 
         return Some(line);
     }
     let (center, radius) = round_of(problem.world.geometry(), gap.feature, 0.0, 0.0)?;
-    Some(Contact { at: center, radius: Some(radius), ..line })
+    Some(ContactSurface { at: center, radius: Some(radius), ..line })
 }
 
 /// The sense in which a cable of direction `t` passes a surface: +1 anticlockwise, −1 clockwise.
@@ -57,7 +62,7 @@ fn sense_of(normal: Vec2, t: Vec2) -> f64 {
 impl ElasticaGuess<'_> {
     /// Attaches a contact between two arc lengths (m), which is a point contact if they are equal.
     /// Its friction is read at `middle` (m).
-    fn attach_contact(&mut self, mut contact: Contact, [from, to]: [f64; 2], middle: f64) {
+    fn attach_contact(&mut self, mut contact: ContactSurface, [from, to]: [f64; 2], middle: f64) {
         self.mobilise(&mut contact, middle);
         let k = self.elastica.contacts.len();
         self.elastica.contacts.push(contact);
@@ -140,7 +145,7 @@ impl ElasticaGuess<'_> {
     /// Attaches the stretches of nodes that touch an obstacle or a pulley.
     pub(super) fn attach_touching_nodes(&mut self) {
         let within = CONTACT_DISTANCE_FRACTION * self.problem.radius + SAME_PLACE_FRACTION * self.problem.length;
-        let mut open: Option<(Contact, [f64; 2])> = None;
+        let mut open: Option<(ContactSurface, [f64; 2])> = None;
         let mut found = Vec::new();
         for (i, n) in self.answer.nodes.iter().enumerate() {
             let direction = self.direction_of_node(i);
@@ -172,7 +177,7 @@ impl ElasticaGuess<'_> {
     }
 
     /// The contact with the pulley at the place `x`, if there is one.
-    fn pulley_at(&self, x: Vec2, t: Vec2, within: f64) -> Option<Contact> {
+    fn pulley_at(&self, x: Vec2, t: Vec2, within: f64) -> Option<ContactSurface> {
         let pulleys = self.problem.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Pulley);
         for (k, s) in pulleys {
             let Some(center) = support_place(self.problem, k, self.time_s, self.dragged) else { continue };
@@ -182,7 +187,7 @@ impl ElasticaGuess<'_> {
             let d = x - center;
             let up = if s.side == PulleySide::Over { Vec2::y() } else { -Vec2::y() };
             let normal = if d.norm() > 0.5 * s.wheel_radius && s.wheel_radius > 0.0 { d / d.norm() } else { up };
-            return Some(Contact {
+            return Some(ContactSurface {
                 owner: Owner::Pulley(k),
                 at: center,
                 radius: Some(s.wheel_radius),
@@ -196,7 +201,7 @@ impl ElasticaGuess<'_> {
     }
 
     /// Gives a contact the friction mobilised at `s` (m) in the answer.
-    fn mobilise(&self, contact: &mut Contact, s: f64) {
+    fn mobilise(&self, contact: &mut ContactSurface, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {
                 let MobilisedFriction { coefficient, slips } =

@@ -18,7 +18,7 @@ mod pieces;
 
 use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Elastica, End, Joint};
-use crate::model::fem::elastica::chain::{Chain, ChainContact};
+use crate::model::fem::elastica::chain::{BarChain, ChainContact};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::place as support_place;
 use crate::problem::Problem;
@@ -83,7 +83,7 @@ impl Elastica {
     }
 
     /// Makes a first guess from a chain of bars at rest.
-    pub(super) fn from_chain(chain: &Chain<'_>) -> Option<Self> {
+    pub(super) fn from_chain(chain: &BarChain<'_>) -> Option<Self> {
         let chain_input = chain.chain_input;
         let contacts = chain_input.friction_source.map_or_else(Vec::new, |answer| answer.contacts.clone());
         let answer = CableSolution { nodes: chain.nodes().into(), contacts, ..CableSolution::default() };

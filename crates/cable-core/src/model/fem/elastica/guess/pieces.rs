@@ -1,7 +1,7 @@
 //! Contacts, holds and loads divide the cable of a first guess into pieces.
 
 use crate::math::Vec2;
-use crate::model::fem::elastica::boundary_value::{Contact, Elastica, End, Joint, Piece};
+use crate::model::fem::elastica::boundary_value::{ContactSurface, Elastica, ElasticaPiece, End, Joint};
 use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::places;
@@ -95,7 +95,7 @@ impl ElasticaGuess<'_> {
     fn leave_ends_to_their_holds(&mut self) {
         let (elastica, curve, length) = (&self.elastica, &self.curve, self.elastica.length);
         // `out`: +1 where the cable leaves the end, −1 where it comes to it.
-        let lies_from = |end: &End, contact: &Contact, out: f64| match end {
+        let lies_from = |end: &End, contact: &ContactSurface, out: f64| match end {
             // A clamp that points into the surface cannot turn the cable there.
             End::Held(at, Some(angle)) => {
                 let rises = out * Vec2::new(angle.cos(), angle.sin()).dot(&contact.gap(*at).1);
@@ -197,7 +197,12 @@ impl ElasticaGuess<'_> {
 
 /// A piece with its nodes along a curve between two arc lengths, m; `contact` is the one it lies
 /// on.
-fn piece_along(elastica: &Elastica, curve: &ReferenceCurve<'_>, contact: Option<usize>, [from, to]: [f64; 2]) -> Piece {
+fn piece_along(
+    elastica: &Elastica,
+    curve: &ReferenceCurve<'_>,
+    contact: Option<usize>,
+    [from, to]: [f64; 2],
+) -> ElasticaPiece {
     let l = to - from;
     let count = if contact.is_some() { LYING_ELEMENTS } else { FREE_ELEMENTS };
     let layers = [from, to].map(|s| elastica.layer_thickness(curve.tension_at(s)));
@@ -214,5 +219,5 @@ fn piece_along(elastica: &Elastica, curve: &ReferenceCurve<'_>, contact: Option<
         let moment = contact.and_then(|k| elastica.contacts.get(k)).map_or(0.0, |c| elastica.bending * c.curvature());
         [at.x, at.y, angle, moment, f.x, f.y, s, l]
     };
-    Piece { contact, nodes: grid.iter().map(node).collect(), grid }
+    ElasticaPiece { contact, nodes: grid.iter().map(node).collect(), grid }
 }

@@ -63,7 +63,7 @@ pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
 
 /// One bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::fem) struct Bar {
+pub(in crate::model::fem) struct BeamElement {
     /// Arc length of its first node and its own, m.
     pub(in crate::model::fem) start: f64,
     pub(in crate::model::fem) ds: f64,
@@ -78,7 +78,7 @@ pub struct Beam {
     pub(in crate::model::fem) material: Material,
     pub(in crate::model::fem) bending: f64,
     pub(super) ends: Vec<SpanEnds>,
-    pub(in crate::model::fem) bars: Vec<Bar>,
+    pub(in crate::model::fem) bars: Vec<BeamElement>,
     pub(in crate::model::fem) angles: Vec<f64>,
     /// Prescribed angles: which, and its value, rad.
     clamps: Vec<(usize, f64)>,
@@ -148,7 +148,11 @@ impl Beam {
             let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
             let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
             let nodes = places(layers, length, station.element_count);
-            beam.bars.extend(nodes.windows(2).map(|p| Bar { start: start + p[0], ds: p[1] - p[0], stretch: k }));
+            beam.bars.extend(nodes.windows(2).map(|p| BeamElement {
+                start: start + p[0],
+                ds: p[1] - p[0],
+                stretch: k,
+            }));
         }
         beam.lie_as_flexible();
         beam.material.body = body;
@@ -226,7 +230,12 @@ impl Beam {
         fine.bars = self
             .bars
             .iter()
-            .flat_map(|b| [Bar { ds: 0.5 * b.ds, ..*b }, Bar { start: b.start + 0.5 * b.ds, ds: 0.5 * b.ds, ..*b }])
+            .flat_map(|b| {
+                [
+                    BeamElement { ds: 0.5 * b.ds, ..*b },
+                    BeamElement { start: b.start + 0.5 * b.ds, ds: 0.5 * b.ds, ..*b },
+                ]
+            })
             .collect();
         fine.angles = vec![self.angles[0]];
         for e in 0..self.bars.len() {
@@ -296,7 +305,7 @@ impl Beam {
     }
 
     /// The force in a bar at `x` from 0 to 1, N.
-    pub(in crate::model::fem) fn force(&self, bar: &Bar, x: f64, starts: &[Vec2]) -> Vec2 {
+    pub(in crate::model::fem) fn force(&self, bar: &BeamElement, x: f64, starts: &[Vec2]) -> Vec2 {
         starts[bar.stretch]
             - self.material.body * (bar.start + x * bar.ds - self.layout.stations[bar.stretch].arc_length)
     }

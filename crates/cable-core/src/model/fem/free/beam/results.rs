@@ -2,9 +2,18 @@
 
 use crate::math::{GAUSS_3, Vec2, larger, perp};
 use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, dot};
-use crate::model::fem::free::results::Point;
+use crate::model::fem::free::results::SolutionPoint;
 use crate::model::fem::free::stations::Station;
 use crate::numerics::bisect;
+
+/// The points at which a cable is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum PointDensity {
+    /// Its nodes.
+    Nodes,
+    /// Its nodes, and as many points between them as straight lines need to draw it.
+    Drawn,
+}
 
 /// Greatest distance of the cable from the straight line between two points, as a fraction of its
 /// length. Larger: places read between points are off by as much (with the nodes alone by 1e-3 of a
@@ -67,21 +76,17 @@ impl Beam {
 
     /// All nodes.
     #[must_use]
-    pub fn node_points(&self) -> Vec<Point> {
-        let smooth = false;
-        self.points(smooth)
+    pub fn node_points(&self) -> Vec<SolutionPoint> {
+        self.points(PointDensity::Nodes)
     }
 
     /// All nodes, with as many points between them as straight lines need to draw the cable.
     #[must_use]
-    pub fn drawn_points(&self) -> Vec<Point> {
-        let smooth = true;
-        self.points(smooth)
+    pub fn drawn_points(&self) -> Vec<SolutionPoint> {
+        self.points(PointDensity::Drawn)
     }
 
-    /// The points to draw if `smooth`, else all nodes.
-    #[must_use]
-    pub fn points(&self, smooth: bool) -> Vec<Point> {
+    fn points(&self, density: PointDensity) -> Vec<SolutionPoint> {
         let n = self.bars.len();
         let (starts, forces) = (self.stretch_starts(), self.station_forces());
         let curvatures: Vec<[f64; 2]> = (0..=n).map(|v| self.curvatures(v, &starts)).collect();
@@ -111,9 +116,9 @@ impl Beam {
             };
             let force = if v == n { before } else { after };
             let [bent_before, bent_after] = curvatures[v];
-            out.push(Point { arc_length, at, tension, curvature: greater(bent_before, bent_after), force });
+            out.push(SolutionPoint { arc_length, at, tension, curvature: greater(bent_before, bent_after), force });
             if v < n {
-                if smooth {
+                if density == PointDensity::Drawn {
                     self.between(v, at, [curvatures[v][1], curvatures[v + 1][0]], &starts, &mut out);
                 }
                 at += chord(v);
@@ -124,7 +129,7 @@ impl Beam {
 
     /// Appends the points inside bar `e`, which begins at `at`, so that the cable leaves the
     /// straight line between two of them by `FLATNESS` at most.
-    fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<Point>) {
+    fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<SolutionPoint>) {
         let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
         let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
         // A sagitta κl²/8 with κ of the half that turns more.
@@ -148,7 +153,7 @@ impl Beam {
             }
             let force = self.force(bar, x, starts);
             let tension = force.dot(&self.tangent(self.angle(e, x)));
-            out.push(Point { arc_length: bar.start + x * bar.ds, at, force, tension, curvature: bent });
+            out.push(SolutionPoint { arc_length: bar.start + x * bar.ds, at, force, tension, curvature: bent });
             from = x;
         }
         // The shear gives the change of curvature along the bar, and its nodes give the values at

@@ -8,8 +8,10 @@
 
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;
-use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::chain_model::ChainModel;
+use crate::model::mass_spring::results;
 use crate::model::spans::SpansModel;
+use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
 use crate::solution::{CableSolution, ErrorEstimates};
@@ -25,7 +27,7 @@ pub(in crate::model::mass_spring) enum ErrorEstimator {
     /// No model yet: a better answer is known for the place where the cable rests.
     AtRest,
     /// A mesh of elements twice as long.
-    Coarse(Box<MassSpringModel>),
+    Coarse(Box<ChainModel>),
 }
 
 /// An estimator and the errors that it found.
@@ -37,7 +39,7 @@ pub(in crate::model::mass_spring) struct Estimate {
 
 /// The shape from which a coarser mesh comes to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::mass_spring) enum Start {
+pub(in crate::model::mass_spring) enum CoarseMeshStart {
     /// The first shape of the scene.
     Scene,
     /// The shape in which the finer mesh is.
@@ -46,9 +48,9 @@ pub(in crate::model::mass_spring) enum Start {
 
 impl Estimate {
     /// Estimates the errors of a model at rest, which came there from a `start`.
-    pub(in crate::model::mass_spring) fn at_rest(model: &MassSpringModel, start: Start) -> Self {
+    pub(in crate::model::mass_spring) fn at_rest(model: &ChainModel, start: CoarseMeshStart) -> Self {
         let (problem, targets) = (&model.chain.mesh.problem, &model.chain.drives.targets);
-        if start == Start::Scene {
+        if start == CoarseMeshStart::Scene {
             let flexible = problem.bending_stiffness == 0.0;
             if flexible && let Ok(Some(exact)) = initial_equilibrium(problem, model.settings, targets, None) {
                 let errors = errors_beside(model, &exact.answer);
@@ -70,9 +72,9 @@ impl Estimate {
     }
 
     /// Follows a model through a quasi-static step of `dt_s`.
-    pub(in crate::model::mass_spring) fn follow(self, model: &MassSpringModel, dt_s: f64) -> Self {
+    pub(in crate::model::mass_spring) fn follow(self, model: &ChainModel, dt_s: f64) -> Self {
         let Self { estimator, errors } = self;
-        let renewed = || coarser(model, 2, Start::Present).map(|coarse| Self::beside(model, errors, coarse));
+        let renewed = || coarser(model, 2, CoarseMeshStart::Present).map(|coarse| Self::beside(model, errors, coarse));
         match estimator {
             ErrorEstimator::None => None,
             ErrorEstimator::AtRest => renewed(),
@@ -91,7 +93,7 @@ impl Estimate {
             }
             ErrorEstimator::Coarse(mut coarse) => {
                 coarse.chain.drives.targets.clone_from(&model.chain.drives.targets);
-                let stepped = coarse.advance(dt_s, Inertia::QuasiStatic).is_ok();
+                let stepped = coarse.advance(dt_s, Inertia::QuasiStatic, &mut TensionGauge::off()).is_ok();
                 stepped.then(|| Self::beside(model, errors, *coarse))
             }
         }
@@ -100,7 +102,7 @@ impl Estimate {
 
     /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps
     /// were that it remembers.
-    fn beside(model: &MassSpringModel, before: ErrorEstimates, coarse: MassSpringModel) -> Self {
+    fn beside(model: &ChainModel, before: ErrorEstimates, coarse: ChainModel) -> Self {
         let errors = before.componentwise_max(&ErrorEstimates::between(&coarse.solution(), &model.solution()));
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
@@ -108,7 +110,7 @@ impl Estimate {
 
 /// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than was
 /// asked for.
-fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
+fn errors_beside_fem(model: &ChainModel) -> Option<ErrorEstimates> {
     let settings = Settings { segments: None, ..model.settings };
     let mut fem = FemModel::new(model.chain.mesh.problem.clone(), settings).ok()?;
     for (k, at) in model.chain.drives.targets.iter().enumerate() {
@@ -122,26 +124,25 @@ fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
     is_known.then(|| ErrorEstimates::between(&model.solution(), &better).plus(&better.errors))
 }
 
-fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimates {
+fn errors_beside(model: &ChainModel, exact: &CableSolution) -> ErrorEstimates {
     let rounding = ErrorEstimates::rounding(exact, &model.chain.mesh.problem);
     ErrorEstimates::between(&model.solution(), exact).plus(&rounding)
 }
 
 /// The same cable at rest on elements `times` as long.
-fn coarser(model: &MassSpringModel, times: usize, start: Start) -> Option<MassSpringModel> {
+fn coarser(model: &ChainModel, times: usize, start: CoarseMeshStart) -> Option<ChainModel> {
     let elements = model.chain.mesh.rest_length.len();
     if elements < 2 * MIN_COMPARED_ELEMENTS {
         return None;
     }
     let settings = Settings { segments: Some(elements / times), ..model.settings };
     let mut coarse =
-        MassSpringModel::with_tuning(model.chain.mesh.problem.clone(), settings, model.chain.mesh.tuning.clone())
-            .ok()?;
+        ChainModel::new(model.chain.mesh.problem.clone(), settings, model.chain.mesh.tuning.clone()).ok()?;
     coarse.chain.drives.targets.clone_from(&model.chain.drives.targets);
-    if start == Start::Present {
-        let state = model.state();
+    if start == CoarseMeshStart::Present {
+        let state = results::state(&model.chain);
         coarse = coarse.on_shape(&state, &coarse.support_arc_lengths(&state))?;
     }
-    coarse.settle_alone().ok()?;
+    coarse.settle().ok()?;
     Some(coarse)
 }

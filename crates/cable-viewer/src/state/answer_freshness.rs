@@ -49,9 +49,9 @@ impl AppState {
         self.freshness() == Freshness::Current
     }
 
-    /// An answer is being sought: what to say of it, and how long that has taken, s.
+    /// Time for which an answer has been sought that is not on screen yet, s.
     #[must_use]
-    pub fn solving(&self) -> Option<f64> {
+    pub fn solving_for_s(&self) -> Option<f64> {
         let waits = matches!(self.freshness(), Freshness::Solving | Freshness::Draft)
             || (self.freshness() == Freshness::Outdated && self.live.snapshot.edit < self.solver.edits_sent);
         self.solver.solving_s.filter(|_| waits)
