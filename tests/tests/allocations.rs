@@ -22,7 +22,7 @@ fn warm_steps(model: &mut dyn Mechanics, dt_s: f64) -> u64 {
     let mut gauge = TensionGauge::over(4e-3);
     let mut steps = || {
         for _ in 0..24 {
-            gauge.watch(Limit::default());
+            gauge.watch([Limit::default()]);
             model.advance_gauged(dt_s, Inertia::Dynamic, &mut gauge).unwrap();
             assert!(gauge.peaks().is_some());
         }
