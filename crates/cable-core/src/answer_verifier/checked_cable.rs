@@ -139,11 +139,15 @@ impl CheckedCable<'_> {
     /// Returns the greatest distributed load on the cable, N/m: weight and wind, and in plan view
     /// the floor's friction.
     pub fn spread_load(&self) -> f64 {
+        self.body.norm() + self.floor_friction_n_per_m()
+    }
+
+    /// Returns the greatest friction of the floor of a plan view on the cable, N/m; 0 without one.
+    pub fn floor_friction_n_per_m(&self) -> f64 {
         if !self.floor_rubs() {
-            return self.body.norm();
+            return 0.0;
         }
-        let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
-        self.body.norm() + self.cable.friction * weight
+        self.cable.friction * self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2
     }
 
     /// Internal force just before a node that is not the first, N, with all contact forces of the

@@ -49,11 +49,21 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     }
     let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;
-    // A force that may be out of balance is no compression.
-    let noise = BALANCE_FRACTION * checked.scale;
+    // A force that may be out of balance is no compression, and a floor that rubs holds some.
+    let noise = larger(BALANCE_FRACTION * checked.scale, held_by_floor(checked, stiffness));
     if let Some((bar, push, most)) = excess(&bars, stiffness, ends).filter(|(_, push, _)| !(*push <= noise)) {
         found.report(checked.finding(Law::Stability, first_node[bar], push, most));
     }
+}
+
+/// The compression (N) up to which the floor of a plan view holds a cable of this bending stiffness
+/// (N·m²) that lies aside of a straight line by its own radius r, in waves of any length.
+///
+/// A wave r sin kx needs r (P k² − EI k⁴) per metre to be held, at most r P²/4EI (with k² = P/2EI),
+/// and the floor gives μw. (As pipelines on a sea bed: R. E. Hobbs, "In-service buckling of heated
+/// pipelines", Journal of Transportation Engineering 110(2), 1984.)
+fn held_by_floor(checked: &CheckedCable<'_>, stiffness: f64) -> f64 {
+    (4.0 * stiffness * checked.floor_friction_n_per_m() / (0.5 * checked.cable.diameter_m)).sqrt()
 }
 
 /// A part of the cable between two nodes.

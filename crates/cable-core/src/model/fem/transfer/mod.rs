@@ -59,7 +59,7 @@ impl Stepper {
         self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
         let touches = !self.cable.problem.world.is_empty() || self.cable.problem.floor_friction.is_some();
-        if moves || !touches || self.cable.contacts.self_contacts.shape.is_on() {
+        if moves || !touches || self.cable.touches_itself() {
             return Ok(());
         }
         self.rollback.save(&self.cable);
