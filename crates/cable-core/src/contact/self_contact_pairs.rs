@@ -372,7 +372,8 @@ mod tests {
         let mut shape = SelfContact::of_diameter(0.02);
         let mut x: Vec<Vec2> = (0..=40).map(|k| Vec2::new(0.05 * f64::from(k), 0.0)).collect();
         let mut s = arc(&x);
-        (x.insert(21, x[20]), s.insert(21, s[20]));
+        x.insert(21, x[20]);
+        s.insert(21, s[20]);
         shape.break_at(20, &x, &s, reach);
         let pairs = |shape: &SelfContact, x: &[Vec2]| {
             let mut found = Vec::new();
