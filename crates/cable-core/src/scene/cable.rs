@@ -64,7 +64,7 @@ pub struct Cable {
     /// Elements; left out, the model chooses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<usize>,
-    /// True if the cable is an obstacle to itself.
+    /// True if the cable is an obstacle to itself, and its pieces to each other where it breaks.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_contact: bool,
     /// The route along which the cable is first laid, m; if it is empty, the cable is laid straight

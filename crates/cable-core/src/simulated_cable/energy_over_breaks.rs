@@ -7,25 +7,11 @@
 //! accounts of the present ones.
 
 use super::SimulatedCable;
+use super::former_energy::{FormerEnergy, Replacement};
 use super::piece::Piece;
 use crate::math::larger;
 use crate::model::Mechanics;
 use crate::solution::{Energy, EnergyAccount};
-
-/// The account of models that were replaced.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FormerEnergy {
-    account: EnergyAccount,
-    /// The time at which it began, s.
-    from_s: f64,
-}
-
-/// The reason why a model is replaced.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Replacement {
-    Break,
-    Edit,
-}
 
 impl SimulatedCable {
     /// Adds the account of a model that `next` ones replace in its present state; `answer` is its

@@ -7,7 +7,7 @@
 //! | `piece.rs` | one piece with its model, and its last answer |
 //! | `break_search.rs` | a step of a piece, and the instant in it at which the piece breaks |
 //! | `split.rs` | the pieces that replace one that broke, and pulleys that their ends run off |
-//! | `energy_over_breaks.rs` | the energy account of a cable whose models were replaced |
+//! | `energy_over_breaks.rs`, `former_energy.rs` | the energy account of a cable whose models were replaced |
 //! | `support_targets.rs` | supports that are dragged or pulled, and the robot's pose |
 //! | `obstacles_in_reach.rs` | obstacles that a cable comes to which were out of its reach |
 //! | `handover.rs` | the same cable in another state, by another model or after an edit |
@@ -25,6 +25,7 @@ mod advance;
 mod answer;
 mod break_search;
 mod energy_over_breaks;
+mod former_energy;
 mod handover;
 mod obstacles_in_reach;
 mod piece;
@@ -36,7 +37,7 @@ mod tests;
 
 use std::sync::Arc;
 
-use self::energy_over_breaks::FormerEnergy;
+use self::former_energy::FormerEnergy;
 use self::piece::Piece;
 use self::support_speed_limit::too_fast;
 use self::support_targets::{SupportGrip, SupportTarget, Targets};

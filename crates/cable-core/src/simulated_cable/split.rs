@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::SimulatedCable;
 use super::break_search::BreakPoint;
-use super::energy_over_breaks::Replacement;
+use super::former_energy::Replacement;
 use super::piece::Piece;
 use crate::breakage::{Break, CablePart, Cut, rupture};
 use crate::error::SolveError;
