@@ -115,3 +115,37 @@ fn three_hundred_rests_and_a_hundred_motions() {
         assert!(50 * refused.len() <= asked);
     }
 }
+
+/// A stiff cable that was laid in a bend on a floor that rubs stays there, and is drawn straight
+/// from there: it rested as a frictionless elastica does, an arc on the other side (6 of 6 shapes),
+/// and a bend that was drawn out was refused, because a free column would buckle (30 of 40).
+#[test]
+fn issue_016_a_stiff_cable_stays_where_it_was_laid() {
+    for (waves, high, stiffness) in [(1.0, 0.3, 1.4), (2.0, 0.4, 1.4), (3.0, 0.3, 5.0)] {
+        let at = |k: i32| {
+            let part = f64::from(k) / 20.0;
+            [6.0 * part, high * (waves * std::f64::consts::PI * part).sin()]
+        };
+        let mut scene = catalog::hanging_span();
+        (scene.view, scene.obstacles) = (View::Plan, Vec::new());
+        scene.loads.clear();
+        let c = &mut scene.cables[0];
+        c.route_m = (0..=20).map(at).collect();
+        c.length_m = c.route_m.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum();
+        (c.linear_density_kg_per_m, c.axial_stiffness_n, c.friction) = (1.25, 2e6, 0.5);
+        (c.diameter_m, c.bending_stiffness_n_m2, c.segments, c.preset) = (0.028, stiffness, None, None);
+        let out = 0.7 * (c.length_m - 6.0);
+        let mut end = Support::fixed("b", [6.0, 0.0]);
+        end.motion = Some(Motion { times_s: vec![0.0, 3.0], points_m: vec![[6.0, 0.0], [6.0 + out, 0.0]] });
+        c.supports = vec![Support::fixed("a", [0.0, 0.0]), end];
+        let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+        let rest = sim.settle().unwrap();
+        let off =
+            |n: &cable_core::solution::Node| (n.y_m - high * (waves * std::f64::consts::PI * n.x_m / 6.0).sin()).abs();
+        let most = rest.cables[0].nodes.iter().map(off).fold(0.0, f64::max);
+        assert!(most < 0.03, "{waves} half waves: {most} m off its route");
+        for step in 0..60 {
+            sim.step_quasi_static(0.05).unwrap_or_else(|e| panic!("{waves} half waves, step {step}: {e}"));
+        }
+    }
+}
