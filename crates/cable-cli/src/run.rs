@@ -251,15 +251,15 @@ const MAX_PRINTED_WARNINGS: usize = 20;
 struct WarningLog {
     count: usize,
     lines: Vec<String>,
-    active: Vec<(WarningKind, String)>,
+    active: Vec<Warning>,
 }
 
 impl WarningLog {
     fn update<'w>(&mut self, warnings: impl Iterator<Item = &'w Warning>, now_s: f64) {
         let mut active = Vec::new();
         for w in warnings {
-            active.push((w.kind, w.cable.clone()));
-            if self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
+            active.push(w.clone());
+            if self.active.iter().any(|before| is_same(before, w)) {
                 continue;
             }
             self.count += 1;
@@ -282,6 +282,12 @@ impl WarningLog {
         }
         out
     }
+}
+
+/// True if a warning was there before. A cable may break in several places, one after the other.
+fn is_same(before: &Warning, now: &Warning) -> bool {
+    let same_place = now.kind != WarningKind::Broken || before.arc_length_m == now.arc_length_m;
+    before.kind == now.kind && before.cable == now.cable && same_place
 }
 
 /// Time between two checks for a signal, s. A user would notice a longer time at the end; a shorter
@@ -486,4 +492,24 @@ fn end_with_error(outputs: &mut Outputs, simulation: &Simulation, error: SolveEr
     }
     let place = outputs.folder.place().unwrap_or_else(|| outputs.arguments.out.clone());
     Failure::Run { reached_s, out: place, error: Box::new(error) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cable_core::solution::WarningCause;
+
+    /// Only the first break of a cable was printed, though `events.csv` has all.
+    #[test]
+    fn issue_016_each_break_is_listed_once() {
+        let broke = |arc_length_m: f64| {
+            let cause = WarningCause::Broke { time_s: 1.0, over_s: 0.0, detached_from: None };
+            Warning::new(cause, "cable", arc_length_m, [150.0, 150.0])
+        };
+        let (mut log, [first, second]) = (WarningLog::default(), [broke(2.0), broke(3.0)]);
+        log.update([&first].into_iter(), 1.0);
+        log.update([&first].into_iter(), 2.0);
+        log.update([&second, &first].into_iter(), 3.0);
+        assert_eq!((log.count, log.lines.len()), (2, 2), "{:?}", log.lines);
+    }
 }
