@@ -2,7 +2,7 @@
 
 use cable_core::math::Point;
 use cable_core::scene::preset::{RobotPreset, robot_preset};
-use cable_core::scene::{Pose, RobotTask};
+use cable_core::scene::{Pose, RobotTask, View};
 
 use crate::state::AppState;
 use crate::units::labels;
@@ -19,11 +19,25 @@ pub fn robot_pose(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
     Some((pose, preset))
 }
 
-/// Its outline in the world, m; empty where there is no robot or no such preset.
+/// Its outline in the world, m; empty where there is no robot or no such preset. Seen from above it
+/// is a box as wide as its tracks are apart.
 #[must_use]
 pub fn robot_outline(state: &AppState) -> Vec<Point> {
     let Some((pose, preset)) = robot_pose(state) else { return Vec::new() };
-    preset.outline_m.iter().map(|&p| pose.place(p)).collect()
+    match state.document.scene.view {
+        View::Elevation => preset.outline_m.iter().map(|&p| pose.place(p)).collect(),
+        View::Plan => {
+            let along = extent(preset.outline_m.iter().map(|p| p[0]));
+            let half = 0.5 * preset.width_m.value;
+            let [rear, front] = along;
+            [[rear, -half], [front, -half], [front, half], [rear, half]].map(|p| pose.place(p)).into()
+        }
+    }
+}
+
+/// The least and the greatest of some numbers.
+pub fn extent(of: impl Iterator<Item = f64>) -> [f64; 2] {
+    of.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
 /// The legs that lead to a place: index, where, m, and what it says.

@@ -74,6 +74,20 @@ fn a_robot_turns_its_back_to_where_the_cable_comes_from() {
     assert!(hitch[0] > robot.at_m[0] && hitch[0].abs() < 1.0, "{hitch:?}, {:?}", robot.at_m);
 }
 
+/// In a plan view the robot was drawn from the side.
+#[test]
+fn issue_020_a_robot_in_a_plan_view_is_seen_from_above() {
+    let mut scene = catalog::robot_drive();
+    scene.view = cable_core::scene::View::Plan;
+    scene.obstacles.clear();
+    let wide = preset::robot_preset(&scene.robot.as_ref().unwrap().preset).unwrap().width_m.value;
+    let harness = tall(scene);
+    let outline = cable_viewer::geometry::robot::robot_outline(state(&harness));
+    let hitch = state(&harness).document.scene.hitch_m().unwrap();
+    let [low, high] = cable_viewer::geometry::robot::extent(outline.iter().map(|p| p[1]));
+    assert!((high - low - wide).abs() < 1e-9 && (0.5 * (low + high) - hitch[1]).abs() < 1e-9, "{outline:?} {hitch:?}");
+}
+
 #[test]
 fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
     let mut harness = tall(catalog::hanging_span());

@@ -1,19 +1,21 @@
-//! The robot is drawn to scale: body, tracks, hitch.
+//! The robot is drawn to scale, from the side or from above: body, tracks, hitch.
 
 use cable_core::math::Point;
 use cable_core::problem::OUTLINE_NAME;
 use cable_core::scene::preset::RobotPreset;
-use cable_core::scene::{Heading, Pose};
+use cable_core::scene::{Heading, Pose, View};
 use cable_core::solution::Going;
 use egui::{Color32, Mesh, Pos2, Stroke};
 
 use crate::canvas::canvas_view::CanvasView;
-use crate::geometry::robot::{robot_outline, robot_pose};
+use crate::geometry::robot::{extent, robot_outline, robot_pose};
 use crate::geometry::triangulate::triangulate;
 use crate::state::{AppState, Item};
 
 /// Height of the tracks as a part of the robot's height: drawn, not published.
 const TRACK_HEIGHT: f64 = 0.28;
+/// Width of a track as a part of the width across both: drawn, not published.
+const TRACK_WIDTH: f64 = 0.25;
 /// Wheels drawn in a track.
 const WHEELS: u8 = 4;
 
@@ -26,7 +28,11 @@ pub fn title(state: &AppState) -> Option<(Point, String)> {
         None | Some(Going::Standing | Going::Driving) => preset.name.clone(),
         Some(going) => format!("{}: {}", preset.name, going.name()),
     };
-    Some((pose.place([0.0, preset.height_m.value]), text))
+    let top = match state.document.scene.view {
+        View::Elevation => preset.height_m.value,
+        View::Plan => 0.5 * preset.width_m.value,
+    };
+    Some((pose.place([0.0, top]), text))
 }
 
 /// Draws it.
@@ -50,8 +56,13 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let body: Vec<Pos2> = points.iter().map(|&p| view.at(p)).collect();
     view.avoid_area(egui::Rect::from_points(&body));
     view.painter.add(egui::Shape::closed_line(body, line));
-    tracks(view, &pose, preset);
-    touched(view, state, &pose, preset);
+    match state.document.scene.view {
+        View::Elevation => {
+            tracks(view, &pose, preset);
+            touched(view, state, &pose, preset);
+        }
+        View::Plan => tracks_from_above(view, &pose, preset),
+    }
     let hitch = view.at(pose.hitch_m(preset, state.document.scene.view));
     view.painter.circle(hitch, 4.0, Color32::TRANSPARENT, Stroke::new(1.6, view.palette.support));
 }
@@ -73,11 +84,28 @@ fn touched(view: &CanvasView<'_>, state: &AppState, pose: &Pose, preset: &RobotP
     view.painter.extend(egui::Shape::dashed_line(&ring, line, 4.0, 3.0));
 }
 
+/// Where its tracks begin and end along it, m.
+fn foot(preset: &RobotPreset) -> [f64; 2] {
+    let height = TRACK_HEIGHT * preset.height_m.value;
+    extent(preset.outline_m.iter().filter(|p| p[1] < height).map(|p| p[0]))
+}
+
+/// A belt on either side.
+fn tracks_from_above(view: &CanvasView<'_>, pose: &Pose, preset: &RobotPreset) {
+    let ([low, high], half) = (foot(preset), 0.5 * preset.width_m.value);
+    let inner = half * (1.0 - 2.0 * TRACK_WIDTH);
+    let stroke = Stroke::new(1.2, view.palette.surface);
+    for side in [-1.0, 1.0] {
+        let corners = [[low, inner], [high, inner], [high, half], [low, half]];
+        let belt = corners.map(|[x, y]| view.at(pose.place([x, side * y])));
+        view.painter.add(egui::Shape::convex_polygon(belt.into(), view.palette.hatch, stroke));
+    }
+}
+
 /// A belt with wheels along the foot of the outline.
 fn tracks(view: &CanvasView<'_>, pose: &Pose, preset: &RobotPreset) {
     let height = TRACK_HEIGHT * preset.height_m.value;
-    let foot = preset.outline_m.iter().filter(|p| p[1] < height).map(|p| p[0]);
-    let (low, high) = foot.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let [low, high] = foot(preset);
     let radius = 0.5 * height;
     if !(low + height < high) {
         return;
