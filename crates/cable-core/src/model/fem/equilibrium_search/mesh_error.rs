@@ -47,7 +47,7 @@ pub(in crate::model::fem) struct TwoMeshes {
 /// Tells whether the comparison may change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshRefinement {
-    /// MeshRefinement is allowed: the scene leaves the number of bars open.
+    /// Refinement is allowed: the scene leaves the number of bars open.
     Allowed,
     /// The scene or the settings give the number of bars.
     Forbidden,
