@@ -131,7 +131,7 @@ fn gap_of_pieces(cable: &CableSolution, diameter: f64, beside: f64) -> f64 {
     least - diameter
 }
 
-/// What was seen in a run.
+/// The observations of a run.
 #[derive(Debug, Default)]
 struct Seen {
     /// Instants at which bars cross.
@@ -151,7 +151,7 @@ struct Seen {
     risen: f64,
     /// Greatest energy that is not accounted for, of what was exchanged.
     unaccounted: f64,
-    /// What breaks changed, of what was exchanged.
+    /// The change by breaks, as a fraction of the exchanged energy.
     by_breaks: f64,
     /// Steps that are said to have energy from nowhere.
     grown: usize,

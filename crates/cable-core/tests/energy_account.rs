@@ -368,7 +368,7 @@ fn the_account_goes_on_over_a_break() {
         // Nothing but the bend at the place of the break is lost there.
         assert!(part(last.breaks_j, &last) < MAX_UNACCOUNTED_FRACTION, "{last:?}");
         assert!(last.breaks_j <= 1e-9 * last.exchanged_j || !self_contact, "{last:?}");
-        // What supports have done is not forgotten, and what was exchanged only grows.
+        // The work of supports is not forgotten, and the exchanged energy only grows.
         for pair in accounts.windows(2) {
             let [a, b] = pair else { continue };
             assert!(b.exchanged_j >= a.exchanged_j * (1.0 - 1e-12), "{a:?} {b:?}");

@@ -24,7 +24,7 @@ const UNWATCHED_STEPS: u32 = 2;
 /// The division of a piece at a break.
 struct Division<'a> {
     cut: &'a Cut<'a>,
-    /// What it breaks into.
+    /// The pieces into which it breaks.
     parts: &'a [CablePart],
     /// The problem with obstacles that the whole cable could not reach, if there are any.
     grown: Option<Arc<Problem>>,

@@ -84,7 +84,7 @@ fn touched(view: &CanvasView<'_>, state: &AppState, pose: &Pose, preset: &RobotP
     view.painter.extend(egui::Shape::dashed_line(&ring, line, 4.0, 3.0));
 }
 
-/// Where its tracks begin and end along it, m.
+/// Places along it at which its tracks begin and end, m.
 fn foot(preset: &RobotPreset) -> [f64; 2] {
     let height = TRACK_HEIGHT * preset.height_m.value;
     extent(preset.outline_m.iter().filter(|p| p[1] < height).map(|p| p[0]))

@@ -27,7 +27,7 @@ impl FemModel {
     /// none is found. A cable that can touch itself, and does not, has the equilibrium of one that
     /// could pass through itself.
     pub(in crate::model::fem) fn elastica_from_flexible(&mut self) -> Option<StepReport> {
-        if !(self.problem.bending_stiffness > 0.0) || self.is_laid_on_rubbing_floor() {
+        if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
         let passing = Problem::without_self_contact(self.problem.clone());
@@ -44,15 +44,9 @@ impl FemModel {
         Some(StepReport { cost, warnings })
     }
 
-    /// True if a cable was laid along a route on the floor of a plan view, which holds it there: an
-    /// elastica knows no such friction.
-    fn is_laid_on_rubbing_floor(&self) -> bool {
-        self.problem.floor_friction.is_some() && self.problem.route.len() > 2
-    }
-
     /// Finds the elastica from the equilibrium of the mesh.
     pub(in crate::model::fem) fn elastica_from_mesh(&mut self) -> Option<Cost> {
-        if !(self.problem.bending_stiffness > 0.0) || self.is_laid_on_rubbing_floor() {
+        if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
         let answer = self.stepper.solution();

@@ -152,7 +152,7 @@ mod tests {
                         .filter(|s| s.loose.as_ref().is_some_and(LooseSection::spreads))
                 };
                 let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
-                // What hangs from a support and ends free on the ground may rest in tension.
+                // Cable that hangs from a support and ends free on the ground may rest in tension.
                 let hangs = any.as_ref().and_then(|s| s.loose.as_ref()).map_or(0.0, LooseSection::hangs);
                 let ends_free = layout.sections[k].supports.iter().any(Option::is_none);
                 if !(ends_free && hangs > layout.problem.cable.diameter_m) {
