@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
-use crate::contact::self_contact_pairs::SelfContact;
+use crate::contact::self_contact_pairs::{SelfContact, SortedNodes};
 use crate::contact::self_crossings::crossings;
 use crate::error::{NoEquilibrium, SolveError};
 use crate::math::RigidPose;
@@ -159,16 +159,63 @@ pub(crate) fn meets_itself(problem: &Problem, nodes: &[Node]) -> bool {
     }
     let at: Vec<Vec2> = nodes.iter().map(Node::at).collect();
     let arc: Vec<f64> = nodes.iter().map(|n| n.arc_length_m).collect();
+    let diameter = 2.0 * problem.radius;
+    SelfContact::of_diameter(diameter).smallest_gap(&at, &arc, strand_clearance(diameter, nodes)).is_some()
+        || !crossings(&at, |_| true).is_empty()
+}
+
+/// Watches a cable with self-contact that moves from answer to answer of a model without it.
+pub(crate) struct StrandWatch<'a> {
+    problem: &'a Problem,
+    /// The last answer that was seen.
+    last: Vec<Node>,
+    /// True if two strands met, or passed each other.
+    pub met: bool,
+}
+
+impl<'a> StrandWatch<'a> {
+    /// None for a cable that can pass itself.
+    #[must_use]
+    pub(crate) fn of(problem: &'a Problem) -> Option<Self> {
+        problem.cable.self_contact.then_some(Self { problem, last: Vec::new(), met: false })
+    }
+
+    /// Returns whether the cable is clear of itself in the next answer, and on the straight way of
+    /// each of its points from the last one.
+    pub(crate) fn stay_clear(&mut self, nodes: &[Node]) -> bool {
+        let before = std::mem::replace(&mut self.last, nodes.to_vec());
+        self.met |= meets_itself(self.problem, nodes)
+            || !before.is_empty() && passes_itself(2.0 * self.problem.radius, &before, nodes);
+        !self.met
+    }
+}
+
+/// Returns whether one strand of a cable of a diameter (m) comes nearer than [`STRAND_CLEARANCE`]
+/// to another where each of its points moves straight from one answer to the next.
+fn passes_itself(diameter: f64, before: &[Node], after: &[Node]) -> bool {
+    let mut arc: Vec<f64> = before.iter().chain(after).map(|n| n.arc_length_m).collect();
+    arc.sort_by(f64::total_cmp);
+    arc.dedup();
+    let places = |nodes: &[Node]| -> Vec<Vec2> {
+        let state = State::of_nodes(nodes, 0.0);
+        arc.iter().map(|&s| state.position_at(s).unwrap_or_default()).collect()
+    };
+    let (from, to) = (places(before), places(after));
+    let clearance = larger(strand_clearance(diameter, before), strand_clearance(diameter, after));
+    let strands = SelfContact::of_diameter(diameter + clearance);
+    let moves = |k: usize| to[k] - from[k];
+    strands.free_fraction(&from, &arc, &moves, [0.0, 0.0, 1.0], &mut SortedNodes::default()) < 1.0
+}
+
+/// The gap of the surfaces of two strands below which they count as touching, m: see
+/// [`STRAND_CLEARANCE`]. The chords between two nodes run inside the curve.
+fn strand_clearance(diameter: f64, nodes: &[Node]) -> f64 {
     let sagitta = |pair: &[Node]| {
         let bend = pair[0].curvature_per_m.abs().min(pair[1].curvature_per_m.abs());
         0.125 * bend * (pair[1].at() - pair[0].at()).norm_squared()
     };
-    let sagitta = nodes.windows(2).map(sagitta).fold(0.0, larger);
-    let diameter = 2.0 * problem.radius;
     let (least, of_diameter) = STRAND_CLEARANCE;
-    let clearance = larger(least, of_diameter * diameter) + 2.0 * sagitta;
-    SelfContact::of_diameter(diameter).smallest_gap(&at, &arc, clearance).is_some()
-        || !crossings(&at, |_| true).is_empty()
+    larger(least, of_diameter * diameter) + 2.0 * nodes.windows(2).map(sagitta).fold(0.0, larger)
 }
 
 /// Returns whether a cable lies in an obstacle, deeper than the difference between the models.

@@ -3,10 +3,10 @@
 //!
 //! `spans` goes first. If it loses the tension, cannot lay the cable, or finds no answer, `fem`
 //! continues from the last state with its friction ([`Mechanics::warm_start`]); with inertia `fem`
-//! is always used. A cable with self-contact is first solved at rest as if it could pass through
-//! itself, and by `fem` if its strands then meet or once time runs. From time to time an answer of
-//! `fem` without inertia is offered back; `spans` takes over if its own answer there is practically
-//! the same.
+//! is always used. A cable with self-contact is first solved as if it could pass through itself,
+//! and by `fem` if its strands then meet, or pass each other on the way from the last answer. From
+//! time to time an answer of `fem` without inertia is offered back; `spans` takes over if its own
+//! answer there is practically the same.
 
 use std::sync::Arc;
 
@@ -14,7 +14,9 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
-use crate::model::initial_equilibrium::{is_buried, meets_itself, meets_outline, slid_first, slides_on, work};
+use crate::model::initial_equilibrium::{
+    StrandWatch, is_buried, meets_itself, meets_outline, slid_first, slides_on, work,
+};
 use crate::model::mobilised_friction::refuse_mobilised;
 use crate::model::spans::SpansModel;
 use crate::model::tension_gauge::TensionGauge;
@@ -171,7 +173,7 @@ impl SwitchingModel {
             return None;
         }
         let answer = fem.solution();
-        if self.problem.cable.self_contact || self.meets_robot(&answer) {
+        if meets_itself(&self.problem, &answer.nodes) || self.meets_robot(&answer) {
             self.interval[0] = self.interval[1];
             return None;
         }
@@ -296,13 +298,21 @@ impl Mechanics for SwitchingModel {
             return self.fem(Some(ModelReason::Inertia))?.advance_gauged(dt_s, inertia, gauge);
         }
         let end_s = self.time_s() + dt_s;
-        // In motion a strand may pass through another between two instants.
-        let mut why = self.problem.cable.self_contact.then_some(ModelReason::SelfContact);
-        if self.fem.is_none() && why.is_none() {
-            let before = self.robot_pose.map(|_| self.spans.clone());
-            match self.spans.advance(dt_s, inertia) {
-                Ok(_) if self.meets_robot(&self.spans.solution()) => {
-                    why = Some(ModelReason::TouchesRobot);
+        let mut why = None;
+        if self.fem.is_none() {
+            let before = (self.robot_pose.is_some() || self.problem.cable.self_contact).then(|| self.spans.clone());
+            let mut strands = StrandWatch::of(&self.problem);
+            let outcome = match &mut strands {
+                Some(watch) => self.spans.advance_while(dt_s, Some(&mut |nodes| watch.stay_clear(nodes))),
+                None => self.spans.advance_while(dt_s, None),
+            };
+            let mut meets = strands.is_some_and(|watch| watch.met).then_some(ModelReason::SelfContact);
+            if outcome.is_ok() && self.meets_robot(&self.spans.solution()) {
+                meets = Some(ModelReason::TouchesRobot);
+            }
+            match outcome {
+                Ok(_) if meets.is_some() => {
+                    why = meets;
                     self.spans = before.unwrap_or_else(|| self.spans.clone());
                 }
                 Ok(report) => {

@@ -168,6 +168,77 @@ impl SpansModel {
         self.cable_equilibrium.is_some()
     }
 
+    /// Advances without inertia by `dt_s` (s), in moves that are short beside the cable. `goes_on`,
+    /// if given, is shown the nodes before the first move and after each, counted as the layout
+    /// counts; the advance ends where it returns false.
+    ///
+    /// # Errors
+    /// As [`Mechanics::advance`].
+    pub(super) fn advance_while(
+        &mut self,
+        dt_s: f64,
+        mut goes_on: Option<&mut dyn FnMut(&[Node]) -> bool>,
+    ) -> Result<StepReport, SolveError> {
+        if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
+            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
+        }
+        if self.cable_equilibrium.is_none() {
+            self.settle()?;
+        }
+        let (start, end) = (self.time_s, self.time_s + dt_s);
+        let Some(mut cable_equilibrium) = self.cable_equilibrium.take() else { return Ok(StepReport::default()) };
+        let length = self.layout.problem.length;
+        let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
+        self.layout.instant(&self.dragged, end, &mut last);
+        let longest_move = self.layout.settings.continuation.max_move_fraction * length;
+        let moves = (Self::travel(&cable_equilibrium.instant, &last) / longest_move).ceil().clamp(1.0, 1000.0);
+        let mut workspace = std::mem::take(&mut self.workspace);
+        let mut sum = StepReport::default();
+        first.clone_from(&cable_equilibrium.instant);
+        let (mut failed, mut ran) = (None, 0);
+        let mut stays = |here: &CableEquilibrium| match &mut goes_on {
+            Some(goes_on) => goes_on(&results::report(&self.layout, here).nodes),
+            None => true,
+        };
+        let mut on = stays(&cable_equilibrium);
+        for k in 1..=moves as usize {
+            if !on {
+                break;
+            }
+            let f = k as f64 / moves;
+            let time_s = if k == moves as usize { end } else { start + dt_s * f };
+            self.layout.instant(&self.dragged, time_s, &mut instant);
+            self.move_dragged_supports([&first, &last], f, &mut instant);
+            match cable_equilibrium.advance_load(&self.layout, &instant, 1.0, &mut workspace) {
+                Ok(taken) => {
+                    let one = self.report_of(taken).cost;
+                    sum.cost.iterations += one.iterations;
+                    sum.cost.halved_steps += one.halved_steps;
+                    sum.cost.residual_n = one.residual_n;
+                    ran += taken.runaways;
+                    self.time_s = time_s;
+                    on = stays(&cable_equilibrium);
+                }
+                Err(stopped) => {
+                    self.time_s += (time_s - self.time_s) * stopped.done;
+                    failed = Some(stopped.failure);
+                    break;
+                }
+            }
+        }
+        self.cable_equilibrium = Some(cable_equilibrium);
+        (self.workspace, self.instants) = (workspace, [first, last, instant]);
+        match failed {
+            Some(failure) => Err(self.solve_error(None, failure)),
+            None => {
+                if ran > 0 {
+                    sum.warnings.push(self.warning(WarningCause::SlidOn));
+                }
+                Ok(sum)
+            }
+        }
+    }
+
     /// The report of the present state.
     fn present_report(&self) -> Report {
         match &self.cable_equilibrium {
@@ -510,55 +581,7 @@ impl Mechanics for SpansModel {
         if inertia == Inertia::Dynamic {
             return Err(unsupported(Unsupported::Inertia));
         }
-        if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
-        }
-        if self.cable_equilibrium.is_none() {
-            self.settle()?;
-        }
-        let (start, end) = (self.time_s, self.time_s + dt_s);
-        let Some(mut cable_equilibrium) = self.cable_equilibrium.take() else { return Ok(StepReport::default()) };
-        let length = self.layout.problem.length;
-        let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
-        self.layout.instant(&self.dragged, end, &mut last);
-        let longest_move = self.layout.settings.continuation.max_move_fraction * length;
-        let moves = (Self::travel(&cable_equilibrium.instant, &last) / longest_move).ceil().clamp(1.0, 1000.0);
-        let mut workspace = std::mem::take(&mut self.workspace);
-        let mut sum = StepReport::default();
-        first.clone_from(&cable_equilibrium.instant);
-        let (mut failed, mut ran) = (None, 0);
-        for k in 1..=moves as usize {
-            let f = k as f64 / moves;
-            let time_s = if k == moves as usize { end } else { start + dt_s * f };
-            self.layout.instant(&self.dragged, time_s, &mut instant);
-            self.move_dragged_supports([&first, &last], f, &mut instant);
-            match cable_equilibrium.advance_load(&self.layout, &instant, 1.0, &mut workspace) {
-                Ok(taken) => {
-                    let one = self.report_of(taken).cost;
-                    sum.cost.iterations += one.iterations;
-                    sum.cost.halved_steps += one.halved_steps;
-                    sum.cost.residual_n = one.residual_n;
-                    ran += taken.runaways;
-                    self.time_s = time_s;
-                }
-                Err(stopped) => {
-                    self.time_s += (time_s - self.time_s) * stopped.done;
-                    failed = Some(stopped.failure);
-                    break;
-                }
-            }
-        }
-        self.cable_equilibrium = Some(cable_equilibrium);
-        (self.workspace, self.instants) = (workspace, [first, last, instant]);
-        match failed {
-            Some(failure) => Err(self.solve_error(None, failure)),
-            None => {
-                if ran > 0 {
-                    sum.warnings.push(self.warning(WarningCause::SlidOn));
-                }
-                Ok(sum)
-            }
-        }
+        self.advance_while(dt_s, None)
     }
 
     fn time_s(&self) -> f64 {
