@@ -7,7 +7,7 @@ use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
 use crate::model::spans::initial::{section_along_route, tightening};
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure};
+use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Contact, Failure};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 
@@ -50,8 +50,11 @@ impl CableEquilibrium {
         }
         self.instant = begin.clone();
         let mut taken = self.step_from(layout, &begin, &routes, workspace)?;
+        let frictionless = self.contacts_with_friction().all(|c| c.smooth);
         if self.end_smoothness() {
             taken = taken.and(self.step(layout, &begin, workspace)?);
+            let holds = self.contacts_with_friction().all(|c| c.mode == Mode::Stick);
+            taken.found_without_friction = frictionless && holds && taut.is_none();
         }
         if taut.is_none() {
             return Ok(taken);
@@ -89,6 +92,11 @@ impl CableEquilibrium {
             routes.push(route);
         }
         Ok(routes)
+    }
+
+    fn contacts_with_friction(&self) -> impl Iterator<Item = &Contact> {
+        let contacts = self.sections.iter().flat_map(|s| &s.contacts);
+        contacts.filter(|c| self.context.curves[c.curve].friction > 0.0)
     }
 
     /// Gives friction to the contacts that were met on the path to an equilibrium; returns whether
