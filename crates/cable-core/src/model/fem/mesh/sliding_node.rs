@@ -147,6 +147,8 @@ pub(in crate::model::fem) struct RoundPaths {
     direction: [Vec2; 2],
     /// Turn of the cable between them, rad, and its sense; None at a point.
     wrap: Option<(f64, f64)>,
+    /// Part of the force at each of the two ends that is weight, N.
+    weight: [Vec2; 2],
 }
 
 impl RoundPaths {
@@ -160,11 +162,10 @@ impl RoundPaths {
         let between =
             |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
         // A compressed end has no direction either: the cable then hangs straight down at the
-        // round.
-        let hangs = |j: usize| {
-            let pull = force[j].dot(&t[j]);
-            if pull < 0.0 { force[j] - t[j] * pull } else { force[j] }
-        };
+        // round, or lies along its path if it has no weight there. (Of the whole force, rounding
+        // would remain.)
+        let across = |j: usize| self.weight[j] - t[j] * self.weight[j].dot(&t[j]);
+        let hangs = |j: usize| if force[j].dot(&t[j]) < 0.0 { across(j) } else { force[j] };
         arc + sense * (between(hangs(0), t[0]) + between(t[1], hangs(1)))
     }
 }
@@ -208,11 +209,12 @@ impl SlidingNodeLoad {
     #[must_use]
     pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&TangentPath; 2], body: Vec2, share: [f64; 2]) -> Self {
         let t = [path[0].direction, path[1].direction];
-        let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
+        let weight = [-body * share[0], body * share[1]];
+        let force = [t[0] * tension[0] + weight[0], t[1] * tension[1] + weight[1]];
         let ends = [force[0].norm(), force[1].norm()];
         let pull = [force[0].dot(&t[0]), force[1].dot(&t[1])];
         let wrap = (node.end.radius > 0.0).then_some((path[0].arcs[1] + path[1].arcs[0], node.end.sense));
-        let paths = RoundPaths { direction: t, wrap };
+        let paths = RoundPaths { direction: t, wrap, weight };
         let turn = paths.turn(force);
         Self {
             paths,
@@ -322,6 +324,7 @@ pub(in crate::model::fem) fn mean_factor(ratio: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     fn on(sense: f64) -> SlidingNode {
         let end = BarEnd { center: Vec2::zeros(), radius: 0.1, mark: Vec2::y(), sense };
@@ -354,5 +357,22 @@ mod tests {
         assert!(taut.turn_with_inertia(0.0).to_bits() == taut.turn.to_bits());
         // Nearly slack, it hangs down where it meets the post.
         assert!(slack.turn > slack.turn_with_inertia(-10.0) + 0.3, "{} {}", slack.turn, slack.turn_with_inertia(-10.0));
+    }
+
+    proptest! {
+        /// A floor carries the weight of a cable seen from above, and a compressed end of it has no
+        /// direction: what rounding left of its force gave the turn any value.
+        #[test]
+        fn issue_016_a_compressed_end_without_weight_turns_by_the_arc(
+            x in -1.0..1.0, y in -2.0..-0.2, tension in -1.0..0.0, inertia in 0.0..1.0,
+        ) {
+            let node = on(-1.0);
+            let ends = [Vec2::new(x - 1.0, y), Vec2::new(x + 1.0, y)].map(BarEnd::point);
+            let paths = [TangentPath::between(&ends[0], &node.end), TangentPath::between(&node.end, &ends[1])];
+            let arc = paths[0].arcs[1] + paths[1].arcs[0];
+            let paths = [&paths[0], &paths[1]];
+            let load = SlidingNodeLoad::new(&node, [tension, 1.0], paths, Vec2::zeros(), [0.1; 2]);
+            prop_assert!((load.turn_with_inertia(inertia) - arc).abs() < 1e-12, "{} {arc}", load.turn_with_inertia(inertia));
+        }
     }
 }
