@@ -19,7 +19,7 @@ use crate::model::fem::newton::active_set::PredictedContacts;
 use crate::model::fem::newton::mixed_iterate::MixedIterate;
 use crate::model::fem::system::contact::self_contact;
 use crate::model::fem::system::{
-    ContactPair, Coupling, SelfContactLaws, StepContext, StepInput, System, Unknowns, WORK_MAGNITUDE_FRACTION,
+    Bends, ContactPair, Coupling, SelfContactLaws, StepContext, StepInput, System, Unknowns, WORK_MAGNITUDE_FRACTION,
     WorkBudget, add_barrier, add_floor, add_friction, bar_energy, node_scale,
 };
 
@@ -166,9 +166,11 @@ impl Workspace {
             value += add_coupling(s, input, x);
         }
         if mesh.bending_stiffness > 0.0 {
-            value += s.add_bending(mesh, x, curvature);
+            let bends = Bends { stiffness: mesh.bending_stiffness, scale: &input.scale, from: None };
+            value += s.add_bends(mesh, bends, x, curvature);
             if input.losses.bending > 0.0 {
-                value += s.add_bends(mesh, input.losses.bending, Some(&input.supports.start), x, curvature);
+                let from = Some(input.supports.start.as_slice());
+                value += s.add_bends(mesh, Bends { stiffness: input.losses.bending, from, ..bends }, x, curvature);
             }
         }
         self.magnitude += value.abs();

@@ -25,10 +25,24 @@ enum NodeBend {
     Free(BendingEnergy, [usize; 3]),
 }
 
-/// Passes each bend of a mesh to `visit`, with this stiffness (N m²) and measured from the bends at
-/// `from` (m) if given.
+/// The stiffness of bends, and the turns from which they are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Bends<'a> {
+    /// Bending stiffness, N m².
+    pub stiffness: f64,
+    /// Factors of the energies of bars and of the bends between them (see `sliding_node.rs`); where
+    /// there are none, the factor is 1.
+    pub scale: &'a [f64],
+    /// Positions of the nodes at which nothing is bent, m; None if the straight cable is not bent.
+    pub from: Option<&'a [Vec2]>,
+}
+
+/// Passes each bend of a mesh to `visit`.
 #[inline]
-fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: impl FnMut(NodeBend)) {
+fn visit_bends(mesh: &Mesh, bends_of: Bends<'_>, mut visit: impl FnMut(NodeBend)) {
+    let Bends { stiffness, scale, from } = bends_of;
+    // The two bars of a bend have the same factor: no sliding node lies between them.
+    let stiffness = |bar: usize| stiffness * scale.get(bar).copied().unwrap_or(1.0);
     let rest = &mesh.rest_length;
     let mut clamps = mesh.clamps.iter().peekable();
     for node in 0..mesh.nodes() {
@@ -37,11 +51,12 @@ fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: im
             for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first).filter(|(e, _)| !mesh.is_break(*e)) {
                 let direction = clamp.direction;
                 let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
-                visit(NodeBend::Clamped(ClampBend { stiffness, length: 0.5 * rest, direction, from }, [e, e + 1]));
+                let bend = ClampBend { stiffness: stiffness(e), length: 0.5 * rest, direction, from };
+                visit(NodeBend::Clamped(bend, [e, e + 1]));
             }
         } else if node > 0 && node < rest.len() && bends(mesh, node) {
             let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
-            let bend = BendingEnergy { stiffness, length: 0.5 * (rest[node - 1] + rest[node]), from };
+            let bend = BendingEnergy { stiffness: stiffness(node), length: 0.5 * (rest[node - 1] + rest[node]), from };
             visit(NodeBend::Free(bend, [node - 1, node, node + 1]));
         }
     }
@@ -50,7 +65,7 @@ fn visit_bends(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, mut visit: im
 /// Energy of the bends of a mesh at `x` (m), J.
 pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
-    visit_bends(mesh, mesh.bending_stiffness, None, |bend| {
+    visit_bends(mesh, Bends { stiffness: mesh.bending_stiffness, scale: &[], from: None }, |bend| {
         value += match bend {
             NodeBend::Clamped(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
             NodeBend::Free(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
@@ -66,7 +81,7 @@ pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, x: &[Vec2
         bend.gradient(&nodes.map(|n| x[n])).iter().zip(nodes).map(|(g, n)| g.dot(&ways[n])).sum()
     }
     let mut slope = 0.0;
-    visit_bends(mesh, stiffness, from, |bend| {
+    visit_bends(mesh, Bends { stiffness, scale: &[], from }, |bend| {
         slope += match bend {
             NodeBend::Clamped(bend, nodes) => along(&bend, nodes, x, ways),
             NodeBend::Free(bend, nodes) => along(&bend, nodes, x, ways),
@@ -135,7 +150,8 @@ impl System {
             value += self.add_energy(&mesh.bar(e), [e, e + 1], x, curvature);
         }
         if mesh.bending_stiffness > 0.0 {
-            value += self.add_bending(mesh, x, curvature);
+            let bends = Bends { stiffness: mesh.bending_stiffness, scale: &[], from: None };
+            value += self.add_bends(mesh, bends, x, curvature);
         }
         value
     }
@@ -159,24 +175,11 @@ impl System {
         energy.value(&local)
     }
 
-    /// Adds the bending energy at `x` (m); returns its value, J.
-    pub fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
-        self.add_bends(mesh, mesh.bending_stiffness, None, x, curvature)
-    }
-
-    /// Adds bends of this stiffness (N m²), measured from those at `from` (m) if given; returns
-    /// their energy, J. With the stiffness EI τ/h and the positions at the start of a step of h
-    /// this is the damping of bending.
-    pub fn add_bends(
-        &mut self,
-        mesh: &Mesh,
-        stiffness: f64,
-        from: Option<&[Vec2]>,
-        x: &[Vec2],
-        curvature: Curvature,
-    ) -> f64 {
+    /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness EI τ/h and the
+    /// positions at the start of a step of h this is the damping of bending.
+    pub fn add_bends(&mut self, mesh: &Mesh, bends_of: Bends<'_>, x: &[Vec2], curvature: Curvature) -> f64 {
         let mut value = 0.0;
-        visit_bends(mesh, stiffness, from, |bend| {
+        visit_bends(mesh, bends_of, |bend| {
             value += match bend {
                 NodeBend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
                 NodeBend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),

@@ -19,7 +19,7 @@ pub(in crate::model::fem) mod loss_branches;
 pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;
 
-pub(in crate::model::fem) use assembly::{System, bends_energy, bends_slope};
+pub(in crate::model::fem) use assembly::{Bends, System, bends_energy, bends_slope};
 pub(in crate::model::fem) use bar_energy::{BarBranch, BarIterate, PlainBar};
 pub(in crate::model::fem) use bar_weight::Weight;
 pub(in crate::model::fem) use contact::contact_energy::{add_barrier, add_floor, add_friction};
