@@ -252,7 +252,8 @@ fn issue_016_the_greatest_tension_between_nodes_is_within_its_error() {
 
 /// A cable that sags on to a beam from above rests there without friction, and one that is laid
 /// over the beam rests where friction stops it: other histories, and each is called by its name.
-/// (Both were called laid with the least sliding, though 1 cm of the beam made 17 % of the tension.)
+/// (Both were called laid with the least sliding, though 1 cm of the beam made 17 % of the
+/// tension.)
 #[test]
 fn issue_016_each_shown_history_is_called_by_its_name() {
     for (corner, called) in [(3.19, ShownEquilibrium::Frictionless), (3.20, ShownEquilibrium::LeastSliding)] {
