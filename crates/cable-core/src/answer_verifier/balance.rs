@@ -206,7 +206,11 @@ fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -
     let next = nodes[(piece.nodes[1] + 1).min(last)].arc_length_m;
     let half = if piece.nodes[0] == 0 { 0.5 * (b - a) } else { 0.0 };
     let share = larger(b - a, 0.5 * (next - a) + half);
-    larger(excess - checked.cable.friction * weight * share, 0.0)
+    let previous = nodes[piece.nodes[0].saturating_sub(1)].arc_length_m;
+    let here = |s: &f64| (previous..=next).contains(s);
+    let gravity = checked.scene.environment.gravity_m_per_s2;
+    let lumps: f64 = checked.lumps().filter(|(s, _)| here(s)).map(|(_, mass)| mass * gravity).sum();
+    larger(excess - checked.cable.friction * (weight * share + lumps), 0.0)
 }
 
 fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {

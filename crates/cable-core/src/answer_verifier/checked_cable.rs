@@ -107,6 +107,11 @@ impl CheckedCable<'_> {
         larger(larger(square.sqrt(), loads), larger(load, MIN_STRAIN * self.cable.axial_stiffness_n))
     }
 
+    /// Arc length (m) and mass (kg) of the lumps at supports.
+    pub fn lumps(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.holds.iter().filter_map(|h| Some((h.arc_length, h.support.mass_kg?)))
+    }
+
     /// Reported forces of contacts with the cable itself, which is no obstacle of the scene.
     pub fn self_contact_forces(&self) -> impl Iterator<Item = AppliedForce> {
         let self_contact_forces = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());

@@ -36,8 +36,8 @@ pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 /// the cable.
 #[must_use]
 pub fn default_hand_stiffness(problem: &Problem) -> f64 {
-    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal * problem.length);
-    let stiffness = larger(problem.force_scale(), floor) / (HAND_GIVE_FRACTION * problem.length);
+    let stiffness =
+        larger(problem.force_scale(), problem.whole_floor_friction()) / (HAND_GIVE_FRACTION * problem.length);
     stiffness.clamp(*HAND_STIFFNESSES.start(), *HAND_STIFFNESSES.end())
 }
 

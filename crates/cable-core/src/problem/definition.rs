@@ -199,6 +199,20 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
+    /// The friction of the floor of a plan view on the lump of a support, at most, N.
+    #[must_use]
+    pub(crate) fn floor_friction_on_lump(&self, support: usize) -> f64 {
+        let mass = self.supports.get(support).map_or(0.0, |s| s.mass);
+        self.floor_friction.map_or(0.0, |(friction, weight_per_m)| friction * weight_per_m / self.linear_density * mass)
+    }
+
+    /// The friction of the floor of a plan view on the cable and its lumps, at most, N.
+    #[must_use]
+    pub(crate) fn whole_floor_friction(&self) -> f64 {
+        let cable = self.floor_friction.map_or(0.0, |(friction, weight_per_m)| friction * weight_per_m * self.length);
+        cable + (0..self.supports.len()).map(|k| self.floor_friction_on_lump(k)).sum::<f64>()
+    }
+
     /// Acceleration of gravity, m/s²; 0 of a cable without mass.
     #[must_use]
     pub(crate) fn gravity(&self) -> Vec2 {

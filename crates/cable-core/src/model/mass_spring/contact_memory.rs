@@ -114,7 +114,9 @@ impl ContactMemory {
         let tuning = &mesh.tuning.contact;
         let sticks =
             |n: &usize| (mesh.position[*n] - self.anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
-        let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * mesh.half_straight_length(n)).sum();
+        let limit =
+            |n: usize| mu * normal * (mesh.half_straight_length(n) + mesh.point_mass[n] / mesh.problem.linear_density);
+        let held: f64 = (0..on_floor).filter(sticks).map(limit).sum();
         held / top
     }
 }

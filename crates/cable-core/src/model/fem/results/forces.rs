@@ -81,7 +81,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
                 let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
                 g.normal * pressed - along * rubbed
             });
-            return (taken - hung) * sign;
+            return (taken - floor_force_on_lump(d, node) - hung) * sign;
         }
         let middle = d.mesh.direction(e, x) * tension[e];
         let half = half(d, node, usize::from(sign > 0.0), x);
@@ -131,6 +131,18 @@ fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     }
     let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.motion.inertia_counts();
     rests.then(|| d.problem.hung_on(k, d.time()))
+}
+
+/// Plan view: the friction of the floor on the lumps of supports at a node, N.
+fn floor_force_on_lump(d: &CableState, node: usize) -> Vec2 {
+    let supports = d.meshing.support_node.iter().enumerate().filter(|(_, at)| **at == Some(node));
+    let on_lump: f64 = supports.map(|(k, _)| d.problem.floor_friction_on_lump(k)).sum();
+    match d.input.loads.floor_limit.get(node) {
+        Some(&limit) if limit > 0.0 => {
+            friction::at_plane(d.contacts.floor_slip[node], limit, d.contacts.slip).1 * (-on_lump / limit)
+        }
+        _ => Vec2::zeros(),
+    }
 }
 
 /// Normal and friction force of edges and floor on a node, N.

@@ -158,7 +158,8 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
 /// the rounds beside them.
 fn set_weight_on_rounds(cable: &mut CableState) {
     let x = std::mem::take(&mut cable.motion.positions);
-    floor_friction::renew_limits(&mut cable.input.loads.floor_limit, &cable.problem, &cable.mesh, &x, None);
+    let limits = &mut cable.input.loads.floor_limit;
+    floor_friction::renew_limits(limits, &cable.problem, &cable.mesh, &cable.meshing.support_node, &x, None);
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
         if cable.mesh.sliding[k].is_some() {
             let lying = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.loads.body);

@@ -125,6 +125,7 @@ pub(in crate::model::fem) fn update_stick_slip(
             &mut cable.input.loads.floor_limit,
             &cable.problem,
             &cable.mesh,
+            &cable.meshing.support_node,
             &unknowns.positions,
             Some(&unknowns.slides),
         ),

@@ -140,7 +140,8 @@ impl Contacts {
         self.friction.clear();
         if let Some((mu, normal)) = mesh.problem.floor_friction {
             for n in 0..mesh.position.len() {
-                let limit = mu * normal * mesh.half_straight_length(n);
+                let lump = mesh.point_mass[n] / mesh.problem.linear_density;
+                let limit = mu * normal * (mesh.half_straight_length(n) + lump);
                 let (element, fraction) = mesh.locate(mesh.arc_length[n]);
                 self.friction.push(FrictionContact {
                     anchor: self.anchors[n],

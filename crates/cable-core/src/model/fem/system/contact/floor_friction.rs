@@ -119,12 +119,13 @@ pub(in crate::model::fem) fn as_move(slide: Vec2, along: Vec2) -> Vec2 {
 /// smaller: rounds for changes by round-off.
 const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
-/// Plan view: renews the floor's friction limit of each node for the present shape; returns whether
-/// any of them changed.
+/// Plan view: renews the floor's friction limit of each node for the present shape, with that of
+/// the lump of a support there; returns whether any of them changed.
 pub(in crate::model::fem) fn renew_limits(
     limits: &mut Vec<f64>,
     problem: &Problem,
     mesh: &Mesh,
+    support_node: &[Option<usize>],
     x: &[Vec2],
     slide: Option<&[f64]>,
 ) -> bool {
@@ -136,7 +137,8 @@ pub(in crate::model::fem) fn renew_limits(
     limits.resize(mesh.nodes(), 0.0);
     for (k, limit) in limits.iter_mut().enumerate() {
         let reach: f64 = reaches(mesh, k, x, slide).iter().sum();
-        let now = friction * normal * reach;
+        let lumps = support_node.iter().enumerate().filter(|(_, node)| **node == Some(k));
+        let now = friction * normal * reach + lumps.map(|(s, _)| problem.floor_friction_on_lump(s)).sum::<f64>();
         changed |= !((now - *limit).abs() <= FLOOR_FRICTION_TOLERANCE * (now + *limit));
         *limit = now;
     }
