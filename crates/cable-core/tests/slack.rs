@@ -451,3 +451,25 @@ friction = 0.3735608334186499
         node.tension_n
     );
 }
+
+/// A slack cable rests by `fem`, is drawn taut, and `spans` goes on with the friction that holds it
+/// on the mound: that was known to 0.9 N, and 2e-9 N were stated.
+#[test]
+fn issue_016_an_error_that_friction_remembers_is_stated() {
+    let scene = Scene::from_toml(include_str!("data/slack_over_mound_in_wind.toml")).unwrap();
+    let mut sim = Simulation::new(scene, Model::Auto).unwrap();
+    sim.settle().unwrap();
+    let first = sim.answers()[0].errors.support_force_n.unwrap();
+    assert_eq!(sim.model(), Model::Fem);
+    let mut by_spans = 0;
+    for _ in 0..19 {
+        sim.step_quasi_static(0.1).unwrap();
+        let answer = &sim.answers()[0];
+        if sim.model() == Model::Spans {
+            by_spans += 1;
+            let stated = answer.errors.support_force_n.unwrap();
+            assert!(stated >= 0.5 * first, "{stated} N of {first} N at {} s", sim.time_s());
+        }
+    }
+    assert!(by_spans > 3, "{by_spans}");
+}

@@ -22,7 +22,7 @@ use crate::model::spans::SpansModel;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{BreakPlace, Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Energy, ModelReason, Node, Warning};
+use crate::solution::{CableSolution, ContactState, Energy, ErrorEstimates, ModelReason, Node, Warning};
 use crate::state::State;
 
 /// Greatest displacement of the cable when it is handed back, the larger of a length (m) and a
@@ -46,6 +46,8 @@ pub struct SwitchingModel {
     fem: Option<FemModel>,
     /// Adopted state of the cable, until it is known to rest or to move.
     adopted: Option<State>,
+    /// Errors of the answer from which `spans` goes on, as long as friction remembers it.
+    remembered: Option<ErrorEstimates>,
     dragged: Vec<Option<Vec2>>,
     /// True for those that a hand holds by a spring.
     pulled: Vec<bool>,
@@ -75,6 +77,7 @@ impl SwitchingModel {
             spans,
             fem: None,
             adopted: None,
+            remembered: None,
             pulled: vec![false; dragged.len()],
             dragged,
             reason: None,
@@ -182,6 +185,7 @@ impl SwitchingModel {
         if taken && indistinguishable(self.spans.problem(), &answer, &self.spans.solution()) {
             self.fem = None;
             self.reason = None;
+            self.remembered = Some(answer.errors);
             self.interval[1] = (2 * self.interval[1]).min(MAX_INTERVAL);
             self.spans.leave_unstable()
         } else {
@@ -190,6 +194,11 @@ impl SwitchingModel {
             None
         }
     }
+}
+
+/// Returns whether some contact sticks, so that friction is what it was.
+fn sticks_anywhere(answer: &CableSolution) -> bool {
+    answer.contacts.iter().any(|c| c.state == ContactState::Stick)
 }
 
 /// Returns whether two answers of a cable are visibly the same.
@@ -317,6 +326,7 @@ impl Mechanics for SwitchingModel {
                 }
                 Ok(report) => {
                     self.adopted = None;
+                    self.remembered = self.remembered.filter(|_| sticks_anywhere(&self.spans.solution()));
                     return Ok(report);
                 }
                 Err(error @ SolveError::TimeStep { .. }) => return Err(error),
@@ -346,6 +356,7 @@ impl Mechanics for SwitchingModel {
         self.spans.set_state(state)?;
         let moves = state.moves();
         self.adopted = Some(state.clone());
+        self.remembered = None;
         self.fem = None;
         self.reason = None;
         if moves {
@@ -356,6 +367,7 @@ impl Mechanics for SwitchingModel {
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.adopted = None;
+        self.remembered = Some(answer.errors).filter(|_| sticks_anywhere(answer));
         self.fem = None;
         self.reason = None;
         let taken = match self.meets_robot(answer) {
@@ -436,7 +448,13 @@ impl Mechanics for SwitchingModel {
             || {
                 let mut answer = self.spans.solution();
                 answer.assumptions.self_contact = self.problem.cable.self_contact;
-                answer
+                match self.remembered {
+                    Some(errors) => {
+                        let errors = answer.errors.plus(&errors);
+                        answer.known_to(errors)
+                    }
+                    None => answer,
+                }
             },
             Mechanics::solution,
         )
@@ -457,6 +475,7 @@ impl Mechanics for SwitchingModel {
             spans: self.spans.clone(),
             fem: self.fem.as_ref().map(FemModel::copy_for_rollback),
             adopted: self.adopted.clone(),
+            remembered: self.remembered,
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),
             robot_pose: self.robot_pose,

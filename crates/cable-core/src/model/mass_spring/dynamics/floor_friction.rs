@@ -3,8 +3,8 @@
 use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::Mesh;
 
-/// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s), and
-/// as much for a lump there as for cable of its weight.
+/// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s),
+/// and as much for a lump there as for cable of its weight.
 pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut MomentumSums, h: f64) {
     let Some((mu, normal)) = mesh.problem.floor_friction else { return };
     for i in 0..mesh.position.len() {
