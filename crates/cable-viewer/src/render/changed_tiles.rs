@@ -81,9 +81,10 @@ impl TileContents {
     #[must_use]
     pub fn covering(&self, part: Rect) -> Option<TileRectangle> {
         let range = |from: f32, to: f32, count: u16| {
-            let [first, last] = [from, to].map(|v| (v * self.tiles_per_point).floor());
-            let beside = last < 0.0 || first >= f32::from(count) || last < first || (first - last).is_nan();
-            (!beside).then(|| [first.max(0.0) as u16, (last as u16).min(count - 1)])
+            let [from, to] = [from, to].map(|v| v * self.tiles_per_point);
+            // What is not a number lies nowhere. A cast rounds towards zero, and saturates.
+            let within = from <= to && to >= 0.0 && from < f32::from(count);
+            within.then(|| [from as u16, (to as u16).min(count - 1)])
         };
         let columns = range(part.min.x, part.max.x, self.columns)?;
         Some(TileRectangle { columns, rows: range(part.min.y, part.max.y, self.rows)? })

@@ -29,15 +29,16 @@ struct Solid { @builtin(position) at: vec4f, @location(0) @interpolate(flat) col
 ";
 
 /// The kept picture, point for point. Mesa copies the rows of a rectangle whose colour is that of a
-/// texture and nothing else: arithmetic in either program would make it fill pixel by pixel.
+/// texture and nothing else, read at two of four numbers: 1.8 ms for 1280×800. With a vector of two
+/// numbers, which says the same, it asks the texture pixel by pixel: 5.7 ms.
 const COPY_SHADER: &str = "
-struct CopyCorner { @builtin(position) at: vec4f, @location(0) uv: vec2f };
+struct CopyCorner { @builtin(position) at: vec4f, @location(0) uv: vec4f };
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var picture_sampler: sampler;
 @vertex fn copy_corner(@location(0) at: vec2f, @location(1) uv: vec2f) -> CopyCorner {
-    return CopyCorner(vec4f(at, 0.0, 1.0), uv);
+    return CopyCorner(vec4f(at, 0.0, 1.0), vec4f(uv, uv));
 }
-@fragment fn copy(c: CopyCorner) -> @location(0) vec4f { return textureSample(picture, picture_sampler, c.uv); }
+@fragment fn copy(c: CopyCorner) -> @location(0) vec4f { return textureSample(picture, picture_sampler, c.uv.xy); }
 ";
 
 /// Corners of two triangles over the whole target: place, place in the picture.

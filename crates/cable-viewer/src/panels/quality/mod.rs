@@ -122,7 +122,7 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
         return readout::row(ui, name, "not known", "No cable is under tension", |_| {});
     };
     let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
-                contact: of 16 digits its logarithm are lost to rounding";
+                contact. Of the 16 digits of a number, about as many as its power of ten are lost to rounding";
     readout::assessed_row(ui, name, &format!("≈ {}", format::magnitude(worst, 2)), help, wrong);
 }
 
