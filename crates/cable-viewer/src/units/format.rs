@@ -119,15 +119,22 @@ pub fn significant(value: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
-/// A number with so many significant digits as a multiple of a power of ten, for what is read by
-/// its order of magnitude.
+/// A number with at most so many significant digits as a multiple of a power of ten, for what is
+/// read by its order of magnitude.
 #[must_use]
 pub fn magnitude(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return significant(value, digits);
     }
     let last = digits.saturating_sub(1);
-    in_powers_of_ten(&format!("{value:.last$e}"))
+    let scientific = format!("{value:.last$e}");
+    match scientific.split_once('e') {
+        Some((number, power)) if number.contains('.') => {
+            let number = number.trim_end_matches('0').trim_end_matches('.');
+            in_powers_of_ten(&format!("{number}e{power}"))
+        }
+        _ => in_powers_of_ten(&scientific),
+    }
 }
 
 /// `1.5e-9` as it is printed in books: 1.5×10^−9.
@@ -229,7 +236,7 @@ mod tests {
         assert_eq!(Unit::NONE.text(-0.123_456), "−0.1235");
         assert_eq!(Unit::COORDINATE.text(0.25), "0.250 m");
         assert_eq!(Unit::N.brief(-1.0), "−1 N");
-        assert_eq!(magnitude(3.1e6, 2), "3.1×10^6");
+        assert_eq!([magnitude(3.1e6, 2), magnitude(-2e-10, 3)], ["3.1×10^6", "−2×10^−10"]);
     }
 
     #[test]

@@ -322,7 +322,8 @@ fn a_picture_drawn_in_parts_looks_as_if_drawn_at_once() {
             let live = &mut harness.state_mut().state.live;
             // The time it took is another every time.
             (live.snapshot.solve_wall_s, live.latest.solve_wall_s) = (1e-3, 1e-3);
-            harness.state_mut().state.solver.solving_s = None;
+            let solver = &mut harness.state_mut().state.solver;
+            (solver.solving_s, solver.edit_latency_s) = (None, Some(0.01));
             if each_drawn {
                 harness.render().unwrap();
             }
