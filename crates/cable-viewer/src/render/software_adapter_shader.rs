@@ -64,6 +64,13 @@ const RETAINED_MEMORY: usize = 31 << 20;
 /// Bytes of a corner: place, place in the font, colour.
 const CORNER_BYTES: u64 = 20;
 
+/// Place, place in the font, colour.
+const CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 3] =
+    wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Unorm8x4];
+
+/// Place, place in the kept picture.
+const COPY_CORNER_ATTRIBUTES: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2];
+
 /// Takes over what egui would draw.
 pub struct SoftwarePainter {
     format: wgpu::TextureFormat,
@@ -696,20 +703,11 @@ fn pipeline(
     fill: Fill,
 ) -> wgpu::RenderPipeline {
     // The entry points of the shader.
-    let [vertex, fragment] = match fill {
+    let entry_points = match fill {
         Fill::Font => ["corner", "pixel"],
         Fill::Plain => ["corner", "plain"],
         Fill::Solid => ["solid_corner", "solid"],
     };
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("software drawing"),
-        source: wgpu::ShaderSource::Wgsl(SHADER.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("software drawing"),
-        bind_group_layouts: &[Some(layout)],
-        ..Default::default()
-    });
     // As egui blends: colours are premultiplied.
     let part =
         |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
@@ -719,31 +717,13 @@ fn pipeline(
     };
     // An opaque fill covers the pixels below it: nothing is read back.
     let blend = (fill != Fill::Solid).then_some(blend);
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("software drawing"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some(vertex),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: CORNER_BYTES,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Unorm8x4],
-            })],
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-        },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some(fragment),
-            targets: &[Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })],
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-        }),
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        multiview_mask: None,
-        cache: None,
-    })
+    let corners = wgpu::VertexBufferLayout {
+        array_stride: CORNER_BYTES,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &CORNER_ATTRIBUTES,
+    };
+    let target = wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL };
+    PipelineParts { shader: SHADER, entry_points, corners, target, layout }.build(device)
 }
 
 fn copy_pipeline(
@@ -751,40 +731,59 @@ fn copy_pipeline(
     format: wgpu::TextureFormat,
     layout: &wgpu::BindGroupLayout,
 ) -> wgpu::RenderPipeline {
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("kept picture"),
-        source: wgpu::ShaderSource::Wgsl(COPY_SHADER.into()),
-    });
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("kept picture"),
-        bind_group_layouts: &[Some(layout)],
-        ..Default::default()
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("kept picture"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("copy_corner"),
-            buffers: &[Some(wgpu::VertexBufferLayout {
-                array_stride: size_of::<[f32; 4]>() as u64,
-                step_mode: wgpu::VertexStepMode::Vertex,
-                attributes: &wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2],
-            })],
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-        },
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("copy"),
-            targets: &[Some(wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::ALL })],
-            compilation_options: wgpu::PipelineCompilationOptions::default(),
-        }),
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: None,
-        multisample: wgpu::MultisampleState::default(),
-        multiview_mask: None,
-        cache: None,
-    })
+    let corners = wgpu::VertexBufferLayout {
+        array_stride: size_of::<[f32; 4]>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &COPY_CORNER_ATTRIBUTES,
+    };
+    let target = wgpu::ColorTargetState { format, blend: None, write_mask: wgpu::ColorWrites::ALL };
+    PipelineParts { shader: COPY_SHADER, entry_points: ["copy_corner", "copy"], corners, target, layout }.build(device)
+}
+
+/// The parts in which pipelines differ.
+struct PipelineParts<'a> {
+    shader: &'static str,
+    /// Of the vertex program and of the fragment program.
+    entry_points: [&'static str; 2],
+    corners: wgpu::VertexBufferLayout<'static>,
+    target: wgpu::ColorTargetState,
+    layout: &'a wgpu::BindGroupLayout,
+}
+
+impl PipelineParts<'_> {
+    fn build(self, device: &wgpu::Device) -> wgpu::RenderPipeline {
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("software drawing"),
+            source: wgpu::ShaderSource::Wgsl(self.shader.into()),
+        });
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("software drawing"),
+            bind_group_layouts: &[Some(self.layout)],
+            ..Default::default()
+        });
+        let [vertex, fragment] = self.entry_points;
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("software drawing"),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(vertex),
+                buffers: &[Some(self.corners)],
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(fragment),
+                targets: &[Some(self.target)],
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+            }),
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
 }
 
 #[cfg(test)]
