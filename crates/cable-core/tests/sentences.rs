@@ -31,6 +31,7 @@ fn warnings() -> Vec<Warning> {
         (Cause::BrieflyAboveBreaking { time_s: 1.5, breaking_n: 900.0, held_n: 700.0, over_s: 0.004 }, [912.0, 800.0]),
         (Cause::AboveBreaking { mean: None }, [1912.0, 1800.0]),
         (Cause::AboveBreaking { mean: Some(MeanTension { over_s: 0.004, time_s: 2.0 }) }, [1912.0, 1800.0]),
+        (Cause::AboveBreakingAfterBreak { mean: MeanTension { over_s: 0.004, time_s: 2.0 } }, [1912.0, 1800.0]),
         (Cause::Broke { time_s: 2.0, over_s: 0.004, detached_from: None }, [1800.0; 2]),
         (Cause::Broke { time_s: 2.0, over_s: 0.0, detached_from: Some(name("hook")) }, [1800.0; 2]),
         (Cause::BreakageUncertain { broke: false, held_n: 1700.0, lowest_n: 1600.0, over_s: 0.004 }, [1900.0, 1800.0]),

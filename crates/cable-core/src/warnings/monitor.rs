@@ -137,7 +137,7 @@ pub(super) fn instantaneous(observed: &Observed<'_>) -> Vec<Warning> {
     let Observed { problem, answer, bends, breaks, .. } = *observed;
     let mut out = Vec::new();
     tension::broken(&problem.cable, breaks, &mut out);
-    tension::limits(&problem.cable, answer, &mut out);
+    tension::limits(&problem.cable, answer, breaks, &mut out);
     bend::warn(problem, &bends, &mut out);
     tension::slack(problem, answer, &mut out);
     tangle::warn(problem, answer, &mut out);

@@ -26,9 +26,9 @@ const FOLDED_LENGTH: f64 = 5e-3;
 
 /// Appends the tension limit that is exceeded, at the worst place: of a cable in motion by any
 /// inner step of the last step, and the breaking tension by what was held.
-pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
+pub(super) fn limits(cable: &Cable, answer: &CableSolution, breaks: &[Break], out: &mut Vec<Warning>) {
     match answer.peaks {
-        Some(peaks) => jerk(cable, answer, &peaks, out),
+        Some(peaks) => jerk(cable, answer, &peaks, breaks, out),
         None => {
             if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
                 tension(cable, top, out);
@@ -43,13 +43,17 @@ pub(super) fn greatest(answer: &CableSolution) -> f64 {
     answer.nodes.iter().map(|n| n.tension_n).fold(before, |a, b| if b > a { b } else { a })
 }
 
-/// Warns of jerks of a cable in motion.
-fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut Vec<Warning>) {
+/// Warns of jerks of a cable in motion, or of the pieces of one that broke.
+fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, breaks: &[Break], out: &mut Vec<Warning>) {
     let (service_n, breaking_n, over_s) = (cable.service_tension_n, cable.breaking_tension_n, peaks.over_s);
     let TensionPeaks { greatest, held, .. } = *peaks;
     let (cause, top, limit) = if held.tension_n > breaking_n {
         let mean = MeanTension { over_s, time_s: held.time_s };
-        (WarningCause::AboveBreaking { mean: Some(mean) }, held, breaking_n)
+        let cause = match breaks {
+            [] => WarningCause::AboveBreaking { mean: Some(mean) },
+            [..] => WarningCause::AboveBreakingAfterBreak { mean },
+        };
+        (cause, held, breaking_n)
     } else if greatest.tension_n > breaking_n {
         let (time_s, held_n) = (greatest.time_s, held.tension_n);
         (WarningCause::BrieflyAboveBreaking { time_s, breaking_n, held_n, over_s }, greatest, service_n)

@@ -3,6 +3,7 @@
 use super::Bends;
 use super::monitor::HOLD_TIME_S;
 use super::{Observed, WarningMonitor};
+use crate::breakage::Break;
 use crate::contact::self_crossings::{crossings, meet};
 use crate::math::{Point, Vec2};
 use crate::model::Model;
@@ -10,7 +11,8 @@ use crate::problem::{Problem, problems};
 use crate::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use crate::simulation::Simulation;
 use crate::solution::{
-    CableSolution, ContactReport, ContactState, Energy, Node, SupportReaction, TensionPeaks, Warning, WarningKind,
+    CableSolution, ContactReport, ContactState, Energy, Node, SupportReaction, TensionPeak, TensionPeaks, Warning,
+    WarningKind,
 };
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -680,4 +682,24 @@ fn work_is_not_energy_from_nowhere() {
         assert!(told.iter().all(|w| w.kind != WarningKind::EnergyGrows), "{told:?}");
     }
     assert!(most > 100.0, "it is thrown about: {most} J");
+}
+
+/// A piece beside a new end was said not to break.
+#[test]
+fn tension_above_breaking_after_a_break_is_not_said_to_hold() {
+    let p = problem(&scene());
+    let mut answer = along(&[[0.0, 5.0], [3.0, 4.0], [6.0, 5.0]], 100.0);
+    let top = TensionPeak { tension_n: 1.2e4, arc_length_m: 3.0, time_s: 2.0 };
+    answer.peaks = Some(TensionPeaks { greatest: top, held: top, over_s: 0.004 });
+    let whole = observed(&p, &answer);
+    let at = Break { time_s: 1.999, arc_length_m: 5.0, at: Vec2::zeros(), detached_from: None, over_s: 0.004 };
+    let broken = Observed { breaks: &[at], ..observed(&p, &answer) };
+    let said = |observed: &Observed<'_>| {
+        let warnings = super::monitor::instantaneous(observed);
+        let of = warnings.iter().find(|w| w.kind == WarningKind::BreakingTension).unwrap();
+        of.to_string()
+    };
+    let assumes = "the figures assume that it does not";
+    assert!(said(&whole).contains(assumes), "{}", said(&whole));
+    assert!(!said(&broken).contains(assumes) && said(&broken).contains("not watched"), "{}", said(&broken));
 }

@@ -1,5 +1,6 @@
 //! This sentence says how fast a motion is, and whether masses matter in it.
 
+use super::figures::{at_most, significant};
 use super::{Sentence, display_in_si};
 use crate::solution::InertiaEffect;
 use crate::units::UnitSystem;
@@ -8,15 +9,18 @@ display_in_si!(InertiaEffect);
 
 impl Sentence for InertiaEffect {
     fn sentence(&self, units: UnitSystem) -> String {
-        let mach = format!("Mach number {:.1e}", self.numbers.mach);
-        let froude = self.numbers.froude.map_or_else(String::new, |froude| format!(", Froude number {froude:.1e}"));
+        let mach = format!("Mach number {}", significant(self.numbers.mach, 2));
+        let froude = self
+            .numbers
+            .froude
+            .map_or_else(String::new, |froude| format!(", Froude number {}", significant(froude, 2)));
         let Some(without) = self.without else { return format!("{mach}{froude}") };
         let verdict = match self.matters() {
             Some(true) => "inertia matters",
             Some(false) => "inertia does not matter",
             None => "it is not clear whether inertia matters",
         };
-        let tolerance = format!("{:.1e}", self.tolerance);
+        let tolerance = at_most(self.tolerance, 2);
         format!("{mach}{froude}: {verdict} at tolerance {tolerance} ({})", without.sentence(units))
     }
 }

@@ -1,6 +1,6 @@
 //! These sentences say why an answer comes from its model.
 
-use super::figures::Figures;
+use super::figures::{Figures, percent};
 use super::{Sentence, display_in_si, serialize_in_si};
 use crate::solution::{LikelyBending, ModelReason, NeglectedEffect, NextCheaper, TakenStiffness};
 use crate::units::{Quantity, UnitSystem};
@@ -84,14 +84,8 @@ impl Sentence for NextCheaper {
         if force <= SAME_ANSWER {
             return format!("{}, without {what}: the same answer", self.model);
         }
-        let percent = 100.0 * force;
-        let force = if percent < 0.1 { format!("{percent:.1e} %") } else { format!("{} %", round(percent)) };
+        let force = percent(force);
         let place = f.length(place, 3);
         format!("{}, without {what}: off by {force} of the greatest tension, by {place} in shape", self.model)
     }
-}
-
-/// The number with two digits.
-fn round(value: f64) -> f64 {
-    format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -69,11 +69,11 @@ impl Sentence for SceneFault {
             ),
             Self::MotionStartsElsewhere { motion_m, support_m } => format!(
                 "at 0 s it is at {}, its support's at_m is {}: they must agree",
-                f.bare_point(*motion_m),
-                f.bare_point(*support_m)
+                f.given_point(*motion_m),
+                f.given_point(*support_m)
             ),
             Self::EdgesCross { other, edges_m } => {
-                let [edge, others] = edges_m.map(|ends| ends.map(|at| f.bare_point(at)).join(" to "));
+                let [edge, others] = edges_m.map(|ends| ends.map(|at| f.given_point(at)).join(" to "));
                 format!(
                     "the edge from here, {edge}, crosses or touches the edge from point {other}, {others}: move a point of one, or leave it out"
                 )
@@ -87,10 +87,8 @@ impl Sentence for SceneFault {
                 f.point([*x_m, *y_m], 3)
             ),
             Self::SupportInside { name, obstacle, depth_m, clear_m } => {
-                let clear = clear_m.map(|at| {
-                    let [x, y] = at.map(|c| Quantity::Length.convert(c, units));
-                    format!(": the nearest place clear of it is [{x:.4}, {y:.4}]")
-                });
+                let clear =
+                    clear_m.map(|at| format!(": the nearest place clear of it is {}", f.point([at[0], at[1]], 4)));
                 let depth = f.length(*depth_m, 4);
                 format!("support `{name}` is {depth} inside `{obstacle}`{}", clear.unwrap_or_default())
             }
@@ -111,8 +109,8 @@ impl Sentence for SceneFault {
             Self::TooShort { length_m, way_m, needed_n, breaking_n } => format!(
                 "the way between the supports is {way}, the cable is {} long, and stretching to it takes {} where it breaks at {}: make length_m at least {way}",
                 f.length(*length_m, 4),
-                f.power(Quantity::Force, *needed_n, 4),
-                f.power(Quantity::Force, *breaking_n, 4),
+                f.significant(Quantity::Force, *needed_n, 4),
+                f.given(Quantity::Force, *breaking_n),
                 way = f.length(*way_m, 4)
             ),
         }

@@ -1,7 +1,7 @@
 //! These sentences say why a model has no answer. Every sentence names the place, by lengths and
 //! names, and a remedy; none holds a number that is not finite.
 
-use super::figures::{Figures, six_digits};
+use super::figures::{Figures, significant, six_digits};
 use super::{Sentence, display_in_si};
 use crate::error::{
     EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
@@ -60,7 +60,7 @@ impl Sentence for SolveError {
             ),
             Self::Compressed { model, tension_n, place } => {
                 let by = if tension_n.is_finite() && *tension_n < 0.0 {
-                    format!(" with {}", f.power(Quantity::Force, -tension_n, 3))
+                    format!(" with {}", f.significant(Quantity::Force, -tension_n, 4))
                 } else {
                     String::new()
                 };
@@ -114,11 +114,16 @@ impl Sentence for SolveError {
                 format!("the setting {name} = {value} cannot be worked by: it must {allowed}")
             }
             Self::TimeStep { dt_s, longest_s } => {
-                let most = if longest_s.is_finite() { format!(" and at most {longest_s} s") } else { String::new() };
-                format!("a time step of {dt_s} s cannot be taken: it must be more than 0 s{most}")
+                let most = if longest_s.is_finite() {
+                    format!(" and at most {} s", six_digits(*longest_s))
+                } else {
+                    String::new()
+                };
+                format!("a time step of {} s cannot be taken: it must be more than 0 s{most}", six_digits(*dt_s))
             }
             Self::StepFailed { model, time_s, dt_s, residual_n, place, cause } => format!(
-                "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed: {} {} ({})",
+                "{model} stopped at {time_s:.6} s: the step was halved to {} s and still failed: {} {} ({})",
+                significant(*dt_s, 4),
                 left_over(f, *residual_n),
                 place.sentence(units),
                 cause.sentence(units)
@@ -131,7 +136,7 @@ impl Sentence for SolveError {
 /// measure, says nothing to anybody.
 fn left_over(f: Figures, residual_n: f64) -> String {
     if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
-        format!("{} stay unbalanced", f.power(Quantity::Force, residual_n, 3))
+        format!("{} stay unbalanced", f.significant(Quantity::Force, residual_n, 4))
     } else {
         "no balance of forces was reached".to_owned()
     }
@@ -150,8 +155,8 @@ impl Sentence for NoEquilibrium {
             Self::TooLittleFriction { friction_ratio } => missing_friction(*friction_ratio),
             Self::UnheldForce { left_n, loads_n } => format!(
                 "it slides: {} of {} are held by nothing",
-                f.power(Quantity::Force, *left_n, 3),
-                f.power(Quantity::Force, *loads_n, 3)
+                f.significant(Quantity::Force, *left_n, 4),
+                f.significant(Quantity::Force, *loads_n, 4)
             ),
             Self::ThroughObstacle { obstacle, at_m, arc_length_m } => format!(
                 "the cable is laid through `{obstacle}`, at {}, {} along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
@@ -195,7 +200,7 @@ impl Sentence for SpanError {
             }
             Self::NotConverged { iterations, closure_m } => format!(
                 "no convergence in {iterations} iterations: the span closes to {}",
-                Figures(units).power(Quantity::Length, closure_m, 3)
+                Figures(units).significant(Quantity::Length, closure_m, 4)
             ),
         }
     }
@@ -218,7 +223,7 @@ impl Sentence for FailureCause {
             Self::NoDescent => "no descent",
             Self::OutOfMemory => "there is no memory for it",
             Self::RunawaySpeed { speed_m_per_s } => {
-                return format!("it moves at {} there", Figures(units).power(Quantity::Speed, *speed_m_per_s, 3));
+                return format!("it moves at {} there", Figures(units).significant(Quantity::Speed, *speed_m_per_s, 4));
             }
             Self::NoBalance { iterations } => return format!("no balance in {iterations} iterations"),
         };

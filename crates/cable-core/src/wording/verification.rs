@@ -1,6 +1,6 @@
 //! A verdict names the broken law, by how much it is broken, and where.
 
-use super::figures::Figures;
+use super::figures::{Figures, percent};
 use super::{Sentence, display_in_si, serialize_in_si};
 use crate::units::{Quantity, UnitSystem};
 use crate::verification_report::{Finding, NotChecked, Verification};
@@ -13,8 +13,8 @@ impl Sentence for Finding {
         let (f, quantity) = (Figures(units), self.law.quantity());
         let mut text = self.law.broken().to_owned();
         if quantity != Quantity::Number {
-            let limit = f.bare_power(quantity, self.limit, 1);
-            text += &format!(" by {} ({limit} allowed)", f.power(quantity, self.value, 3));
+            let limit = f.bare_significant(quantity, self.limit, 2);
+            text += &format!(" by {} ({limit} allowed)", f.significant(quantity, self.value, 4));
         }
         if !self.with.is_empty() {
             text += &format!(" at `{}`", self.with);
@@ -45,7 +45,7 @@ impl Sentence for Verification {
         let (residual_n, scale_n) = (self.balance.residual_n, self.balance.scale_n);
         let share = if scale_n > 0.0 { residual_n / scale_n } else { 0.0 };
         let mut line = match self.worst() {
-            None => format!("sound, forces balance within {share:.0e} of {}", Figures(units).force(scale_n, 4)),
+            None => format!("sound, forces balance within {} of {}", percent(share), Figures(units).force(scale_n, 4)),
             Some(worst) => format!("NOT SOUND: {}", worst.sentence(units)),
         };
         for what in &self.not_checked {

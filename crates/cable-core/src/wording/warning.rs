@@ -1,6 +1,6 @@
 //! A warning says what happens, where, why, and what can be done.
 
-use super::figures::Figures;
+use super::figures::{Figures, percent};
 use super::{Sentence, display_in_si};
 use crate::error::NoEquilibrium;
 use crate::solution::{EndMove, Histories, ShownEquilibrium, SlideReason, Warning, WarningCause};
@@ -39,6 +39,13 @@ impl Sentence for Warning {
                 pulled(1),
                 instant(mean.map(|m| m.time_s)),
                 mean.map_or_else(String::new, |m| format!("in the mean over {} s, ", m.over_s)),
+                given(limit)
+            ),
+            Cause::AboveBreakingAfterBreak { mean } => format!(
+                "`{cable}` is pulled with {} at {place}{}, in the mean over {} s, above its breaking tension of {}, after it broke: a piece is not watched until the wave of its break has crossed it and come back, so whether it breaks here too is not known",
+                pulled(1),
+                instant(Some(mean.time_s)),
+                mean.over_s,
                 given(limit)
             ),
             Cause::Broke { time_s, over_s, detached_from } => {
@@ -193,19 +200,19 @@ impl Sentence for Warning {
             ),
             Cause::EnergyCut => format!(
                 "the kinetic energy of `{cable}` reached {}, fastest at {place}{}, where supports, loads and stretch can give {}: the motion was braked and is not to be believed; use fem, or more segments",
-                f.power(Quantity::Energy, value, 3),
+                f.significant(Quantity::Energy, value, 4),
                 after(self.since_s),
-                f.power(Quantity::Energy, limit, 3)
+                f.significant(Quantity::Energy, limit, 4)
             ),
             Cause::StiffPreview => format!(
                 "`{cable}` is too stiff for explicit steps in real time: this is a preview in steps of {} that damps fast motion; use fem, fewer segments or a smaller axial stiffness for figures",
-                f.power(Quantity::Time, value, 2)
+                f.significant(Quantity::Time, value, 3)
             ),
             Cause::EnergyFromNowhere { from_s, work_j, speed_m_per_s } => format!(
                 "`{cable}` has {} more energy than at {from_s:.4} s that came from nowhere: what moves it can have given {} at most since then, and rounding is below {}. It is fastest at {place} with {}. The motion from then on is not to be believed; use fem, shorter steps, or damping",
-                f.power(Quantity::Energy, value, 3),
-                f.power(Quantity::Energy, *work_j, 3),
-                f.power(Quantity::Energy, limit, 3),
+                f.significant(Quantity::Energy, value, 4),
+                f.significant(Quantity::Energy, *work_j, 4),
+                f.significant(Quantity::Energy, limit, 4),
                 f.fixed(Quantity::Speed, *speed_m_per_s, 1)
             ),
             Cause::CornerOfMesh { obstacle, turn_deg, element_m } => {
@@ -220,20 +227,30 @@ impl Sentence for Warning {
                 )
             }
             Cause::CoarseBend { bars } => format!(
-                "{bars} bars show the bend of a stiff cable where it is led round something to {value:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments"
+                "{bars} bars show the bend of a stiff cable where it is led round something to {} of the greatest tension only; {} was asked for: use more segments",
+                percent(value),
+                percent(limit)
             ),
             Cause::BarContacts => format!(
-                "The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {value:.1e} of the greatest tension; {limit:.1e} was asked for"
+                "The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {} of the greatest tension; {} was asked for",
+                percent(value),
+                percent(limit)
             ),
             Cause::CoarseForces { elements } => format!(
-                "{elements} elements give the forces to about {value:.1e} of the greatest tension; {limit:.1e} was asked for: use more segments"
+                "{elements} elements give the forces to about {} of the greatest tension; {} was asked for: use more segments",
+                percent(value),
+                percent(limit)
             ),
             Cause::CoarseTension { elements } => format!(
-                "{elements} elements give the largest tension to about {value:.1e}; {limit:.1e} was asked for: use more segments"
+                "{elements} elements give the largest tension to about {}; {} was asked for: use more segments",
+                percent(value),
+                percent(limit)
             ),
             Cause::RobotOutOfBalance { left_n } => format!(
-                "The robot and `{cable}` are {} out of balance in this step, {value:.1e} of the forces on the robot; {limit:.1e} was asked for, but no speed was found at which they agree: drive more slowly, or keep the cable from being squeezed",
-                f.force(*left_n, 1)
+                "The robot and `{cable}` are {} out of balance in this step, {} of the forces on the robot; {} was asked for, but no speed was found at which they agree: drive more slowly, or keep the cable from being squeezed",
+                f.force(*left_n, 1),
+                percent(value),
+                percent(limit)
             ),
             Cause::Recorded { message, .. } => message.clone(),
         }

@@ -4,10 +4,20 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+use cable_core::Solution;
+
 /// Time from the end of one frame of a running simulation that is drawn without a GPU to the next,
-/// s: with the frame itself, 25 frames a second. Shorter: drawing takes more of a core than the
-/// simulation; longer: motion is seen to jerk.
+/// s, where the picture moves fast: with the frame itself, 25 frames a second. Shorter: drawing
+/// takes more of a core than the simulation; longer: motion is seen to jerk.
 pub(super) const SOFTWARE_FRAME_INTERVAL: Duration = Duration::from_millis(40);
+
+/// Factor by which that time is longer where hardly anything moves. Smaller: a picture that stands
+/// costs as much as one that moves; larger: figures and clock are seen to stutter.
+const MAX_STRETCH: f64 = 2.0;
+
+/// Way of the fastest point of the picture from one frame to the next, points, that is still seen
+/// as even. Smaller: slow motion is drawn as often as fast one; larger: it is seen in steps.
+const EVEN_STEP_POINTS: f64 = 1.5;
 
 /// The time before which no frame is drawn for the sake of a step, shared with the solver thread.
 #[derive(Clone, Debug, Default)]
@@ -17,10 +27,13 @@ pub(super) struct FramePacing {
 }
 
 /// What the next frame is drawn for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum NextFrame {
     /// It shows a step of the running simulation, and nobody waits for an answer.
-    Step,
+    Step {
+        /// Speed of the fastest point of the picture, points/s.
+        points_per_s: f64,
+    },
     /// It shows an answer as soon as there is one.
     Answer,
 }
@@ -33,7 +46,14 @@ impl FramePacing {
 
     /// A frame has been drawn.
     pub fn drawn(&self, now: Instant, next_frame: NextFrame) {
-        let next = (next_frame == NextFrame::Step && self.interval > Duration::ZERO).then(|| now + self.interval);
+        let next = match next_frame {
+            NextFrame::Step { points_per_s } if self.interval > Duration::ZERO => {
+                let step = points_per_s * self.interval.as_secs_f64();
+                let even = if step.is_finite() { EVEN_STEP_POINTS / step.max(f64::MIN_POSITIVE) } else { 1.0 };
+                Some(now + self.interval.mul_f64(even.clamp(1.0, MAX_STRETCH)))
+            }
+            _ => None,
+        };
         *self.next.lock().unwrap_or_else(PoisonError::into_inner) = next;
     }
 
@@ -44,22 +64,103 @@ impl FramePacing {
     }
 }
 
+/// How fast what is shown moves, from one frame to the next.
+#[derive(Debug, Default)]
+pub(super) struct ShownMotion {
+    last: Option<(Instant, Arc<Solution>)>,
+}
+
+impl ShownMotion {
+    /// Speed (m/s of the wall clock) of the fastest point since the frame before; infinite where
+    /// that is not known.
+    pub fn speed(&mut self, now: Instant, shown: Option<&Arc<Solution>>) -> f64 {
+        let before = std::mem::replace(&mut self.last, shown.map(|s| (now, Arc::clone(s))));
+        match (before, shown) {
+            (Some((then, before)), Some(shown)) => {
+                farthest_move_m(&before, shown) / now.saturating_duration_since(then).as_secs_f64()
+            }
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// The longest way that a node or the robot has between two answers, m; infinite where they have
+/// not the same nodes.
+fn farthest_move_m(before: &Solution, now: &Solution) -> f64 {
+    let cables = || before.cables.iter().zip(&now.cables);
+    let same = before.cables.len() == now.cables.len() && cables().all(|(a, b)| a.nodes.len() == b.nodes.len());
+    if !same || before.robot.is_some() != now.robot.is_some() {
+        return f64::INFINITY;
+    }
+    let nodes = cables().flat_map(|(a, b)| a.nodes.iter().zip(b.nodes.iter()));
+    let ways = nodes.map(|(a, b)| (b.x_m - a.x_m).hypot(b.y_m - a.y_m));
+    let robot = before.robot.as_ref().zip(now.robot.as_ref());
+    let robot = robot.map(|(a, b)| (b.x_m - a.x_m).hypot(b.y_m - a.y_m));
+    ways.chain(robot).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
+    use cable_core::Model;
+    use cable_core::solution::{CableSolution, Cost, Energy, ModelReason, Node};
+
     use super::*;
 
     #[test]
     fn steps_wait_for_the_next_frame_and_answers_to_edits_do_not() {
         let (mut pacing, now) = (FramePacing::default(), Instant::now());
+        let fast = NextFrame::Step { points_per_s: 300.0 };
         let solver = pacing.clone();
-        pacing.drawn(now, NextFrame::Step);
+        pacing.drawn(now, fast);
         assert_eq!(solver.wait(now), Duration::ZERO, "with a GPU each step is shown");
         pacing.every(SOFTWARE_FRAME_INTERVAL);
-        pacing.drawn(now, NextFrame::Step);
+        pacing.drawn(now, fast);
         let later = now + Duration::from_millis(13);
         assert_eq!(solver.wait(later), Duration::from_millis(27));
         assert_eq!(solver.wait(now + Duration::from_secs(1)), Duration::ZERO);
         pacing.drawn(later, NextFrame::Answer);
         assert_eq!(solver.wait(later), Duration::ZERO);
+    }
+
+    #[test]
+    fn what_moves_slowly_is_drawn_less_often_and_never_in_steps_that_are_seen() {
+        let (mut pacing, now) = (FramePacing::default(), Instant::now());
+        pacing.every(SOFTWARE_FRAME_INTERVAL);
+        let mut wait_ms = |points_per_s: f64| {
+            pacing.drawn(now, NextFrame::Step { points_per_s });
+            pacing.wait(now).as_secs_f64() * 1e3
+        };
+        for points_per_s in [20.0, 25.0, 30.0, 37.0] {
+            let wait = wait_ms(points_per_s);
+            assert!(wait > 40.0 && points_per_s * wait * 1e-3 <= 1.5 + 1e-6, "{points_per_s}: {wait} ms");
+        }
+        assert_eq!([0.0, 10.0].map(&mut wait_ms), [80.0; 2]);
+        assert_eq!([40.0, 1e9, f64::INFINITY].map(&mut wait_ms), [40.0; 3]);
+    }
+
+    #[test]
+    fn the_speed_is_that_of_the_fastest_point() {
+        let answer = |places: &[[f64; 2]]| {
+            let nodes = places.iter().map(|[x, y]| Node { x_m: *x, y_m: *y, ..Node::default() });
+            let cables = vec![CableSolution { nodes: nodes.collect::<Vec<_>>().into(), ..CableSolution::default() }];
+            Arc::new(Solution {
+                time_s: 0.0,
+                model: Model::Fem,
+                reason: ModelReason::Requested,
+                next_cheaper: None,
+                cables,
+                warnings: Vec::new(),
+                cost: Cost::default(),
+                energy: Energy::default(),
+                robot: None,
+                verification: None,
+            })
+        };
+        let (mut motion, now) = (ShownMotion::default(), Instant::now());
+        let later = now + Duration::from_millis(100);
+        assert_eq!(motion.speed(now, Some(&answer(&[[0.0, 0.0], [1.0, 0.0]]))), f64::INFINITY);
+        let speed = motion.speed(later, Some(&answer(&[[0.0, 0.1], [1.3, 0.4]])));
+        assert!((speed - 5.0).abs() < 1e-9, "{speed}");
+        assert_eq!(motion.speed(later, Some(&answer(&[[0.0, 0.1]]))), f64::INFINITY, "another mesh");
     }
 }

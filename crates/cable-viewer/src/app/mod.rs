@@ -34,7 +34,7 @@ use std::time::{Duration, Instant};
 
 use cable_core::Scene;
 
-use crate::app::frame_pacing::{FramePacing, NextFrame, SOFTWARE_FRAME_INTERVAL};
+use crate::app::frame_pacing::{FramePacing, NextFrame, SOFTWARE_FRAME_INTERVAL, ShownMotion};
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::{Autosave, Changes};
@@ -73,6 +73,7 @@ pub struct ViewerApp {
     worker: Worker,
     worker_kind: WorkerKind,
     frame_pacing: FramePacing,
+    shown_motion: ShownMotion,
     /// As last sent to the window.
     title: String,
     /// Keeps unsaved changes on disk, in a window.
@@ -123,6 +124,7 @@ impl ViewerApp {
             worker,
             worker_kind,
             frame_pacing,
+            shown_motion: ShownMotion::default(),
             title: String::new(),
             autosave: None,
             pending_edits: VecDeque::new(),
@@ -391,7 +393,10 @@ impl ViewerApp {
         }
         self.apply(&ctx, commands);
         let runs = !self.state.live.playback.paused && self.pending_edits.is_empty();
-        self.frame_pacing.drawn(Instant::now(), if runs { NextFrame::Step } else { NextFrame::Answer });
+        let now = Instant::now();
+        let metres_per_s = self.shown_motion.speed(now, self.state.live.snapshot.solution.as_ref());
+        let points_per_s = metres_per_s * self.state.view.camera.points_per_m;
+        self.frame_pacing.drawn(now, if runs { NextFrame::Step { points_per_s } } else { NextFrame::Answer });
         self.update_autosave(&ctx);
         if let Some((list, written)) = &mut self.recent_list
             && *written != self.state.ui.recent

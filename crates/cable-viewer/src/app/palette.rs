@@ -62,56 +62,57 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
     let file = |dialog| Command::File(FileCommand::SetDialog(Some(dialog)));
     let select = |item| Command::View(ViewCommand::Select(Some(item)));
     let theme = |theme| Command::View(ViewCommand::SetTheme(theme));
+    // In the order of the menus, as they are read where nothing is typed.
     let fixed = [
         ("New scene", Command::File(FileCommand::New)),
         ("Open a file…", Command::File(FileCommand::AskOpen)),
         ("Save", Command::File(FileCommand::Save)),
         ("Save as…", Command::File(FileCommand::AskSaveAs)),
-        ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
-        ("Pin a recorded run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
-        ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
-        ("Export picture…", Command::File(FileCommand::AskExportPicture)),
         ("Import map…", Command::File(crate::app::menu::import_map())),
+        ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
+        ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
+        ("Pin a recorded run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
+        ("Export picture…", Command::File(FileCommand::AskExportPicture)),
+        ("Quit", Command::File(FileCommand::Quit)),
         ("Undo", Command::Scene(SceneCommand::Undo)),
         ("Redo", Command::Scene(SceneCommand::Redo)),
+        (restart_button(state), Command::Playback(PlaybackCommand::UndoRestart)),
+        ("Edit the scene: name, map, robot", select(Item::Scene)),
+        ("Edit the cable", select(Item::Cable(0))),
+        ("Edit the environment", select(Item::Environment)),
+        ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
+        ("Add a cable", Command::Scene(SceneCommand::AddCable)),
         ("Remove the robot", Command::Scene(SceneCommand::SetRobot(None))),
         ("Play or pause", Command::Playback(PlaybackCommand::TogglePause)),
         ("Step", Command::Playback(PlaybackCommand::Step)),
         ("Step back", Command::Playback(PlaybackCommand::StepBack)),
         ("Reset to the start", Command::Playback(PlaybackCommand::Reset)),
         ("Show the latest", Command::Playback(PlaybackCommand::ShowTime(None))),
+        ("Resume from here: the time shown", Command::Playback(PlaybackCommand::ResumeFromShown)),
         ("Real-time speed", Command::Playback(PlaybackCommand::SetSpeed(1.0))),
         ("Slow motion 0.1×", Command::Playback(PlaybackCommand::SetSpeed(0.1))),
         ("Robot: follow path", Command::Playback(PlaybackCommand::DriveRobot(None))),
         ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
+        ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
+        ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
-        ("Edit the scene: name, map, robot", select(Item::Scene)),
-        ("Edit the cable", select(Item::Cable(0))),
-        ("Edit the environment", select(Item::Environment)),
-        ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
-        ("Cancel or clear the safe reach", Command::View(ViewCommand::EndSafeReach)),
+        ("Follow the cable", Command::View(ViewCommand::Follow)),
+        ("Show or fold the outline", show(OpenPanels { edit: !panels.edit, ..panels })),
+        ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
+        ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
         ("Match system theme", theme(egui::ThemePreference::System)),
         ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
         ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
-        ("Add a cable", Command::Scene(SceneCommand::AddCable)),
-        ("Resume from here: the time shown", Command::Playback(PlaybackCommand::ResumeFromShown)),
+        ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
+        ("Cancel or clear the safe reach", Command::View(ViewCommand::EndSafeReach)),
         ("Start here…", file(Dialog::StartHere)),
         ("Help: pointer and keys", file(Dialog::Help)),
-        ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
-        ("Quit", Command::File(FileCommand::Quit)),
-        (restart_button(state), Command::Playback(PlaybackCommand::UndoRestart)),
-        ("Follow the cable", Command::View(ViewCommand::Follow)),
-        ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
-        ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
-        ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),
-        ("Show or fold the outline", show(OpenPanels { edit: !panels.edit, ..panels })),
-        ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
-        ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),
+        ("Give feedback…", Command::File(crate::app::menu::feedback())),
     ];
     let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
@@ -168,10 +169,33 @@ fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
         _ => false,
     };
     all.retain(|(name, command)| matches(name, true) || part_of_id(command));
-    // Commands of that name come before those of which it is a synonym, and the scene of that file
-    // before all.
-    all.sort_by_key(|(name, command)| (!is_id(command), !matches(name, false)));
+    // The scene of that file comes before all, then names by how they have the text.
+    all.sort_by_key(|(name, command)| (!is_id(command), !matches(name, false), name_match(name, &whole, &words)));
     all
+}
+
+/// The way in which a name has a text, the best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum NameMatch {
+    /// It begins with the text.
+    Start,
+    /// Each word of the text begins a word of it.
+    WordStarts,
+    /// Words of the text are within words of it, or in its synonyms.
+    Within,
+}
+
+/// How a name has a text, whose words these are.
+fn name_match(name: &str, whole: &str, words: &[String]) -> NameMatch {
+    let name = name.to_lowercase();
+    let begins = |word: &String| name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()));
+    if name.starts_with(whole) {
+        NameMatch::Start
+    } else if words.iter().all(begins) {
+        NameMatch::WordStarts
+    } else {
+        NameMatch::Within
+    }
 }
 
 /// Draws it; Enter does the first found.
@@ -226,5 +250,11 @@ mod tests {
         }
         assert_eq!(found("hold this")[0].0, "Pin this result");
         assert_eq!(found("hold")[0].0, "Pin a recorded run…");
+        // What begins with the text stands before what has it within a word.
+        assert_eq!(found("step")[0].0, "Step");
+        assert_eq!(found("re")[0].0, "Redo");
+        assert_eq!(found("graph").iter().take(2).filter(|(name, _)| name.starts_with("Graph of")).count(), 2);
+        let places = |text: &str, part: &str| found(text).iter().position(|(name, _)| name.contains(part));
+        assert!(places("pin", "Unpin").is_none_or(|k| Some(k) > places("pin", "Pin this result")));
     }
 }

@@ -9,7 +9,7 @@ use crate::io::graph_in_view::{GraphInView, RIBBON, visible};
 use crate::io::picture_file;
 use crate::render::colour::LINES;
 use crate::render::offscreen::Offscreen;
-use crate::units::format::{round_step, significant};
+use crate::units::format::{magnitude, round_step, significant};
 
 /// Names of the limits, and their colours.
 const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
@@ -393,7 +393,9 @@ fn tick_text(value: f64, [low, high]: [f64; 2]) -> String {
     let step = round_step(high - low, 6.0);
     let decimals = (-(step.log10() + 1e-9).floor()).max(0.0);
     if !(decimals <= 4.0 && low.abs().max(high.abs()) < 1e5) {
-        return significant(value, 4);
+        let text = significant(value, 4);
+        // Lines of a grid are round: their powers of ten have no digits to spare.
+        return if text.contains('^') { magnitude(value, 4) } else { text };
     }
     // A zero that rounding left below nothing has no sign.
     let text = format!("{:.*}", decimals as usize, value + 0.0);

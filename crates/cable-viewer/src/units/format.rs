@@ -114,9 +114,32 @@ pub fn significant(value: f64, digits: usize) -> String {
         let decimals = usize::try_from(i32::try_from(last).unwrap_or(0) - exponent).unwrap_or(0);
         format!("{value:.decimals$}")
     } else {
-        scientific
+        in_powers_of_ten(&scientific)
     };
     text.replace('-', "−")
+}
+
+/// A number with at most so many significant digits as a multiple of a power of ten, for what is
+/// read by its order of magnitude.
+#[must_use]
+pub fn magnitude(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return significant(value, digits);
+    }
+    let last = digits.saturating_sub(1);
+    let scientific = format!("{value:.last$e}");
+    match scientific.split_once('e') {
+        Some((number, power)) if number.contains('.') => {
+            let number = number.trim_end_matches('0').trim_end_matches('.');
+            in_powers_of_ten(&format!("{number}e{power}"))
+        }
+        _ => in_powers_of_ten(&scientific),
+    }
+}
+
+/// `1.5e-9` as it is printed in books: 1.5×10^−9.
+fn in_powers_of_ten(scientific: &str) -> String {
+    scientific.replace('e', "×10^").replace('-', "−")
 }
 
 /// A value with so many significant digits and its symbol; "no data" alone where it is no number.
@@ -137,15 +160,21 @@ pub fn with_symbol(number: String, symbol: &str) -> String {
 }
 
 impl Unit {
-    /// A value (SI) with [`DIGITS`] digits, or the unit's own decimals, and the unit.
+    /// A value (SI) with [`DIGITS`] digits, or the unit's own decimals, and the unit. Below one,
+    /// zeros at its end are left out: they read as if more were known.
     #[must_use]
     pub fn text(self, value: f64) -> String {
         let unit = self.display();
+        let shown = value / unit.si;
         match unit.decimals {
             Some(decimals) if value.is_finite() => {
-                with_symbol(format!("{:.decimals$}", value / unit.si).replace('-', "−"), unit.symbol)
+                with_symbol(format!("{shown:.decimals$}").replace('-', "−"), unit.symbol)
             }
-            _ => quantity(value / unit.si, DIGITS, unit.symbol),
+            _ if (1e-4..1.0).contains(&shown.abs()) => {
+                let text = significant(shown, DIGITS);
+                with_symbol(text.trim_end_matches('0').trim_end_matches('.').to_owned(), unit.symbol)
+            }
+            _ => quantity(shown, DIGITS, unit.symbol),
         }
     }
 
@@ -153,22 +182,26 @@ impl Unit {
     #[must_use]
     pub fn exact(self, value: f64) -> String {
         // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
-        self.rounded(value, 15)
+        with_symbol(self.rounded(value, 15), self.display().symbol)
     }
 
     /// A value (SI) with at most six digits and the unit, to be read: `28 mm`, `463.228 N`.
     #[must_use]
     pub fn brief(self, value: f64) -> String {
-        self.rounded(value, 6)
+        with_symbol(self.rounded(value, 6).replace('-', "−"), self.display().symbol)
     }
 
+    /// The number alone, as it may be typed.
     fn rounded(self, value: f64, digits: usize) -> String {
         let unit = self.display();
         let shown = value / unit.si;
         let last = digits.saturating_sub(1);
         let rounded: f64 = format!("{shown:.last$e}").parse().unwrap_or(shown);
-        let written = if (1e-4..1e9).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") };
-        with_symbol(if rounded == 0.0 { "0".to_owned() } else { written }, unit.symbol)
+        match rounded.abs() {
+            0.0 => "0".to_owned(),
+            size if (1e-4..1e9).contains(&size) => format!("{rounded}"),
+            _ => format!("{rounded:e}"),
+        }
     }
 }
 
@@ -185,11 +218,25 @@ mod tests {
             (0.0, "0"),
             (-0.5, "−0.5000"),
             (123_456.7, "123457"),
-            (1.5e-9, "1.500e−9"),
+            (1.5e-9, "1.500×10^−9"),
+            (-2.5e12, "−2.500×10^12"),
             (f64::NAN, "no data"),
         ] {
             assert_eq!(significant(value, 4), text);
         }
+    }
+
+    /// A breaking tension of 90 N read "0.09000 kN".
+    #[test]
+    fn values_as_given_have_no_zeros_at_their_end_below_one() {
+        assert_eq!(Unit::KN.text(90.0), "0.09 kN");
+        assert_eq!(Unit::KN.text(10e3), "10.00 kN");
+        assert_eq!(Unit::KN.text(999.96), "1 kN");
+        assert_eq!(Unit::NONE.text(0.5), "0.5");
+        assert_eq!(Unit::NONE.text(-0.123_456), "−0.1235");
+        assert_eq!(Unit::COORDINATE.text(0.25), "0.250 m");
+        assert_eq!(Unit::N.brief(-1.0), "−1 N");
+        assert_eq!([magnitude(3.1e6, 2), magnitude(-2e-10, 3)], ["3.1×10^6", "−2×10^−10"]);
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use cable_core::Model;
 
-use crate::units::system;
 use crate::units::unit::Unit;
+use crate::units::{format, system};
 
 /// A force, N or kN, three significant digits.
 #[must_use]
@@ -23,10 +23,10 @@ pub fn digits(value: f64) -> String {
     if size == 0.0 {
         "0".to_owned()
     } else if !(1e-3..1e6).contains(&size) {
-        format!("{value:.2e}")
+        format::magnitude(value, 3)
     } else {
         let decimals = (2 - size.log10().floor() as i32).clamp(0, 5) as usize;
-        format!("{value:.decimals$}")
+        format!("{value:.decimals$}").replace('-', "−")
     }
 }
 

@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(format::force(1e6), "224.8 kip");
         assert_eq!(format::stress(1e6), "145.0 psi");
         assert_eq!(format::length(3.048), "10.00 ft");
-        assert_eq!(Unit::KG_PER_M.text(1.0), "0.6720 lb/ft");
+        assert_eq!(Unit::KG_PER_M.text(1.0), "0.672 lb/ft");
         assert_eq!(Unit::K.text(10.0), "18.00 °F");
         assert_eq!(Unit::M_PER_S2.text(9.80665), "32.17 ft/s²");
         for (unit, text, si) in [

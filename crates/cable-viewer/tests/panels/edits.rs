@@ -111,7 +111,7 @@ fn a_number_out_of_range_is_kept_and_explained() {
     enter(&mut harness, "Friction", "-1");
     assert_eq!(harness.state().state.document.scene.cables[0].friction, -1.0);
     harness.get_by_label_contains("0 to 10");
-    click(&mut harness, "Set to 0.5000");
+    click(&mut harness, "Set to 0.5");
     assert_eq!(harness.state().state.document.fault, None);
 }
 

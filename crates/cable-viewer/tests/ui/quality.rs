@@ -41,11 +41,11 @@ fn t06_residual_displacement_and_condition_stand_in_the_solver_panel() {
         use egui_kittest::kittest::NodeT;
         found.accesskit_node().value().or(found.accesskit_node().label()).unwrap_or_default()
     };
-    assert!(read(&harness).contains('e'), "{}", read(&harness));
+    assert!(read(&harness).contains("×10^"), "{}", read(&harness));
     // Too stiff: said before anybody believes the figures.
     make_too_stiff(&mut harness);
     let told = read(&harness);
-    assert!(told.ends_with("e11"), "{told} with {:?}", harness.state().state.live.snapshot.error);
+    assert!(told.ends_with("10^11"), "{told} with {:?}", harness.state().state.live.snapshot.error);
     // A model without a mesh has none.
     let mut harness = open(catalog::hanging_span());
     apply(&mut harness, Command::SetModel(Model::Catenary));

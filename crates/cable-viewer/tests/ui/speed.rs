@@ -277,6 +277,71 @@ fn software_drawing_looks_the_same_at(scale: f32) {
     assert!(share(2) < 1e-3 && share(40) == 0.0, "at {scale} {} of the pixels differ, {} much", share(2), share(40));
 }
 
+/// A window of which only what changes is drawn, frame by frame, looks as if its last frame was
+/// drawn at once: while time runs, a pointer wanders, dialogs come and go, fonts grow and the theme
+/// changes.
+#[test]
+fn a_picture_drawn_in_parts_looks_as_if_drawn_at_once() {
+    use cable_viewer::command::{FileCommand, PlaybackCommand};
+    use cable_viewer::state::dialog::Dialog;
+    let frames = |each_drawn: bool, stop: usize| {
+        let state = match render_state(RendererOptions { dithering: false, ..RendererOptions::default() }) {
+            Ok(state) => state,
+            Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),
+            Err(why) => {
+                eprintln!("skipped, {why}");
+                return None;
+            }
+        };
+        let software = SoftwarePainter::of(&state)?;
+        let mut harness = Harness::builder()
+            .with_size(Vec2::new(1100.0, 640.0))
+            .with_pixels_per_point(1.25)
+            .with_step_dt(1.0 / 60.0)
+            .with_render_cursor(false)
+            .with_accessibility_check(false)
+            .renderer(egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state))
+            .build_eframe(|cc| {
+                cc.egui_ctx.add_plugin(software);
+                ViewerApp::inline(&cc.egui_ctx, catalog::robot_drive(), None)
+            });
+        let ctx = harness.ctx.clone();
+        for k in 0..stop {
+            let command = match k {
+                3 => Some(Command::Playback(PlaybackCommand::SetPaused(false))),
+                12 => Some(Command::Playback(PlaybackCommand::SetPaused(true))),
+                14 => Some(Command::File(FileCommand::SetDialog(Some(Dialog::About)))),
+                17 => Some(Command::File(FileCommand::SetDialog(None))),
+                19 => Some(Command::View(ViewCommand::SetTheme(egui::ThemePreference::Light))),
+                21 => Some(Command::View(ViewCommand::Pan(Vec2::new(7.0, -3.0)))),
+                _ => None,
+            };
+            harness.state_mut().apply(&ctx, command.into_iter().collect());
+            harness.hover_at(egui::pos2(40.0 * k as f32, 25.0 * k as f32));
+            harness.step();
+            let live = &mut harness.state_mut().state.live;
+            // The time it took is another every time.
+            (live.snapshot.solve_wall_s, live.latest.solve_wall_s) = (1e-3, 1e-3);
+            let solver = &mut harness.state_mut().state.solver;
+            (solver.solving_s, solver.edit_latency_s) = (None, Some(0.01));
+            if each_drawn {
+                harness.render().unwrap();
+            }
+        }
+        Some(harness.render().unwrap())
+    };
+    for stop in [6, 12, 16, 18, 20, 24] {
+        let (Some(in_parts), Some(at_once)) = (frames(true, stop), frames(false, stop)) else { return };
+        let different = in_parts.pixels().zip(at_once.pixels()).filter(|(a, b)| a != b).count();
+        if let Some(folder) = std::env::var_os("KEEP_PICTURES") {
+            let folder = std::path::Path::new(&folder);
+            in_parts.save(folder.join(format!("parts-{stop}.png"))).unwrap();
+            at_once.save(folder.join(format!("once-{stop}.png"))).unwrap();
+        }
+        assert_eq!(different, 0, "pixels after {stop} frames");
+    }
+}
+
 /// A window whose graphs show all of a million samples of a held run and of a history that is full,
 /// printed and not asserted: a 60th of a second is 16.7 ms.
 #[test]

@@ -33,6 +33,12 @@ pub enum WarningCause {
         /// The mean in which it is; None = at rest.
         mean: Option<MeanTension>,
     },
+    /// Tension above the breaking tension in a cable that broke: its pieces are not watched until
+    /// the wave of the break has crossed them and come back.
+    AboveBreakingAfterBreak {
+        /// The mean in which it is.
+        mean: MeanTension,
+    },
     /// The cable broke.
     Broke {
         /// Time, s.
@@ -293,7 +299,7 @@ impl WarningCause {
     pub fn kind(&self) -> WarningKind {
         match self {
             Self::AboveService { .. } | Self::BrieflyAboveBreaking { .. } => WarningKind::ServiceTension,
-            Self::AboveBreaking { .. } => WarningKind::BreakingTension,
+            Self::AboveBreaking { .. } | Self::AboveBreakingAfterBreak { .. } => WarningKind::BreakingTension,
             Self::Broke { .. } => WarningKind::Broken,
             Self::BreakageUncertain { .. } => WarningKind::MayBreak,
             Self::NarrowGuide => WarningKind::BendRadius,

@@ -56,7 +56,7 @@ pub fn problems(state: &AppState, answer: &Solution) -> Vec<QualityProblem> {
             format!("{} > {}", format::percent(share), format::percent(tolerance)),
             unbalanced,
         ),
-        ("Ill-conditioned equations", format!("{condition:.0e}"), ill),
+        ("Ill-conditioned equations", format::magnitude(condition, 1), ill),
         ("Kinetic energy grows", energy, grows_for_long(state, answer)),
     ];
     found.into_iter().filter_map(|(title, figure, why)| Some(QualityProblem { title, figure, why: why? })).collect()
@@ -122,8 +122,8 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
         return readout::row(ui, name, "not known", "No cable is under tension", |_| {});
     };
     let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
-                contact: of 16 digits its logarithm are lost to rounding";
-    readout::assessed_row(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
+                contact. Of the 16 digits of a number, about as many as its power of ten are lost to rounding";
+    readout::assessed_row(ui, name, &format!("≈ {}", format::magnitude(worst, 2)), help, wrong);
 }
 
 fn kinetic_energy(ui: &mut Ui, state: &AppState, answer: &Solution) {

@@ -236,6 +236,9 @@ fn scene_fault(state: &AppState) -> Option<WarningRow> {
 /// How grave a warning is, and the few words that name it.
 fn severity_and_title(warning: &Warning) -> (Severity, &'static str) {
     match warning.kind {
+        WarningKind::BreakingTension if matches!(warning.cause, WarningCause::AboveBreakingAfterBreak { .. }) => {
+            (Severity::Stop, "May break again")
+        }
         WarningKind::BreakingTension => (Severity::Stop, "Breaks here"),
         WarningKind::Broken => (Severity::Stop, "Broken"),
         WarningKind::MayBreak => (Severity::Caution, "May break"),
