@@ -475,3 +475,28 @@ fn a_state_inside_an_obstacle_is_refused() {
         assert_eq!(sim.states(), before);
     }
 }
+
+/// The tension at a node that bears a point load was that of the mean of both sides: 72 N for 157 N
+/// before it and 188 N beyond it.
+#[test]
+fn issue_016_the_tension_at_a_point_load_is_that_of_its_tauter_side() {
+    let supports = vec![Support::fixed("a", [0.0, 0.0]), Support::fixed("b", [5.278, 0.0])];
+    let mut scene = catalog::cable_alone([8.31, 3.0, 1e6], supports);
+    let at = 4.86;
+    for (segments, force_n) in [(20, [0.0, 315.0]), (41, [40.0, -100.0]), (200, [0.0, 20.0])] {
+        scene.cables[0].segments = Some(segments);
+        let cable = scene.cables[0].name.clone();
+        let constant = Load { cable, arc_length_m: at, force_n: Some(force_n), times_s: vec![], forces_n: vec![] };
+        scene.loads = vec![constant];
+        let tension = |model: Model| {
+            let mut sim = Simulation::new(scene.clone(), model).unwrap();
+            sim.settle().unwrap();
+            let nodes = &sim.solution().cables[0].nodes;
+            let here = nodes.iter().filter(|n| (n.arc_length_m - at).abs() < 1e-9);
+            here.map(|n| n.tension_n).fold(0.0, f64::max)
+        };
+        let (found, expected) = (tension(Model::MassSpring), tension(Model::Catenary));
+        println!("{segments} segments: {found:.3} N of {expected:.3} N");
+        assert!((found / expected - 1.0).abs() < 5e-3, "{segments}: {found} N for {expected} N");
+    }
+}

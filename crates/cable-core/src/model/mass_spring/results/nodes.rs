@@ -2,7 +2,7 @@
 //! supports.
 
 use crate::energy::bending::turn;
-use crate::math::{Vec2, angle, perp};
+use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
 use crate::model::hand::Hand;
 use crate::model::mass_spring::forces::{bending, nodal, reactions};
@@ -106,10 +106,17 @@ impl NodeReader<'_> {
         }
     }
 
-    /// Tension at a node: inside, the mean of its elements' force vectors; at an end, the force
+    /// Tension at a node: inside, the mean of its elements' force vectors, and the larger of those
+    /// just before and just beyond it where a support or a point load acts; at an end, the force
     /// there, half an element's weight and inertia beyond the middle of the last element.
     fn node(&self, i: usize) -> Node {
         let tension_n = match (i.checked_sub(1), i < self.mesh.rest_length.len()) {
+            (Some(e), true) if self.bears_point_force(i) => {
+                let load = self.mesh.problem.body_force(self.time_s);
+                let half = |e: usize| load * (0.5 * self.mesh.straight_length[e]);
+                let [before, beyond] = [e, i].map(|e| nodal::spring_force(self.mesh, e));
+                larger((before - half(e)).norm(), (beyond + half(i)).norm())
+            }
             (Some(e), true) => ((nodal::spring_force(self.mesh, e) + nodal::spring_force(self.mesh, i)) * 0.5).norm(),
             _ if self.mesh.supported[i] => self.end_tension(i),
             (Some(e), false) => self.free_end_tension(i, e),
@@ -129,6 +136,12 @@ impl NodeReader<'_> {
             force_n: self.internal_force(i).into(),
             ..Node::default()
         }
+    }
+
+    /// True if a support or a point load acts on a node.
+    fn bears_point_force(&self, i: usize) -> bool {
+        let here = |s: f64| (s - self.mesh.arc_length[i]).abs() <= 1e-9 * self.mesh.problem.length;
+        self.mesh.support_node.contains(&i) || self.mesh.problem.loads.iter().any(|l| here(l.arc_length))
     }
 
     /// Internal force just beyond a node, at the end of the cable just before it, N: that in the
