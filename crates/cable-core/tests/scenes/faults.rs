@@ -313,7 +313,7 @@ fn terrain_and_polygons_that_cross_themselves_are_refused_with_both_edges() {
     let error = with_obstacle(Shape::Terrain { points_m: loops }).validate().unwrap_err();
     assert_eq!(error.path, "obstacles[0].points_m[2]");
     let said = error.to_string();
-    assert!(said.contains("[4, -2] to [2, 1]") && said.contains("[-5, 0] to [4, 0]"), "{said}");
+    assert!(said.contains("(4 m, −2 m) to (2 m, 1 m)") && said.contains("(−5 m, 0 m) to (4 m, 0 m)"), "{said}");
     let bow = vec![[0.0, -4.0], [2.0, -2.0], [2.0, -4.0], [0.5, -1.5]];
     let error = with_obstacle(Shape::Polygon { points_m: bow }).validate().unwrap_err();
     assert_eq!(error.path, "obstacles[0].points_m[2]");
