@@ -70,6 +70,9 @@ const SAME_TENSION: f64 = 1e-9;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
+/// Is shown the nodes of each answer on the way of an advance; returns whether that goes on.
+pub(in crate::model) type NodesWatch<'a> = &'a mut dyn FnMut(&[Node]) -> bool;
+
 /// The `spans` model of one cable.
 #[derive(Clone, Debug)]
 pub struct SpansModel {
@@ -177,7 +180,7 @@ impl SpansModel {
     pub(super) fn advance_while(
         &mut self,
         dt_s: f64,
-        mut goes_on: Option<&mut dyn FnMut(&[Node]) -> bool>,
+        mut goes_on: Option<NodesWatch<'_>>,
     ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
