@@ -37,7 +37,7 @@ pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 #[must_use]
 pub fn default_hand_stiffness(problem: &Problem) -> f64 {
     let stiffness =
-        larger(problem.force_scale(), problem.whole_floor_friction()) / (HAND_GIVE_FRACTION * problem.length);
+        larger(problem.force_scale(), problem.max_whole_floor_friction()) / (HAND_GIVE_FRACTION * problem.length);
     stiffness.clamp(*HAND_STIFFNESSES.start(), *HAND_STIFFNESSES.end())
 }
 

@@ -199,18 +199,18 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
-    /// The friction of the floor of a plan view on the lump of a support, at most, N.
+    /// The greatest friction (N) of the floor of a plan view on a length of cable (m) and a lumped
+    /// mass (kg), which rubs as cable of its mass does; 0 without such a floor.
     #[must_use]
-    pub(crate) fn floor_friction_on_lump(&self, support: usize) -> f64 {
-        let mass = self.supports.get(support).map_or(0.0, |s| s.mass);
-        self.floor_friction.map_or(0.0, |(friction, weight_per_m)| friction * weight_per_m / self.linear_density * mass)
+    pub(crate) fn max_floor_friction(&self, length: f64, mass: f64) -> f64 {
+        self.floor_friction
+            .map_or(0.0, |(friction, weight_per_m)| friction * weight_per_m * (length + mass / self.linear_density))
     }
 
-    /// The friction of the floor of a plan view on the cable and its lumps, at most, N.
+    /// The greatest friction of the floor of a plan view on the cable and its lumped masses, N.
     #[must_use]
-    pub(crate) fn whole_floor_friction(&self) -> f64 {
-        let cable = self.floor_friction.map_or(0.0, |(friction, weight_per_m)| friction * weight_per_m * self.length);
-        cable + (0..self.supports.len()).map(|k| self.floor_friction_on_lump(k)).sum::<f64>()
+    pub(crate) fn max_whole_floor_friction(&self) -> f64 {
+        self.max_floor_friction(self.length, self.supports.iter().map(|s| s.mass).sum())
     }
 
     /// Acceleration of gravity, m/s²; 0 of a cable without mass.

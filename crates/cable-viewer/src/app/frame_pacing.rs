@@ -64,7 +64,7 @@ impl FramePacing {
     }
 }
 
-/// How fast what is shown moves, from one frame to the next.
+/// The speed of the fastest shown node, from one frame to the next.
 #[derive(Debug, Default)]
 pub(super) struct ShownMotion {
     last: Option<(Instant, Arc<Solution>)>,

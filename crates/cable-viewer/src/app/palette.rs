@@ -185,7 +185,7 @@ enum NameMatch {
     Within,
 }
 
-/// How a name has a text, whose words these are.
+/// The way in which a name contains a text, whose words these are.
 fn name_match(name: &str, whole: &str, words: &[String]) -> NameMatch {
     let name = name.to_lowercase();
     let begins = |word: &String| name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word.as_str()));
@@ -250,7 +250,7 @@ mod tests {
         }
         assert_eq!(found("hold this")[0].0, "Pin this result");
         assert_eq!(found("hold")[0].0, "Pin a recorded run…");
-        // What begins with the text stands before what has it within a word.
+        // Names that begin with the text stand before those that have it within a word.
         assert_eq!(found("step")[0].0, "Step");
         assert_eq!(found("re")[0].0, "Redo");
         assert_eq!(found("graph").iter().take(2).filter(|(name, _)| name.starts_with("Graph of")).count(), 2);

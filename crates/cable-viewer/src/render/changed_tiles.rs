@@ -82,7 +82,7 @@ impl TileContents {
     pub fn covering(&self, part: Rect) -> Option<TileRectangle> {
         let range = |from: f32, to: f32, count: u16| {
             let [from, to] = [from, to].map(|v| v * self.tiles_per_point);
-            // What is not a number lies nowhere. A cast rounds towards zero, and saturates.
+            // A value that is not a number lies nowhere. A cast rounds towards zero, and saturates.
             let within = from <= to && to >= 0.0 && from < f32::from(count);
             within.then(|| [from as u16, (to as u16).min(count - 1)])
         };
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(now.changed_since(&before), [block]);
     }
 
-    /// What lies over what decides a pixel.
+    /// The order in which things lie over each other decides a pixel.
     #[test]
     fn the_order_of_what_is_drawn_counts() {
         let tile = TileRectangle { columns: [0, 0], rows: [0, 0] };

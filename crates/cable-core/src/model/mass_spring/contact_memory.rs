@@ -105,7 +105,9 @@ impl ContactMemory {
     /// friction is whatever the path there left, up to μ times the normal force. 0 where nothing is
     /// remembered.
     pub(in crate::model::mass_spring) fn floor_uncertainty(&self, mesh: &Mesh) -> f64 {
-        let Some((mu, normal)) = mesh.problem.floor_friction else { return 0.0 };
+        if mesh.problem.floor_friction.is_none() {
+            return 0.0;
+        }
         let on_floor = self.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();
         let top = mesh.tension.iter().copied().fold(0.0, larger);
         if on_floor != mesh.position.len() || !(top > 0.0) {
@@ -114,8 +116,7 @@ impl ContactMemory {
         let tuning = &mesh.tuning.contact;
         let sticks =
             |n: &usize| (mesh.position[*n] - self.anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
-        let limit =
-            |n: usize| mu * normal * (mesh.half_straight_length(n) + mesh.point_mass[n] / mesh.problem.linear_density);
+        let limit = |n: usize| mesh.problem.max_floor_friction(mesh.half_straight_length(n), mesh.point_mass[n]);
         let held: f64 = (0..on_floor).filter(sticks).map(limit).sum();
         held / top
     }

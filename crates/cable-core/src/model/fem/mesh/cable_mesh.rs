@@ -80,8 +80,14 @@ impl Mesh {
     /// Mass that moves with a node, kg; `support_node` is the node of each support.
     #[must_use]
     pub fn mass_with(&self, problem: &Problem, support_node: &[Option<usize>], node: usize) -> f64 {
-        let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
-        problem.linear_density * self.tributary_length(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
+        problem.linear_density * self.tributary_length(node) + Self::lumped_mass(problem, support_node, node)
+    }
+
+    /// Lumped mass of the supports at a node, kg; `support_node` is the node of each support.
+    #[must_use]
+    pub fn lumped_mass(problem: &Problem, support_node: &[Option<usize>], node: usize) -> f64 {
+        let here = problem.supports.iter().zip(support_node).filter(|(_, at)| **at == Some(node));
+        here.map(|(s, _)| s.mass).sum()
     }
 
     /// Becomes a copy of `other`, reusing its memory where possible. `slides` is false if there can

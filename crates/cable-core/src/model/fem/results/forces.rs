@@ -133,10 +133,9 @@ fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     rests.then(|| d.problem.hung_on(k, d.time()))
 }
 
-/// Plan view: the friction of the floor on the lumps of supports at a node, N.
+/// Plan view: the friction of the floor on the lumped masses of supports at a node, N.
 fn floor_force_on_lump(d: &CableState, node: usize) -> Vec2 {
-    let supports = d.meshing.support_node.iter().enumerate().filter(|(_, at)| **at == Some(node));
-    let on_lump: f64 = supports.map(|(k, _)| d.problem.floor_friction_on_lump(k)).sum();
+    let on_lump = d.problem.max_floor_friction(0.0, Mesh::lumped_mass(&d.problem, &d.meshing.support_node, node));
     match d.input.loads.floor_limit.get(node) {
         Some(&limit) if limit > 0.0 => {
             friction::at_plane(d.contacts.floor_slip[node], limit, d.contacts.slip).1 * (-on_lump / limit)

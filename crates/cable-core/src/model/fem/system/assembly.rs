@@ -13,7 +13,7 @@ use crate::model::fem::mesh::Mesh;
 
 /// True if the turn at an inner node bends the cable: neither the node nor a neighbour is a sliding
 /// node, and the cable is not broken there.
-fn bends(mesh: &Mesh, node: usize) -> bool {
+fn bends_at(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none) && mesh.goes_on_through(node)
 }
 
@@ -39,8 +39,8 @@ pub struct Bends<'a> {
 
 /// Passes each bend of a mesh to `visit`.
 #[inline]
-fn visit_bends(mesh: &Mesh, bends_of: Bends<'_>, mut visit: impl FnMut(NodeBend)) {
-    let Bends { stiffness, scale, from } = bends_of;
+fn visit_bends(mesh: &Mesh, bends: Bends<'_>, mut visit: impl FnMut(NodeBend)) {
+    let Bends { stiffness, scale, from } = bends;
     // The two bars of a bend have the same factor: no sliding node lies between them.
     let stiffness = |bar: usize| stiffness * scale.get(bar).copied().unwrap_or(1.0);
     let rest = &mesh.rest_length;
@@ -54,7 +54,7 @@ fn visit_bends(mesh: &Mesh, bends_of: Bends<'_>, mut visit: impl FnMut(NodeBend)
                 let bend = ClampBend { stiffness: stiffness(e), length: 0.5 * rest, direction, from };
                 visit(NodeBend::Clamped(bend, [e, e + 1]));
             }
-        } else if node > 0 && node < rest.len() && bends(mesh, node) {
+        } else if node > 0 && node < rest.len() && bends_at(mesh, node) {
             let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
             let bend = BendingEnergy { stiffness: stiffness(node), length: 0.5 * (rest[node - 1] + rest[node]), from };
             visit(NodeBend::Free(bend, [node - 1, node, node + 1]));
@@ -177,9 +177,9 @@ impl System {
 
     /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness EI τ/h and the
     /// positions at the start of a step of h this is the damping of bending.
-    pub fn add_bends(&mut self, mesh: &Mesh, bends_of: Bends<'_>, x: &[Vec2], curvature: Curvature) -> f64 {
+    pub fn add_bends(&mut self, mesh: &Mesh, bends: Bends<'_>, x: &[Vec2], curvature: Curvature) -> f64 {
         let mut value = 0.0;
-        visit_bends(mesh, bends_of, |bend| {
+        visit_bends(mesh, bends, |bend| {
             value += match bend {
                 NodeBend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
                 NodeBend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),

@@ -231,7 +231,7 @@ pub(in crate::model::fem) fn node_scale(input: &StepInput, node: usize) -> f64 {
 pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
     // The normal force on the floor of a plan view counts by its friction.
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
-    let whole = problem.force_scale().max(problem.whole_floor_friction());
+    let whole = problem.force_scale().max(problem.max_whole_floor_friction());
     let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
     (per_m, whole)
 }

@@ -4,14 +4,16 @@ use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::Mesh;
 
 /// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s),
-/// and as much for a lump there as for cable of its weight.
+/// and as much for a lumped mass there as for cable of its mass.
 pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut MomentumSums, h: f64) {
-    let Some((mu, normal)) = mesh.problem.floor_friction else { return };
+    if mesh.problem.floor_friction.is_none() {
+        return;
+    }
     for i in 0..mesh.position.len() {
         let before = if i > 0 { mesh.material_length[i - 1] } else { 0.0 };
         let ds = 0.5 * (before + mesh.material_length.get(i).copied().unwrap_or(0.0));
         let speed = mesh.velocity[i].norm();
-        let limit = mu * normal * (ds + mesh.point_mass[i] / mesh.problem.linear_density);
+        let limit = mesh.problem.max_floor_friction(ds, mesh.point_mass[i]);
         let loss = limit * h / mesh.mass[i];
         if !mesh.supported[i] {
             let kept = if speed <= loss { 0.0 } else { 1.0 - loss / speed };

@@ -138,10 +138,9 @@ impl Contacts {
         }
         self.find_pairs(mesh, self.tuning.offset_m);
         self.friction.clear();
-        if let Some((mu, normal)) = mesh.problem.floor_friction {
+        if mesh.problem.floor_friction.is_some() {
             for n in 0..mesh.position.len() {
-                let lump = mesh.point_mass[n] / mesh.problem.linear_density;
-                let limit = mu * normal * (mesh.half_straight_length(n) + lump);
+                let limit = mesh.problem.max_floor_friction(mesh.half_straight_length(n), mesh.point_mass[n]);
                 let (element, fraction) = mesh.locate(mesh.arc_length[n]);
                 self.friction.push(FrictionContact {
                     anchor: self.anchors[n],

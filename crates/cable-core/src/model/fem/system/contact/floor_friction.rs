@@ -120,7 +120,7 @@ pub(in crate::model::fem) fn as_move(slide: Vec2, along: Vec2) -> Vec2 {
 const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
 /// Plan view: renews the floor's friction limit of each node for the present shape, with that of
-/// the lump of a support there; returns whether any of them changed.
+/// the lumped mass of a support there; returns whether any of them changed.
 pub(in crate::model::fem) fn renew_limits(
     limits: &mut Vec<f64>,
     problem: &Problem,
@@ -129,16 +129,15 @@ pub(in crate::model::fem) fn renew_limits(
     x: &[Vec2],
     slide: Option<&[f64]>,
 ) -> bool {
-    let Some((friction, normal)) = problem.floor_friction else {
+    if problem.floor_friction.is_none() {
         limits.clear();
         return false;
-    };
+    }
     let mut changed = limits.len() != mesh.nodes();
     limits.resize(mesh.nodes(), 0.0);
     for (k, limit) in limits.iter_mut().enumerate() {
         let reach: f64 = reaches(mesh, k, x, slide).iter().sum();
-        let lumps = support_node.iter().enumerate().filter(|(_, node)| **node == Some(k));
-        let now = friction * normal * reach + lumps.map(|(s, _)| problem.floor_friction_on_lump(s)).sum::<f64>();
+        let now = problem.max_floor_friction(reach, Mesh::lumped_mass(problem, support_node, k));
         changed |= !((now - *limit).abs() <= FLOOR_FRICTION_TOLERANCE * (now + *limit));
         *limit = now;
     }
