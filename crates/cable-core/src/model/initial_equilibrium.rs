@@ -224,3 +224,30 @@ pub(crate) fn is_buried(problem: &Problem, nodes: &[Node]) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);
     nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cable that hangs down and comes up again `aside` (m) of itself.
+    fn hook(aside: f64) -> Vec<Node> {
+        let side = aside.signum();
+        let places = [[0.0, 2.0], [0.0, 1.0], [0.0, 0.0], [0.5 * side, -0.5], [side, 0.0], [aside, 1.0]];
+        let node =
+            |(k, [x_m, y_m]): (usize, [f64; 2])| Node { arc_length_m: 1.2 * k as f64, x_m, y_m, ..Node::default() };
+        places.into_iter().enumerate().map(node).collect()
+    }
+
+    /// The cable is clear of itself on the right and on the left of its leg.
+    #[test]
+    fn an_end_that_went_through_the_other_leg_passed_it() {
+        let diameter = 0.02;
+        let [right, near, left] = [hook(0.8), hook(0.3), hook(-0.8)];
+        for nodes in [&right, &near, &left] {
+            let at: Vec<Vec2> = nodes.iter().map(Node::at).collect();
+            assert!(crossings(&at, |_| true).is_empty());
+        }
+        assert!(!passes_itself(diameter, &right, &near));
+        assert!(passes_itself(diameter, &right, &left) && passes_itself(diameter, &left, &right));
+    }
+}
