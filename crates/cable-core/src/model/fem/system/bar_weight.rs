@@ -210,7 +210,7 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
     [k - 1, k].map(|e| {
         let path = mesh.path(e, x);
-        let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+        let tension = mesh.tension(e, path.length);
         may_lie(mesh, e, &path, body, tension)
     })
 }
