@@ -93,7 +93,7 @@ mod tests {
         let mut three = forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         three.divide(1);
         assert_eq!(three, forces(&[1.0, 2.0, 3.0, 4.0, 3.0, 4.0, 5.0, 6.0]));
-        three.merge(1, 0.3);
+        three.merge(1, 0.5);
         assert_eq!(three, forces(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
         three.merge(0, 0.75);
         assert_eq!(three, forces(&[1.5, 2.5, 5.0, 6.0]));

@@ -325,7 +325,7 @@ mod tests {
             prop_assume!(mesh.rest_length[0] > 0.5);
             let mut input = StepInput { scale: vec![1.4], ..StepInput::default() };
             input.loads.body = BODY;
-            input.losses.predicted_length.clone_from(&mesh.rest_length);
+            input.losses.damped_from.clone_from(&mesh.rest_length);
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let unknowns = Unknowns { positions: x.to_vec(), slides: slide.to_vec() };
