@@ -92,11 +92,12 @@ pub struct CableSolution {
     /// by elsewhere; None = nearly straight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tightest_bend: Option<Bend>,
-    /// Its sharpest bend where nothing leads it.
+    /// Its sharpest bend where nothing leads it: that of its line, or the wider one in which its
+    /// bending stiffness, known or likely, lets it hang.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_bend: Option<Bend>,
-    /// The sharpest bend where a support or obstacle guides the cable, at a sharp corner as the
-    /// bending stiffness allows; warnings refer to it.
+    /// The sharpest bend where a support or obstacle guides the cable, at a corner or round as the
+    /// bending stiffness, known or likely, allows; warnings refer to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged_bend: Option<JudgedBend>,
     /// The place at which it is pressed hardest against what leads it.

@@ -20,6 +20,11 @@
 //! Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ pushes at the point
 //! where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) /
 //! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
+//! A round post or wheel is such a corner with a larger arc.
+//!
+//! A cable that hangs in a narrow loop is kept open by its bending stiffness, too: with both legs
+//! straight up and no tension at the bottom, EI θ'' = −w s cos θ with θ(0) = 0, θ → π/2 has the
+//! radius 0.912 (EI/w)^⅓ there; any wider loop has a larger one.
 //!
 //! The bars of a stiff cable in motion may be longer than that bend. They spread its turn over their
 //! length and show it too gentle by up to two times, so the formula judges it there, too.
@@ -45,6 +50,14 @@ const CORNER_ARC_RATIO: f64 = 1.05;
 /// the formula, which does not know what else is near; larger: bends up to 1.8 times too gentle
 /// (6 of 19 random bends over corners and posts).
 const COARSE_BAR_LENGTHS: f64 = 0.5;
+
+/// Radius at the bottom of the narrowest loop that hangs by its own weight w, in units of (EI/w)^⅓:
+/// the solution of the equation at the head of this file. It is no setting.
+const NARROWEST_LOOP: f64 = 0.912;
+
+/// Greatest centripetal acceleration, in parts of that of the weight, of a loop that hangs by its
+/// weight. Larger: whirling loops are taken for hanging ones; smaller: slowly moved ones are not.
+const MAX_HANGING_ACCELERATION: f64 = 0.25;
 
 /// Distance from a corner, in bending lengths √(EI/T), within which a cable makes nearly all of its
 /// turn there: tan(φ/4) falls by e a bending length. Smaller: parts of the turn are left out; larger:
@@ -91,10 +104,10 @@ impl ShownBend {
 /// The sharpest bends of an answer, and the greatest pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Bends {
-    /// The sharpest of the answer's line where nothing leads it.
+    /// The sharpest of the answer's line.
+    line: Option<Bend>,
+    /// The sharpest that the cable has with its bending stiffness where nothing leads it.
     free: Option<Bend>,
-    /// The sharpest of the answer's line where something leads it.
-    led: Option<Bend>,
     /// The sharpest led one that the cable has with its bending stiffness.
     judged: Option<Bend>,
     /// The bending stiffness by which it is judged, N·m²; 0 = none is known.
@@ -146,10 +159,7 @@ impl Bends {
 
     /// The sharpest of the answer's line.
     pub fn tightest(&self) -> Option<Bend> {
-        match (self.free, self.led) {
-            (Some(a), Some(b)) => Some(if b.radius_m < a.radius_m { b } else { a }),
-            (a, b) => a.or(b),
-        }
+        self.line
     }
 
     /// The sharpest led bend that the cable has with its bending stiffness.
@@ -157,9 +167,26 @@ impl Bends {
         self.judged.map(|bend| JudgedBend { bend, bending_stiffness_n_m2: self.bending_stiffness })
     }
 
-    /// The sharpest of the answer's line where nothing leads it.
+    /// The sharpest that the cable has with its bending stiffness where nothing leads it.
     pub fn free(&self) -> Option<Bend> {
         self.free
+    }
+
+    /// The least radius (m) with which the cable hangs in a loop by its weight at a node, if its line
+    /// is that of a flexible one; 0 where it may be bent more sharply.
+    fn loop_radius(&self, problem: &Problem, n: &Node) -> f64 {
+        let weight = problem.weight.norm();
+        // In a pile the cable is pressed into folds by what lies on it.
+        if problem.cable.self_contact
+            || problem.bending_stiffness > 0.0
+            || !(self.bending_stiffness > 0.0 && weight > 0.0)
+        {
+            return 0.0;
+        }
+        let radius = NARROWEST_LOOP * (self.bending_stiffness / weight).cbrt();
+        let square = n.vx_m_per_s * n.vx_m_per_s + n.vy_m_per_s * n.vy_m_per_s;
+        let hangs = problem.linear_density * square < MAX_HANGING_ACCELERATION * weight * radius;
+        if hangs { radius } else { 0.0 }
     }
 
     fn add(&mut self, problem: &Problem, n: &Node, guide_at_node: Guide, turn: f64, shown: ShownBend) {
@@ -181,10 +208,12 @@ impl Bends {
             }
         };
         if guide_at_node == Guide::Free {
-            keep(&mut self.free, line);
+            let hanging = larger(line, self.loop_radius(problem, n));
+            keep(&mut self.free, hanging);
+            keep(&mut self.line, line);
             return;
         }
-        keep(&mut self.led, line);
+        keep(&mut self.line, line);
         let judged = match guide_at_node {
             Guide::Corner(radius) | Guide::Round(radius) if shown != ShownBend::Exact => {
                 let bend = larger(radius, corner_radius(problem.bending_stiffness, n.tension_n, turn));
@@ -195,7 +224,8 @@ impl Bends {
                 }
             }
             Guide::Corner(radius) if stiff && own > CORNER_ARC_RATIO * radius => own,
-            Guide::Corner(radius) if self.bending_stiffness > 0.0 => {
+            Guide::Round(_) if stiff => line,
+            Guide::Corner(radius) | Guide::Round(radius) if self.bending_stiffness > 0.0 => {
                 larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
             }
             Guide::Corner(_) if turn < CORNER_TURN => f64::INFINITY,
