@@ -12,7 +12,7 @@ use crate::problem::Problem;
 /// Number of parts near a bar that one search keeps for it and the node at its start. Smaller: bars
 /// over fine ground are searched twice; larger: more memory to clear in each search. No answer
 /// depends on it.
-const MAX_SHARED_PARTS: usize = 32;
+const MAX_SHARED_PARTS: usize = 128;
 
 /// Stores in `room` the parts that can be within `reach` (m) of a segment, in the order of the
 /// trees; None if there are more than fit.
