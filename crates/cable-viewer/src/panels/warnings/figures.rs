@@ -45,11 +45,19 @@ impl Figures {
         };
         // One unit for both, told once.
         let (symbol, si) = system::for_size(kind, value.abs().max(limit.abs()));
-        let short = |v: f64| format::significant(v / si, SHORT_DIGITS);
+        let short = |v: f64| without_trailing_zeros(format::significant(v / si, SHORT_DIGITS));
         Self {
             words: format!("{}, {word} {}", text(value), text(limit)),
             short: format!("{} {sign} {} {symbol}", short(value), short(limit)),
         }
+    }
+}
+
+/// A decimal number without the zeros at its end: "0.800" stands beside a value of kilonewtons.
+fn without_trailing_zeros(number: String) -> String {
+    match number.contains('.') && !number.contains('^') {
+        true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => number,
     }
 }
 
