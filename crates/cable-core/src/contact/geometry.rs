@@ -421,7 +421,8 @@ impl Geometry {
     pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = ObstaclePart> {
         let mut bodies = self.bodies.iter().enumerate();
         let mut edges = None;
-        // Adaptors that flatten would move the search of a tree, a third of a kilobyte, several times a body.
+        // Adaptors that flatten would move the search of a tree, a third of a kilobyte, several
+        // times a body.
         std::iter::from_fn(move || {
             loop {
                 if let Some((body, found)) = &mut edges

@@ -160,7 +160,8 @@ mod tests {
         assert_eq!([40.0, 1e9, f64::INFINITY].map(&mut wait_ms), [40.0; 3]);
     }
 
-    /// An answer with one cable, by arc length and place of its nodes, m, that is broken before some.
+    /// An answer with one cable, by arc length and place of its nodes, m, that is broken before
+    /// some.
     fn answer(nodes: &[[f64; 3]], breaks: &[usize]) -> Arc<Solution> {
         let nodes = nodes.iter().map(|&[arc_length_m, x_m, y_m]| Node { arc_length_m, x_m, y_m, ..Node::default() });
         let nodes = nodes.collect::<Vec<_>>().into();

@@ -321,8 +321,8 @@ fn drag_support(state: &mut AppState, cable: usize, support: usize, to_m: Point,
 /// The pointer lets go of a support that it held by a spring: it is fixed where it is.
 pub(super) fn release_spring_support(state: &mut AppState, effects: &mut Effects) {
     let Some((cable, support)) = state.selection.spring_support.take() else { return };
-    // Out of reach the scene was refused: it stays as the pointer leaves it, so that what is said of
-    // it and the mends that are offered are of this scene.
+    // Out of reach the scene was refused: it stays as the pointer leaves it, so that what is said
+    // of it and the mends that are offered are of this scene.
     if state.document.fault.is_some() {
         return;
     }

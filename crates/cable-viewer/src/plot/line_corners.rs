@@ -102,7 +102,8 @@ mod tests {
         assert_eq!(of(&curve).len(), 1);
         let noise: Vec<[f64; 2]> = (0..900).map(f64::from).map(|x| [x, 30.0 * (x % 2.0)]).collect();
         assert_eq!(of(&noise), [&noise[..]]);
-        // Issue 20: a wedge was drawn under a long level stretch before it, whose end was joined to it.
+        // Issue 20: a wedge was drawn under a long level stretch before it, whose end was joined to
+        // it.
         let mut after_rest = vec![[-90.0, 0.0]];
         after_rest.extend_from_slice(&noise);
         assert_eq!(of(&after_rest), [&after_rest[..2], &after_rest[1..]]);

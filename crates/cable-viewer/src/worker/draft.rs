@@ -157,8 +157,8 @@ mod tests {
     use super::*;
     use crate::worker::request::EditStart;
 
-    /// Issue 20: where frames were late, a cable that had been folded on itself by hand went on on a
-    /// coarse mesh, whose segments cut through its strands, and time stopped: "the energy is not
+    /// Issue 20: where frames were late, a cable that had been folded on itself by hand went on on
+    /// a coarse mesh, whose segments cut through its strands, and time stopped: "the energy is not
     /// finite".
     #[test]
     fn issue_020_a_cable_that_can_touch_itself_keeps_its_mesh_in_a_drag() {

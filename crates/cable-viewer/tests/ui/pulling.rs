@@ -90,8 +90,8 @@ fn issue_020_time_goes_on_once_an_end_is_back_within_reach() {
     }
 }
 
-/// Issue 20: let go of out of reach, the support was put back where the cable had held it, in a scene
-/// that has an answer, while the window went on refusing the one that it had been drawn to.
+/// Issue 20: let go of out of reach, the support was put back where the cable had held it, in a
+/// scene that has an answer, while the window went on refusing the one that it had been drawn to.
 #[test]
 fn issue_020_an_end_let_go_of_out_of_reach_stays_in_the_scene_that_is_refused() {
     let (mut harness, from) = held(1e3);

@@ -96,3 +96,22 @@ pub fn figures(warning: &Warning) -> Option<Figures> {
         _ => return None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use cable_core::solution::WarningCause;
+
+    use super::*;
+
+    /// "10.0 > 0.800…" was cut before its unit beside a place of a cable that had torn off.
+    #[test]
+    fn figures_of_a_line_have_no_zeros_at_their_end() {
+        let short = |both| {
+            let cause = WarningCause::Recorded { kind: WarningKind::ServiceTension, message: String::new() };
+            figures(&Warning::new(cause, "cable", 12.0, both)).unwrap().short
+        };
+        assert_eq!(short([12_345.0, 800.0]), "12.3 > 0.8 kN");
+        assert_eq!(short([1e4, 800.0]), "10 > 0.8 kN");
+        assert_eq!(short([9987.0, 800.0]), "9987 > 800 N");
+    }
+}
