@@ -145,6 +145,24 @@ impl Edge {
     }
 }
 
+/// The edges that a search of a body finds: those of its tree, or of a body that moves.
+struct Candidates<L, M> {
+    leaves: Option<L>,
+    moving: M,
+}
+
+impl<L: Iterator<Item = u32>, M: Iterator<Item = usize>> Iterator for Candidates<L, M> {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        match &mut self.leaves {
+            Some(leaves) => leaves.next().map(|leaf| leaf as usize),
+            None => self.moving.next(),
+        }
+    }
+}
+
 impl Body {
     /// Indices of the edges whose boxes meet the given box.
     pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
@@ -154,16 +172,20 @@ impl Body {
     /// Indices of the edges whose boxes, given by their lowest and highest corners, satisfy
     /// `meets`. A box that contains one for which `meets` holds has to satisfy it, too.
     pub(crate) fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
-        let listed = self.bvh.iter().flat_map(move |bvh| {
-            bvh.leaves(move |node| {
-                let (n, x) = (node.mins(), node.maxs());
-                meets(Vec2::new(n.x, n.y), Vec2::new(x.x, x.y))
-            })
-        });
+        let near = move |low: Vector, high: Vector| meets(Vec2::new(low.x, low.y), Vec2::new(high.x, high.y));
         let all = if self.bvh.is_none() { self.edges.as_slice() } else { &[] };
         let moving =
             all.iter().enumerate().filter(move |(_, e)| meets(e.from.inf(&e.to), e.from.sup(&e.to))).map(|(k, _)| k);
-        listed.map(|leaf| leaf as usize).filter(|&k| k < self.edges.len()).chain(moving)
+        let leaves = self.bvh.as_ref().map(|bvh| bvh.leaves(move |node| near(node.mins(), node.maxs())));
+        Candidates { leaves, moving }.filter(|&k| k < self.edges.len())
+    }
+
+    /// Returns whether the box round all edges meets the given box; true of a body that moves.
+    fn is_near(&self, low: Vec2, high: Vec2) -> bool {
+        let Some(bvh) = &self.bvh else { return true };
+        let whole = bvh.root_aabb();
+        let (n, x) = (whole.mins, whole.maxs);
+        n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y
     }
 
     /// The corner at the start of edge `k`; `k` = number of edges asks for the end of an open line.
@@ -397,11 +419,31 @@ impl Geometry {
     /// All parts that can be nearer than `reach` (m) to a cable inside the box from `low` to `high`
     /// (m), and some more.
     pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = ObstaclePart> {
-        self.bodies.iter().enumerate().flat_map(move |(body, b)| {
-            let r = Vec2::repeat(reach + b.offset);
-            let circle = b.center.filter(|c| (0..2).all(|k| c[k] + r[k] >= low[k] && c[k] - r[k] <= high[k]));
-            let edges = b.candidates(low - r, high + r).map(move |k| ObstaclePart { body, edge: Some(k) });
-            circle.map(|_| ObstaclePart { body, edge: None }).into_iter().chain(edges)
+        let mut bodies = self.bodies.iter().enumerate();
+        let mut edges = None;
+        // Adaptors that flatten would move the search of a tree, a third of a kilobyte, several
+        // times a body.
+        std::iter::from_fn(move || {
+            loop {
+                if let Some((body, found)) = &mut edges
+                    && let Some(k) = Iterator::next(found)
+                {
+                    return Some(ObstaclePart { body: *body, edge: Some(k) });
+                }
+                let (body, b) = bodies.next()?;
+                let r = Vec2::repeat(reach + b.offset);
+                let (from, to) = (low - r, high + r);
+                if let Some(c) = b.center {
+                    edges = None;
+                    if (0..2).all(|k| c[k] + r[k] >= low[k] && c[k] - r[k] <= high[k]) {
+                        return Some(ObstaclePart { body, edge: None });
+                    }
+                } else if b.is_near(from, to) {
+                    edges = Some((body, b.candidates(from, to)));
+                } else {
+                    edges = None;
+                }
+            }
         })
     }
 

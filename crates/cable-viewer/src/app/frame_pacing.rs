@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use cable_core::Solution;
+use cable_core::solution::Node;
 
 /// Time from the end of one frame of a running simulation that is drawn without a GPU to the next,
 /// s, where the picture moves fast: with the frame itself, 25 frames a second. Shorter: drawing
@@ -84,25 +85,46 @@ impl ShownMotion {
     }
 }
 
-/// The longest way that a node or the robot has between two answers, m; infinite where they have
-/// not the same nodes.
+/// The longest way that a point of a cable or the robot has between two answers, m; infinite where
+/// they have not the same pieces. Points are compared at one arc length: a cable that moves over
+/// corners gets and loses nodes in every second frame.
 fn farthest_move_m(before: &Solution, now: &Solution) -> f64 {
     let cables = || before.cables.iter().zip(&now.cables);
-    let same = before.cables.len() == now.cables.len() && cables().all(|(a, b)| a.nodes.len() == b.nodes.len());
+    let same = before.cables.len() == now.cables.len()
+        && cables().all(|(a, b)| a.pieces().map(<[_]>::is_empty).eq(b.pieces().map(<[_]>::is_empty)));
     if !same || before.robot.is_some() != now.robot.is_some() {
         return f64::INFINITY;
     }
-    let nodes = cables().flat_map(|(a, b)| a.nodes.iter().zip(b.nodes.iter()));
-    let ways = nodes.map(|(a, b)| (b.x_m - a.x_m).hypot(b.y_m - a.y_m));
+    let pieces = cables().flat_map(|(a, b)| a.pieces().zip(b.pieces()));
+    let ways = pieces.map(|(before, now)| farthest_move_of_piece_m(before, now));
     let robot = before.robot.as_ref().zip(now.robot.as_ref());
     let robot = robot.map(|(a, b)| (b.x_m - a.x_m).hypot(b.y_m - a.y_m));
     ways.chain(robot).fold(0.0, f64::max)
 }
 
+/// The longest way that a node of a piece has from where its point of the cable was, m.
+fn farthest_move_of_piece_m(before: &[Node], now: &[Node]) -> f64 {
+    let (mut bar, mut farthest_m) = (0, 0.0);
+    for node in now {
+        let ends_before = |n: &&Node| n.arc_length_m < node.arc_length_m;
+        while bar + 2 < before.len() && before.get(bar + 1).filter(ends_before).is_some() {
+            bar += 1;
+        }
+        let Some(from) = before.get(bar) else { return f64::INFINITY };
+        let to = before.get(bar + 1).unwrap_or(from);
+        let length_m = to.arc_length_m - from.arc_length_m;
+        let part =
+            if length_m > 0.0 { ((node.arc_length_m - from.arc_length_m) / length_m).clamp(0.0, 1.0) } else { 0.0 };
+        let [x_m, y_m] = [from.x_m + (to.x_m - from.x_m) * part, from.y_m + (to.y_m - from.y_m) * part];
+        farthest_m = f64::max(farthest_m, (node.x_m - x_m).hypot(node.y_m - y_m));
+    }
+    farthest_m
+}
+
 #[cfg(test)]
 mod tests {
     use cable_core::Model;
-    use cable_core::solution::{CableSolution, Cost, Energy, ModelReason, Node};
+    use cable_core::solution::{CableSolution, Cost, Energy, ModelReason};
 
     use super::*;
 
@@ -138,29 +160,60 @@ mod tests {
         assert_eq!([40.0, 1e9, f64::INFINITY].map(&mut wait_ms), [40.0; 3]);
     }
 
+    /// An answer with one cable, by arc length and place of its nodes, m, that is broken before
+    /// some.
+    fn answer(nodes: &[[f64; 3]], breaks: &[usize]) -> Arc<Solution> {
+        let nodes = nodes.iter().map(|&[arc_length_m, x_m, y_m]| Node { arc_length_m, x_m, y_m, ..Node::default() });
+        let nodes = nodes.collect::<Vec<_>>().into();
+        let cables = vec![CableSolution { nodes, breaks: breaks.to_vec(), ..CableSolution::default() }];
+        Arc::new(Solution {
+            time_s: 0.0,
+            model: Model::Fem,
+            reason: ModelReason::Requested,
+            next_cheaper: None,
+            cables,
+            warnings: Vec::new(),
+            cost: Cost::default(),
+            energy: Energy::default(),
+            robot: None,
+            verification: None,
+        })
+    }
+
     #[test]
     fn the_speed_is_that_of_the_fastest_point() {
-        let answer = |places: &[[f64; 2]]| {
-            let nodes = places.iter().map(|[x, y]| Node { x_m: *x, y_m: *y, ..Node::default() });
-            let cables = vec![CableSolution { nodes: nodes.collect::<Vec<_>>().into(), ..CableSolution::default() }];
-            Arc::new(Solution {
-                time_s: 0.0,
-                model: Model::Fem,
-                reason: ModelReason::Requested,
-                next_cheaper: None,
-                cables,
-                warnings: Vec::new(),
-                cost: Cost::default(),
-                energy: Energy::default(),
-                robot: None,
-                verification: None,
-            })
-        };
         let (mut motion, now) = (ShownMotion::default(), Instant::now());
         let later = now + Duration::from_millis(100);
-        assert_eq!(motion.speed(now, Some(&answer(&[[0.0, 0.0], [1.0, 0.0]]))), f64::INFINITY);
-        let speed = motion.speed(later, Some(&answer(&[[0.0, 0.1], [1.3, 0.4]])));
+        let whole = answer(&[[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]], &[]);
+        assert_eq!(motion.speed(now, Some(&whole)), f64::INFINITY);
+        let speed = motion.speed(later, Some(&answer(&[[0.0, 0.0, 0.1], [1.0, 1.3, 0.4]], &[])));
         assert!((speed - 5.0).abs() < 1e-9, "{speed}");
-        assert_eq!(motion.speed(later, Some(&answer(&[[0.0, 0.1]]))), f64::INFINITY, "another mesh");
+        let broken = answer(&[[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.5, 0.0], [1.0, 1.0, 0.0]], &[2]);
+        motion.speed(now, Some(&whole));
+        assert_eq!(motion.speed(later, Some(&broken)), f64::INFINITY, "it has just broken");
+    }
+
+    /// The nodes of a cable on corners come and go, and slide along it.
+    #[test]
+    fn a_cable_that_stands_stands_on_any_mesh() {
+        let bent = |s: f64| if s < 1.0 { [s, s, 0.0] } else { [s, 1.0, s - 1.0] };
+        let meshes: [&[f64]; 4] = [
+            &[0.0, 0.4, 1.0, 1.7, 2.0],
+            &[0.0, 1.0, 2.0],
+            &[0.0, 0.1, 0.9, 1.0, 2.0],
+            &[0.0, 0.99, 1.0, 1.01, 1.5, 2.0],
+        ];
+        let (mut motion, now) = (ShownMotion::default(), Instant::now());
+        for (k, mesh) in meshes.iter().enumerate() {
+            let nodes: Vec<[f64; 3]> = mesh.iter().map(|s| bent(*s)).collect();
+            let then = now + Duration::from_millis(40 * k as u64);
+            let speed = motion.speed(then, Some(&answer(&nodes, &[])));
+            assert!(if k == 0 { speed == f64::INFINITY } else { speed < 1e-12 }, "{k}: {speed}");
+        }
+        let pieces =
+            |gap: f64| answer(&[[0.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.5, 0.5 + gap, 0.0], [1.0, 1.0 + gap, 0.0]], &[2]);
+        motion.speed(now, Some(&pieces(1.0)));
+        let speed = motion.speed(now + Duration::from_millis(100), Some(&pieces(1.02)));
+        assert!((speed - 0.2).abs() < 1e-9, "each piece by itself: {speed}");
     }
 }

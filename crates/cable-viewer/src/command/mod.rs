@@ -78,7 +78,9 @@ pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
             let pulls = matches!(c, PlaybackCommand::PullPastLength(true));
             playback::apply(state, c, effects);
             if pulls && scene::is_refused_pull(state) {
-                // The pull that was refused is undone and can be made again.
+                // The pull that was refused is undone, and can be made again: a hand pulls while
+                // time runs.
+                state.live.playback.paused = false;
                 scene::apply(state, SceneCommand::Undo, effects);
             }
         }

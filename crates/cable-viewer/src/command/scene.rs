@@ -321,6 +321,11 @@ fn drag_support(state: &mut AppState, cable: usize, support: usize, to_m: Point,
 /// The pointer lets go of a support that it held by a spring: it is fixed where it is.
 pub(super) fn release_spring_support(state: &mut AppState, effects: &mut Effects) {
     let Some((cable, support)) = state.selection.spring_support.take() else { return };
+    // Out of reach the scene was refused: it stays as the pointer leaves it, so that what is said
+    // of it and the mends that are offered are of this scene.
+    if state.document.fault.is_some() {
+        return;
+    }
     let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
     let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
     let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));

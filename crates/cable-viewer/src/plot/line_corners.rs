@@ -13,30 +13,41 @@ const STRAIGHT_TOLERANCE: f32 = 0.1;
 /// Least cosine of a turn that is joined. Smaller: the steps of tension at contacts are slanted;
 /// larger: smooth lines fall into pieces.
 const MIN_JOINED_COSINE: f32 = 0.5;
-/// Most pieces of a line. More: a line that goes up and down in each column takes longer to draw,
-/// and has no corners that are told apart.
+/// Most pieces of a line that is cut at each of its sharp corners. More: a line that goes up and
+/// down in each column takes longer to draw, and has no corners that are told apart. Such a line is
+/// cut beside its wide sides alone.
 const MAX_PIECES: usize = 64;
+
+/// Width of such a side, points. The slanted piece of a corner is as long as its sides: beside a
+/// stretch of 90 points it was seen as a wedge under the line. Smaller: more pieces; larger: wedges
+/// are seen.
+const WIDE_SIDE: f32 = 6.0;
 
 /// The points of a line in pieces that begin where the one before ends; `to_screen` is where a
 /// point stands, points of the screen.
 pub(super) fn pieces(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2) -> Vec<&[[f64; 2]]> {
+    let all = cut_at_corners(points, &to_screen, 0.0);
+    if all.len() <= MAX_PIECES { all } else { cut_at_corners(points, &to_screen, WIDE_SIDE) }
+}
+
+/// The same, cut at sharp corners of which one side is at least so wide, points.
+fn cut_at_corners(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2, wide: f32) -> Vec<&[[f64; 2]]> {
     let mut pieces = Vec::new();
     let mut first = 0;
-    let mut direction: Option<Vec2> = None;
+    let mut before: Option<Vec2> = None;
     for k in 1..points.len() {
         let step = to_screen(points[k]) - to_screen(points[k - 1]);
         if step.length_sq() <= 0.0 || !step.is_finite() {
             continue;
         }
-        let next = step.normalized();
-        if direction.is_some_and(|before| before.dot(next) < MIN_JOINED_COSINE) {
+        let is_cut = |before: Vec2| {
+            before.normalized().dot(step.normalized()) < MIN_JOINED_COSINE && before.x.abs().max(step.x.abs()) >= wide
+        };
+        if before.is_some_and(is_cut) {
             pieces.push(&points[first..k]);
             first = k - 1;
-            if pieces.len() == MAX_PIECES {
-                return vec![points];
-            }
         }
-        direction = Some(next);
+        before = Some(step);
     }
     pieces.push(&points[first..]);
     pieces
@@ -91,6 +102,11 @@ mod tests {
         assert_eq!(of(&curve).len(), 1);
         let noise: Vec<[f64; 2]> = (0..900).map(f64::from).map(|x| [x, 30.0 * (x % 2.0)]).collect();
         assert_eq!(of(&noise), [&noise[..]]);
+        // Issue 20: a wedge was drawn under a long level stretch before it, whose end was joined to
+        // it.
+        let mut after_rest = vec![[-90.0, 0.0]];
+        after_rest.extend_from_slice(&noise);
+        assert_eq!(of(&after_rest), [&after_rest[..2], &after_rest[1..]]);
         assert_eq!((of(&[]), of(&[[1.0, 1.0]])), (vec![&[][..]], vec![&[[1.0, 1.0]][..]]));
     }
 

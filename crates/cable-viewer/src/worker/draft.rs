@@ -77,9 +77,12 @@ pub enum MeshResolution {
 }
 
 /// A simulation in motion with few segments (or with those asked for) that goes on where `old` is;
-/// None where it cannot, and for other models than `fem`, whose frames are short.
+/// None where it cannot, and for other models than `fem`, whose frames are short. A cable that can
+/// touch itself keeps its mesh: longer segments would cut through the strands beside them, and the
+/// run would stop.
 pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: MeshResolution) -> Option<Simulation> {
-    if !old.model().capabilities().long_steps || !same_cables(edit, old) {
+    let touches_itself = edit.scene.cables.iter().any(|cable| cable.self_contact);
+    if !old.model().capabilities().long_steps || !same_cables(edit, old) || touches_itself {
         return None;
     }
     let answer = old.solution();
@@ -144,4 +147,31 @@ pub fn penetrates_new_obstacle(edit: &Edit, old: &Simulation) -> bool {
 pub fn same_cables(edit: &Edit, old: &Simulation) -> bool {
     let (a, b) = (&old.scene().cables, &edit.scene.cables);
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
+}
+
+#[cfg(test)]
+mod tests {
+    use cable_core::Settings;
+    use cable_core::scene::catalog;
+
+    use super::*;
+    use crate::worker::request::EditStart;
+
+    /// Issue 20: where frames were late, a cable that had been folded on itself by hand went on on
+    /// a coarse mesh, whose segments cut through its strands, and time stopped: "the energy is not
+    /// finite".
+    #[test]
+    fn issue_020_a_cable_that_can_touch_itself_keeps_its_mesh_in_a_drag() {
+        for self_contact in [false, true] {
+            let mut scene = catalog::hanging_span();
+            scene.cables[0].self_contact = self_contact;
+            let settings = Settings { histories: false, ..Settings::default() };
+            let mut simulation = Simulation::with_settings(scene.clone(), Model::Fem, settings).unwrap();
+            simulation.settle().unwrap();
+            let edit = Edit { scene, model: Model::Fem, settings, start: EditStart::PresentState };
+            for mesh in [MeshResolution::Coarse, MeshResolution::Full] {
+                assert_eq!(with_mesh(&edit, &simulation, mesh).is_none(), self_contact, "{mesh:?}");
+            }
+        }
+    }
 }

@@ -90,6 +90,29 @@ fn issue_020_time_goes_on_once_an_end_is_back_within_reach() {
     }
 }
 
+/// Issue 20: let go of out of reach, the support was put back where the cable had held it, in a
+/// scene that has an answer, while the window went on refusing the one that it had been drawn to.
+#[test]
+fn issue_020_an_end_let_go_of_out_of_reach_stays_in_the_scene_that_is_refused() {
+    let (mut harness, from) = held(1e3);
+    let at = lead(&mut harness, from, 5.0);
+    let place = |h: &Harness<'_, ViewerApp>| h.state().state.document.scene.cables[0].supports[1].at_m.unwrap();
+    let drawn_to = place(&harness);
+    assert!(drawn_to[0] > 14.0, "{drawn_to:?}");
+    press(&harness, at, false);
+    harness.run_steps(5);
+    let state = &harness.state().state;
+    assert_eq!(place(&harness), drawn_to);
+    assert_eq!(state.document.fault.is_some(), state.document.scene.validate().is_err());
+    assert!(state.document.fault.is_some() && state.live.playback.paused);
+    // The mend that is offered is one of the scene that is shown.
+    let mend = harness.get_all_by_label_contains("Set to ").next().expect("a mend is offered");
+    mend.click();
+    harness.run_steps(10);
+    let state = &harness.state().state;
+    assert_eq!((&state.document.fault, place(&harness)), (&None, drawn_to));
+}
+
 /// A pause while the end is out of reach stops time.
 #[test]
 fn issue_020_a_pause_out_of_reach_is_kept() {
@@ -117,6 +140,18 @@ fn a_pull_that_is_refused_offers_to_pull_past_the_length() {
     let state = &harness.state().state;
     assert!(state.solver.pulls_past_length && state.document.fault.is_none(), "{:?}", state.document.fault);
     assert!(harness.query_by_label("Pull past the length").is_none());
+    // The drag had stopped time, and while that stands the same pull would be refused once more.
+    assert!(!state.live.playback.paused, "a hand pulls while time runs");
+    let again = support(&harness, "right");
+    harness.hover_at(again);
+    harness.step();
+    press(&harness, again, true);
+    harness.step();
+    lead(&mut harness, again, 4.0);
+    harness.run_steps(30);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_none() && !state.live.playback.paused, "{:?}", state.document.fault);
+    assert!(tension_n(&harness) > 500.0, "{} N", tension_n(&harness));
     // A length that was typed is no pull.
     let mut harness = open_span();
     let mut cable = harness.state().state.document.scene.cables[0].clone();

@@ -191,14 +191,18 @@ fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
 
 /// From an edit to the first frame whose figures are those of the edited scene, and so not dimmed,
 /// with the model that `auto` chooses: median, 95 % and worst of twenty edits a scene, printed.
-/// `SCENE=tank` asks for one scene.
+/// `SCENE=tank` asks for one scene, `SEGMENTS=200` for finite elements with so many segments.
 ///
 /// The last support that stands somewhere is moved; in the opening scene the robot holds the last
 /// one, so the first is moved, and the robot as well.
 #[test]
 fn timed_edits_to_undimmed_figures() {
     let only = std::env::var("SCENE").ok();
-    for (id, scene) in catalog::all().into_iter().filter(|(id, _)| only.as_deref().is_none_or(|o| o == *id)) {
+    let segments: Option<usize> = std::env::var("SEGMENTS").ok().and_then(|n| n.parse().ok());
+    for (id, mut scene) in catalog::all().into_iter().filter(|(id, _)| only.as_deref().is_none_or(|o| o == *id)) {
+        if segments.is_some() {
+            scene.cables.iter_mut().for_each(|cable| cable.segments = segments);
+        }
         let supports = &scene.cables[0].supports;
         let held = supports.iter().rposition(|s| s.at_m.is_some()).expect("a support that stands somewhere");
         let mut moved = vec![("a support", Item::Support { cable: 0, support: held }, supports[held].at_m.unwrap())];
@@ -314,6 +318,9 @@ fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
         .build_eframe(|cc| ViewerApp::new(&cc.egui_ctx, scene, None));
+    if std::env::var("SEGMENTS").is_ok() {
+        submit(&mut harness, Command::SetModel(Model::Fem));
+    }
     wait(&mut harness);
     let (mut times, mut solves) = (Vec::new(), Vec::new());
     for k in 1..=EDITS {

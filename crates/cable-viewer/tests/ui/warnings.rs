@@ -36,7 +36,7 @@ fn long_figures(kind: WarningKind) -> (Warning, &'static str) {
     use WarningKind as Kind;
     let [value, limit] = match kind {
         Kind::BreakingTension | Kind::Broken | Kind::MayBreak => [1934.5, 1800.0],
-        Kind::ServiceTension => [93.23, 80.0],
+        Kind::ServiceTension => [12_345.0, 800.0],
         Kind::Kink | Kind::BendRadius => [0.0231, 0.14],
         Kind::SidewallPressure => [5833.0, 4380.0],
         Kind::Slack => [45.32, 0.0],

@@ -244,6 +244,13 @@ impl Mechanics for FemModel {
         }
     }
 
+    fn time_s(&self) -> f64 {
+        match (&self.elastica_answer, self.present) {
+            (None, PresentPart::Statics) => self.statics.state().time_s,
+            _ => self.stepper.cable.time(),
+        }
+    }
+
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.meshes = TwoMeshes::default();
         self.elastica_answer = None;

@@ -45,11 +45,19 @@ impl Figures {
         };
         // One unit for both, told once.
         let (symbol, si) = system::for_size(kind, value.abs().max(limit.abs()));
-        let short = |v: f64| format::significant(v / si, SHORT_DIGITS);
+        let short = |v: f64| without_trailing_zeros(format::significant(v / si, SHORT_DIGITS));
         Self {
             words: format!("{}, {word} {}", text(value), text(limit)),
             short: format!("{} {sign} {} {symbol}", short(value), short(limit)),
         }
+    }
+}
+
+/// A decimal number without the zeros at its end: "0.800" stands beside a value of kilonewtons.
+fn without_trailing_zeros(number: String) -> String {
+    match number.contains('.') && !number.contains('^') {
+        true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => number,
     }
 }
 
@@ -87,4 +95,23 @@ pub fn figures(warning: &Warning) -> Option<Figures> {
         // A loop, a second rest, a blocked support and the like have no figure.
         _ => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use cable_core::solution::WarningCause;
+
+    use super::*;
+
+    /// "10.0 > 0.800…" was cut before its unit beside a place of a cable that had torn off.
+    #[test]
+    fn figures_of_a_line_have_no_zeros_at_their_end() {
+        let short = |both| {
+            let cause = WarningCause::Recorded { kind: WarningKind::ServiceTension, message: String::new() };
+            figures(&Warning::new(cause, "cable", 12.0, both)).unwrap().short
+        };
+        assert_eq!(short([12_345.0, 800.0]), "12.3 > 0.8 kN");
+        assert_eq!(short([1e4, 800.0]), "10 > 0.8 kN");
+        assert_eq!(short([9987.0, 800.0]), "9987 > 800 N");
+    }
 }

@@ -160,6 +160,17 @@ impl Mesh {
         }
     }
 
+    /// Length of the straight part of bar `e`, m: that of [`Self::path`] without its arcs.
+    #[inline]
+    #[must_use]
+    pub fn straight_length(&self, e: usize, x: &[Vec2]) -> f64 {
+        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
+            (x[e + 1] - x[e]).norm()
+        } else {
+            StraightPart::of(&self.end(e, x), &self.end(e + 1, x)).length
+        }
+    }
+
     /// The direction of the straight part of bar `e`; a unit vector.
     #[inline]
     #[must_use]

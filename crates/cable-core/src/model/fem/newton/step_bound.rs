@@ -78,7 +78,7 @@ impl Workspace {
         let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { self.direction[2 * k] } else { 0.0 });
         let change = go[1] - go[0];
         let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slides[e + 1] - unknowns.slides[e];
-        let straight = mesh.path(e, &unknowns.positions).straight;
+        let straight = mesh.straight_length(e, &unknowns.positions);
         let length = if straight > 0.0 && straight < whole { straight } else { whole };
         let spare = (1.0 - mesh.tuning.newton.kept_cable_fraction) * length;
         if change < 0.0 && -change * free > spare { spare / -change } else { free }

@@ -255,7 +255,7 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
 /// Removes material nodes in the way of a new sliding node.
 fn clear_around(cable: &mut CableState, k: usize) {
     let near = cable.mesh.tuning.remesh.min_bar * cable.even();
-    let straight = |d: &CableState, e: usize| d.mesh.path(e, &d.motion.positions).straight;
+    let straight = |d: &CableState, e: usize| d.mesh.straight_length(e, &d.motion.positions);
     if k + 2 < cable.mesh.nodes()
         && cable.meshing.removable(&cable.mesh, k + 1)
         && straight(cable, k) < near
@@ -285,7 +285,7 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
             continue;
         }
         let (before, after) = (cable.mesh.sliding[k - 1], cable.mesh.sliding[k + 1]);
-        let straight = |e: usize| cable.mesh.path(e, &cable.motion.positions).straight;
+        let straight = |e: usize| cable.mesh.straight_length(e, &cable.motion.positions);
         let crowded = (before.is_some() && straight(k - 1) < cable.mesh.tuning.remesh.min_bar * even)
             || (after.is_some() && straight(k) < cable.mesh.tuning.remesh.min_bar * even);
         let spare = before.is_none()
@@ -302,13 +302,13 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
     }
     let mut e = 0;
     while e + 1 < cable.mesh.nodes() {
-        let length = cable.mesh.material_between(e, e + 1);
-        let x = &cable.motion.positions;
-        let path = cable.mesh.path(e, x);
-        let unwound = path.arcs.iter().any(|&a| a < UNWOUND_ARC);
         // Only the straight part can be divided and only it counts: if the arcs counted, a piece
         // could be so short that it would be removed at once, and again in each step.
-        if path.straight > cable.mesh.tuning.remesh.max_bar * even && !unwound {
+        let is_long = cable.mesh.straight_length(e, &cable.motion.positions) > cable.mesh.tuning.remesh.max_bar * even;
+        let length = cable.mesh.material_between(e, e + 1);
+        let x = &cable.motion.positions;
+        let long = is_long.then(|| cable.mesh.path(e, x));
+        if let Some(path) = long.filter(|path| !path.arcs.iter().any(|&a| a < UNWOUND_ARC)) {
             // Pieces are even; beside a sliding node the odd piece is the one next to it.
             let slides = [e, e + 1].map(|k| cable.mesh.sliding[k].is_some());
             let first = match slides {

@@ -13,7 +13,7 @@ pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[
     for rub in &own.friction_contacts {
         let (k, pair) = (rub.pair.node, &rub.pair);
         let load = -cable.contacts.barrier.at(pair.gap_m).slope * pair.weight;
-        let along = cable.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
+        let along = cable.mesh.direction(k.min(tension.len().saturating_sub(1)), x);
         let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.tuning.slip_m);
         let new = last.is_none_or(|l| k > l + 1);
         last = Some(k);

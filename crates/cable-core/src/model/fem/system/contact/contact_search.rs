@@ -1,12 +1,34 @@
 //! The contact search finds the pairs of bars and obstacles that are near each other, from the
 //! neighbour lists of a step.
 
+use crate::contact::geometry::{Geometry, ObstaclePart};
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::obstacle_pairs::Pair;
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::problem::Problem;
+
+/// Number of parts near a bar that one search keeps for it and the node at its start. Smaller: bars
+/// over fine ground are searched twice; larger: more memory to clear in each search. No answer
+/// depends on it.
+const MAX_SHARED_PARTS: usize = 128;
+
+/// Stores in `room` the parts that can be within `reach` (m) of a segment, in the order of the
+/// trees; None if there are more than fit.
+fn parts_near<'a>(
+    geometry: &Geometry,
+    [a, b]: [Vec2; 2],
+    reach: f64,
+    room: &'a mut [ObstaclePart; MAX_SHARED_PARTS],
+) -> Option<&'a [ObstaclePart]> {
+    let mut count = 0;
+    for part in geometry.parts(a.inf(&b), a.sup(&b), reach) {
+        *room.get_mut(count)? = part;
+        count += 1;
+    }
+    room.get(..count)
+}
 
 /// The search for contacts, with the obstacles that each bar can come near to in this step.
 #[derive(Clone, Debug, Default)]
@@ -32,6 +54,7 @@ impl ContactSearch {
         }
         let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
         let plain = |e: usize| mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none();
+        let mut room = [ObstaclePart { body: 0, edge: None }; MAX_SHARED_PARTS];
         for node in 0..x.len() {
             let reach = reach(if node < last { node } else { last.saturating_sub(1) });
             if node < last && plain(node) && self.lists.is_clear(node, [[x[node], x[node + 1]]], reach) {
@@ -41,6 +64,10 @@ impl ContactSearch {
             let listed = match ends {
                 Some(ends) => self.lists.of(node, [ends], reach),
                 None => last.checked_sub(1).and_then(|e| self.lists.of(e, [mesh.straight(e, x)], reach)),
+            };
+            let listed = match (listed, ends) {
+                (None, Some(ends)) if !mesh.is_break(node) => parts_near(geometry, ends, reach, &mut room),
+                (listed, _) => listed,
             };
             if listed.is_some_and(<[_]>::is_empty) {
                 continue;
