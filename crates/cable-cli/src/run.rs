@@ -102,10 +102,11 @@ struct RunTotals {
 }
 
 impl RunTotals {
-    fn of(timeline: &Timeline, errors_asked: bool) -> Option<Self> {
+    fn of(timeline: &Timeline, arguments: &RunArguments) -> Option<Self> {
         let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
         let peaks = timeline.monitor().peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
         let relative_error = timeline.monitor().relative_error();
+        let errors_asked = !arguments.no_errors;
         Some(Self { peaks, relative_error, inertia: timeline.inertia_effect(), errors_asked })
     }
 
@@ -225,7 +226,7 @@ impl Outputs {
 
     /// Notes what is known of the run so far.
     fn update_totals(&mut self, timeline: &Timeline) {
-        self.totals = RunTotals::of(timeline, !self.arguments.no_errors);
+        self.totals = RunTotals::of(timeline, &self.arguments);
         self.inertia = timeline.inertia_effect();
         let tolerance = self.arguments.common.tolerance();
         self.run_peaks = timeline.monitor().peaks().iter().map(|run| RunPeaksEntry::of(run, tolerance)).collect();

@@ -56,13 +56,13 @@ impl Section {
 
     /// The contents. Where there is a panel on the right, the head of the readouts stands above
     /// what scrolls there.
-    fn panel(self, has_head_above: bool) -> PanelUi {
+    fn panel(self, state: &AppState) -> PanelUi {
         match self {
             Self::Outline => panels::scene::outline::ui,
             Self::Selected => panels::selected_item::ui,
             Self::Warnings => panels::warnings::ui,
             Self::MarkedPlace | Self::UnmarkedPlace => panels::analysis::tension_budget::ui,
-            Self::Readouts if has_head_above => panels::readouts::rest,
+            Self::Readouts if state.ui.results_beside => panels::readouts::rest,
             Self::Readouts => panels::readouts::ui,
             Self::SafeReach => panels::analysis::safe_reach::ui,
             Self::Compare => panels::analysis::compare::ui,
@@ -450,7 +450,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
                 }
                 continue;
             }
-            let panel = section.panel(state.ui.results_beside);
+            let panel = section.panel(state);
             let top = ui.cursor().top();
             // Widgets above that come and go must not change identities below: a drag in a section
             // would end.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cable_core::analysis::safe_reach::area::{self, Area};
-use cable_core::analysis::safe_reach::line::{self, ReachMap};
+use cable_core::analysis::safe_reach::line::{self, ReachMap, Trip};
 use cable_core::math::Point;
 use cable_core::scene::SupportKind;
 use cable_core::{Scene, Settings, Solution};
@@ -48,15 +48,15 @@ pub struct SafeReachOptions {
     /// The item that is moved; None: the robot, else the selection, else a support that moves, else
     /// an end.
     pub moved: Option<ReachSubject>,
-    /// Shows the way there and back instead of the place itself.
-    pub round_trip: bool,
+    /// The trip whose tensions are shown.
+    pub trip: Trip,
     /// Places of an end side by side.
     pub across: usize,
 }
 
 impl Default for SafeReachOptions {
     fn default() -> Self {
-        Self { moved: None, round_trip: false, across: 24 }
+        Self { moved: None, trip: Trip::There, across: 24 }
     }
 }
 

@@ -143,7 +143,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     assert!(words().contains("safe reach, there: Below service"), "{}", words());
     harness.get_by_label_contains("Below breaking");
     click(&mut harness, "There and back");
-    assert!(reach(&harness).choice.round_trip);
+    assert_eq!(reach(&harness).choice.trip, Trip::ThereAndBack);
     click(&mut harness, "Clear");
     assert!(reach(&harness).found().is_none());
     assert!(harness.query_by_label("There and back").is_none(), "nothing to show");

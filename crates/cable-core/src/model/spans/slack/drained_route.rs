@@ -78,16 +78,17 @@ impl DrainedRoute {
         Some(Self { legs: draining.legs })
     }
 
-    /// The route from a point plumb down, or from below up to it.
-    pub fn plumb(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
+    /// The route from a point plumb down.
+    pub fn plumb_down(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, from: Vec2) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
-        let mut legs = draining.legs;
-        if up {
-            legs = legs.iter().rev().map(RouteLeg::back).collect();
-        }
-        Some(Self { legs })
+        Some(Self { legs: draining.legs })
+    }
+
+    /// The same route in the other direction.
+    pub fn back(&self) -> Self {
+        Self { legs: self.legs.iter().rev().map(RouteLeg::back).collect() }
     }
 
     /// Lays the ends that nothing holds on what is below them: of a route that ends above it no

@@ -105,7 +105,10 @@ pub(in crate::model::spans) fn loose_section(
                 let loose = s.loose.as_ref();
                 loose.is_some_and(|l| l.spreads() && (may_hang || l.hangs() <= layout.problem.cable.diameter_m))
             })
-            .or_else(|| section(DrainedRoute::plumb(&surfaces, bodies, frame, at, held[0].is_none())?))
+            .or_else(|| {
+                let down = DrainedRoute::plumb_down(&surfaces, bodies, frame, at)?;
+                section(if held[0].is_some() { down } else { down.back() })
+            })
         }
         [None, None] => None,
     }
