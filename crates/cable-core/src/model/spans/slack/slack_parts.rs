@@ -2,7 +2,9 @@
 //! kinks that a cable under tension would bridge.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult};
+use crate::model::spans::boundary::{
+    BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult, slide_on_piece,
+};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
@@ -31,7 +33,7 @@ impl LyingStretch {
 
     /// The tension at the place `to` that follows from the tension `t` at the place `from`.
     pub(super) fn slide(&self, context: &SolveContext, from: f64, to: f64, t: f64, m: f64) -> SlideResult {
-        context.law.along(&context.law.local_load(&self.place(context, from)), to - from, t, m)
+        slide_on_piece(&context.law, &context.law.local_load(&self.place(context, from)), to - from, t, m)
     }
 
     pub(super) fn friction(&self, context: &SolveContext) -> f64 {
