@@ -34,7 +34,7 @@ use crate::solution::{
     SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
 };
 use crate::state::State;
-use crate::warnings::{Bends, Observed, WarningMonitor};
+use crate::warnings::{Observed, SharpestBends, WarningMonitor};
 
 /// Step with inertia, s: the inner step of `fem`.
 pub(crate) const STEP_S: f64 = 1.0 / 240.0;
@@ -267,7 +267,7 @@ impl Simulation {
         self.model = self.cables.iter().map(SimulatedCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
         for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
-            let found = Bends::of(cable.problem(), answer);
+            let found = SharpestBends::of(cable.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
             (answer.free_bend, answer.judged_bend) = (found.free(), found.judged());
             bends.push(found);

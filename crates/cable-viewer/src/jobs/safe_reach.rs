@@ -86,7 +86,7 @@ pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
 
 /// The question of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReachQuery {
+pub struct SafeReachQuery {
     /// The scene.
     pub scene: Scene,
     /// The present state of the cables, if time has run.
@@ -158,11 +158,11 @@ impl SafeReachState {
 
 /// Starts a job; `shown` is called whenever there is a new result to show.
 #[must_use]
-pub fn start(query: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
+pub fn start(query: SafeReachQuery, shown: impl Fn() + Send + 'static) -> Job {
     Job::start("safe reach", move |listen| find(query, listen), shown)
 }
 
-fn find(query: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
+fn find(query: SafeReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
     let scene = Arc::new(query.scene);
     let mut told = -MIN_PROGRESS_STEP;
     let mut tell = |share: f64, maps: &dyn Fn() -> ReachMaps| {

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
+use crate::model::fem::free::beam::equilibrium::{Beam, BeamOutcome, STEP_TOLERANCE};
 use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::element_material::{BodyForce, material_at};
@@ -360,9 +360,9 @@ impl Statics {
         let RefinedBeam { beam, outcome, steps, estimate, shape_error } = refine(stiff, wanted, MOST_SEGMENTS);
         let iterations = network.steps + steps;
         match outcome {
-            Outcome::Stable => {}
-            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
-            Outcome::Failed => {
+            BeamOutcome::Stable => {}
+            BeamOutcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
+            BeamOutcome::Failed => {
                 return Err(solve_error(&self.problem, &network, self.time, PulleyFailure::Span(0, beam.residual)));
             }
         }

@@ -13,7 +13,9 @@ pub(in crate::model::spans) mod curve;
 pub(in crate::model::spans) mod friction_memory;
 pub(in crate::model::spans) mod loose_section;
 
-pub(in crate::model::spans) use capstan::{CableLaw, CachedPiece, ContactPath, SegmentCursor, SlideResult, slide_on_piece};
+pub(in crate::model::spans) use capstan::{
+    CableLaw, CachedPiece, ContactPath, SegmentCursor, SlideResult, slide_on_piece,
+};
 pub(in crate::model::spans) use curve::{BoundaryPoint, ChainRange, Curve, PieceShape, SUPPORT_CONTACT_DISTANCE_M};
 pub(in crate::model::spans) use friction_memory::{
     Breakpoint, Ends, Mode, SlipFront, StickZone, SweepDirection, TensionProfile,

@@ -26,7 +26,7 @@ use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
 use crate::model::spans::changes::cycle::CycleSearch;
 use crate::model::spans::changes::edge_crossing::follow_edges;
-use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
+use crate::model::spans::changes::landing::{SolvePurpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
 use crate::model::spans::changes::release::{lifted_wheel, release_turned_contact, release_vanishing_contact};
 use crate::model::spans::contact::{kink_load, point_load, release_below, slack_pocket};
@@ -47,7 +47,7 @@ pub(in crate::model::spans) fn solve(
     workspace: &mut Workspace,
 ) -> Result<Converged, Failure> {
     let tuned = context.settings.changes;
-    let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
+    let purpose = if route.is_some() { SolvePurpose::FirstEquilibrium } else { SolvePurpose::Step };
     let (mut sum, mut caught, mut cycle) = (Converged::default(), 0, CycleSearch::default());
     for _ in 0..tuned.max_changes {
         point_load::join(section, context)?;

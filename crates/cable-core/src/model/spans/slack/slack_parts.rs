@@ -2,12 +2,10 @@
 //! kinks that a cable under tension would bridge.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::{
-    BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult, slide_on_piece,
-};
+use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult, slide_on_piece};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
-use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
+use crate::model::spans::slack::upper_surfaces::{LoadFrame, UpperSurfaces};
 
 /// Turn (rad) up to which two stretches are one, and by which a plumb leg beside a surface may be
 /// off its end.
@@ -51,7 +49,7 @@ pub(super) fn plumb(context: &SolveContext, height: f64) -> f64 {
 /// Computes the tensions of a drained route.
 pub(super) struct SlackSolver<'a> {
     pub context: &'a SolveContext,
-    pub frame: Frame,
+    pub frame: LoadFrame,
     /// Tension that counts as round-off, N.
     pub most: f64,
     pub sought: LooseShapes,

@@ -5,7 +5,13 @@ use crate::model::spans::boundary::capstan::arc::ArcPath;
 use crate::model::spans::boundary::capstan::cable_law::{CableLaw, LocalLoad, SlideResult};
 
 /// The result of sliding by a distance `way` along the piece of a place, from the tension `t`.
-pub(in crate::model::spans) fn slide_on_piece(law: &CableLaw, from: &LocalLoad, way: f64, t: f64, m: f64) -> SlideResult {
+pub(in crate::model::spans) fn slide_on_piece(
+    law: &CableLaw,
+    from: &LocalLoad,
+    way: f64,
+    t: f64,
+    m: f64,
+) -> SlideResult {
     if !from.turns {
         return slide_on_edge(law, law.edge_rate(from, m), way, t);
     }
