@@ -10,10 +10,10 @@
 //! | `simulation/cheaper_model_error.rs` | error of the next cheaper model |
 
 mod cheaper_model_error;
-mod coupling;
 mod loading_histories;
 mod model_fallback;
 mod non_unique_equilibrium;
+mod robot_coupling;
 mod speed_search;
 
 use std::sync::Arc;
@@ -31,7 +31,7 @@ use crate::simulated_cable::SimulatedCable;
 use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
 use crate::solution::{
     CableSolution, Cost, Energy, ErrorEstimates, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node,
-    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
+    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, material_point_motion,
 };
 use crate::state::State;
 use crate::warnings::{Observed, SharpestBends, WarningMonitor};
@@ -260,7 +260,7 @@ impl Simulation {
             RunPhase::AtRest => self.initial_nodes = self.answers.iter().map(|a| a.nodes.clone()).collect(),
             RunPhase::InMotion => {
                 for (answer, first) in self.answers.iter_mut().zip(&self.initial_nodes) {
-                    node_motion::displace(&mut answer.nodes, first);
+                    material_point_motion::displace(&mut answer.nodes, first);
                 }
             }
         }
@@ -497,7 +497,7 @@ impl Simulation {
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
-            node_motion::accelerate(&mut answer.nodes, before, last_s);
+            material_point_motion::accelerate(&mut answer.nodes, before, last_s);
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use super::wheels_as_posts::WheelPost;
 use crate::contact::World;
 use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
-use crate::scene::similarity::Similarity;
+use crate::scene::froude_scaling::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
 use crate::solution::{CableSolution, Warning};
 

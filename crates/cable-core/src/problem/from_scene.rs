@@ -11,7 +11,7 @@ use super::{ground_route, route_check, support_clearance};
 use crate::contact::World;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
-use crate::scene::similarity::Similarity;
+use crate::scene::froude_scaling::Similarity;
 use crate::scene::{Cable, FrictionMobilised, Scene, SupportKind, View};
 use crate::solution::Warning;
 

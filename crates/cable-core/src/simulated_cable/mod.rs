@@ -11,7 +11,7 @@
 //! | `support_targets.rs` | supports that are dragged or pulled, and the robot's pose |
 //! | `obstacles_in_reach.rs` | obstacles that a cable comes to which were out of its reach |
 //! | `handover.rs` | the same cable in another state, by another model or after an edit |
-//! | `answer.rs` | the pieces read as one cable |
+//! | `answer_of_pieces.rs` | the pieces read as one cable |
 //! | `support_speed_limit.rs` | motions of supports that are too fast to be followed |
 //!
 //! Most models know unbroken cables only. Where the tension reaches the breaking tension,
@@ -22,7 +22,7 @@
 //! ([`Mechanics::break_at`](crate::model::Mechanics::break_at)), and is one [`CablePiece`] here.
 
 mod advance;
-mod answer;
+mod answer_of_pieces;
 mod break_search;
 mod energy_over_breaks;
 mod former_energy;

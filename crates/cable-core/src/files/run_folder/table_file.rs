@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::disk::{remove_if_present, write_new};
+use super::atomic_write::{remove_if_present, write_new};
 use crate::record::{Fingerprint, Pages};
 
 /// A table of a run on the disk.

@@ -2,8 +2,8 @@
 //! support reactions.
 
 use super::equilibrium::{Equilibrium, required_friction};
-use super::layout::SupportLayout;
 use super::sliding_problem::SlidingProblem;
+use super::supports_and_loads::SupportLayout;
 use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
