@@ -145,9 +145,9 @@ impl BarPath<'_> {
         self.checked.length_rounding(material) + aside
     }
 
-    /// Returns the deviation of the path of a flexible bar, whose internal force at its end is `end`
-    /// (N) of size `q` (N), and the allowed one, m; None if the force has no direction, or the bar's
-    /// own weight turns it too far.
+    /// Returns the deviation of the path of a flexible bar, whose internal force at its end is
+    /// `end` (N) of size `q` (N), and the allowed one, m; None if the force has no direction, or
+    /// the bar's own weight turns it too far.
     #[inline]
     fn strained(&self, end: Vec2, q: f64) -> Option<(Vec2, f64)> {
         let &Self { checked, bar, touches } = self;
@@ -169,15 +169,15 @@ impl BarPath<'_> {
         if lumped > FOLD_TURN {
             return None;
         }
-        // The floor of a plan view may act anywhere between two nodes, not evenly: the mean direction
-        // is then anywhere between those at the nodes.
+        // The floor of a plan view may act anywhere between two nodes, not evenly: the mean
+        // direction is then anywhere between those at the nodes.
         let by_floor = if checked.floor_rubs() { 0.5 * turn.sqrt() } else { 0.0 };
         let limit = self.slack(material) + (TURN * turn + lumped + by_floor) * material;
         Some((bar.way - rates * (material / 6.0), limit))
     }
 
-    /// Handles a bar whose force, of size `q` (N) at its end, has no direction: it must not be longer
-    /// than its material.
+    /// Handles a bar whose force, of size `q` (N) at its end, has no direction: it must not be
+    /// longer than its material.
     fn folded(&self, q: f64) -> LengthDeviation {
         let &Self { checked, bar, .. } = self;
         let material = checked.thermal * bar.length;

@@ -139,9 +139,9 @@ fn motion_at_rest(problem: &Problem, mesh: &Mesh, positions: Vec<Vec2>) -> Nodal
     }
 }
 
-/// The mass matrix of a cable. If it can touch something, the mass is always lumped: a contact takes
-/// the momentum of one node, nodes come and go with corners and pulleys, and a mass matrix that
-/// changed when contact begins would change the energy.
+/// The mass matrix of a cable. If it can touch something, the mass is always lumped: a contact
+/// takes the momentum of one node, nodes come and go with corners and pulleys, and a mass matrix
+/// that changed when contact begins would change the energy.
 fn mass_matrix(problem: &Problem) -> MassMatrix {
     if touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley) {
         MassMatrix::Spread

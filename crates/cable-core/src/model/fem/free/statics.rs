@@ -244,7 +244,8 @@ impl Statics {
         }
     }
 
-    /// Balances pulleys with friction from their memory, or else from the route; returns from which.
+    /// Balances pulleys with friction from their memory, or else from the route; returns from
+    /// which.
     fn begin_rubbing(
         &self,
         network: &mut PulleyNetwork,
