@@ -115,3 +115,40 @@ fn a_cable_that_stretches_beyond_its_strength_meets_the_floor() {
     let answer = sim.settle().expect("it rests");
     assert!(lowest(&answer) > -1.2 && !answer.cables[0].contacts.is_empty(), "{} m", lowest(&answer));
 }
+
+/// A slack span is pulled taut in some seconds. A pipe above it that it never touches is within its
+/// reach, so that the cable has the loss and the mass of one that may rub.
+#[test]
+fn issue_017_a_pipe_that_is_never_touched_does_not_change_a_slow_pull() {
+    for (seconds, damping_ratio, stiffness_n, strain) in
+        [(1.0, 0.02, 3e5, 0.01), (2.0, 0.05, 1e6, 0.005), (4.0, 0.08, 1e5, 0.02)]
+    {
+        let mut scene = swung();
+        let cable = &mut scene.cables[0];
+        (cable.damping_ratio, cable.axial_stiffness_n) = (damping_ratio, stiffness_n);
+        (cable.length_m, cable.segments) = (8.4, None);
+        let to = [-4.0 + cable.length_m * (1.0 + strain), 3.0];
+        cable.supports[1].motion = Some(Motion { times_s: vec![0.0, seconds], points_m: vec![[4.0, 3.0], to] });
+        let mut piped = scene.clone();
+        let shape = Shape::Circle { center_m: [0.0, 3.6], radius_m: 0.1 };
+        piped.obstacles.push(Obstacle { name: "pipe".into(), shape, friction: Some(0.3) });
+        let [alone, beside] = [scene, piped].map(|scene| {
+            let mut sim = settled(scene, Model::Fem, Inertia::Dynamic);
+            let mut most = 0.0_f64;
+            for _ in 0..(240.0 * (seconds + 0.2)) as usize {
+                sim.step(1.0 / 240.0).expect("it steps");
+                assert!(sim.solution().cables[0].contacts.is_empty());
+                most = most.max(sim.max_tension().tension_n);
+            }
+            most
+        });
+        let relaxed = stiffness_n * strain;
+        println!(
+            "{seconds} s, ratio {damping_ratio}: {alone:.1} N alone, {beside:.1} N beside a pipe, EA ε {relaxed} N"
+        );
+        assert!(alone > 1.02 * relaxed, "the pull is so slow that no loss is seen");
+        // The branches of both are fitted to the same loss, to some hundredths of it.
+        let by_loss = alone - relaxed;
+        assert!((beside - alone).abs() < 0.05 * by_loss, "{beside} N beside a pipe, {alone} N without it");
+    }
+}

@@ -101,7 +101,9 @@ fn the_peak_of_a_hanging_cable_converges_and_is_that_of_an_impact() {
 #[test]
 fn the_energy_of_robot_and_cable_is_that_of_the_forces() {
     for n in [240.0, 960.0] {
-        let scene = hanging();
+        let mut scene = hanging();
+        // The account below has no energy in relaxation branches.
+        scene.cables[0].damping_ratio = 0.0;
         let cable = &scene.cables[0];
         let (ea, density, g) = (cable.axial_stiffness_n, cable.linear_density_kg_per_m, 9.80665);
         let wave = (ea / density).sqrt();

@@ -254,3 +254,22 @@ fn a_run_is_refined_until_its_errors_are_as_asked() {
     assert!(coarse > 0.01 && fine <= 0.01, "{coarse} of the run, {fine} of the finer one");
     assert!((long - 1.0 / 240.0).abs() < 1e-9 && short < 0.6 * long, "steps of {long} s and {short} s");
 }
+
+/// A run that is to be refined and stops on its way is run as it is, up to where it stops.
+#[test]
+fn issue_016_a_run_that_stops_is_run_up_to_there_whatever_error_is_asked() {
+    let mut scene = catalog::hanging_span();
+    scene.obstacles = catalog::floor_drag().obstacles;
+    for s in &mut scene.cables[0].supports {
+        let at = s.at_m.unwrap();
+        let down = vec![at, [at[0], at[1] - 4.9]];
+        s.motion = Some(Motion { times_s: vec![0.0, 1.0], points_m: down });
+    }
+    let mut sim = Simulation::new(scene, Model::Catenary).unwrap();
+    sim.settle().unwrap();
+    let asked = Refinement { duration_s: 1.0, step_s: None, tolerance: 1e-12, max_halvings: 2 };
+    let (sim, step_s) = refine_until_accurate(sim, Inertia::QuasiStatic, &asked).unwrap();
+    let mut timeline = Timeline::new(sim, Inertia::QuasiStatic, step_s).unwrap();
+    assert!(timeline.at(Instant::nearest(1.0), |_| ()).is_err());
+    assert!(timeline.simulation().time_s() > 0.1, "{} s", timeline.simulation().time_s());
+}

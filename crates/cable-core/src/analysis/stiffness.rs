@@ -64,11 +64,23 @@ pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<
                 continue;
             };
             let top = answer.cables.get(k).map_or(0.0, |c| c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger));
+            // Where a part of the cable lies loose, nothing is drawn or held through it, and the end
+            // feels the equilibrium at its new place. A history would lift the cable off the ground
+            // bar by bar.
+            let is_loose = answer.cables.get(k).is_some_and(|c| c.nodes.iter().any(|n| n.tension_n <= 0.0));
             let moved = |by: Vec2| -> Result<Vec2, Error> {
-                let mut run = rest.clone();
-                run.drag_support(k, support, vec2(at) + by);
-                run.step_quasi_static(MOVE_TIME_S)?;
-                let answer = run.solution();
+                let answer = if is_loose {
+                    let mut aside = still.clone();
+                    if let Some(s) = aside.cables.get_mut(k).and_then(|c| c.supports.get_mut(support)) {
+                        s.at_m = Some((vec2(at) + by).into());
+                    }
+                    Simulation::for_question(aside, model, settings, Question::Rest)?.settle()?
+                } else {
+                    let mut run = rest.clone();
+                    run.drag_support(k, support, vec2(at) + by);
+                    run.step_quasi_static(MOVE_TIME_S)?;
+                    run.solution()
+                };
                 let reaction = answer.cables.get(k).and_then(|c| c.supports.get(support));
                 Ok(reaction.map_or_else(Vec2::zeros, |r| Vec2::new(r.reaction_x_n, r.reaction_y_n)))
             };

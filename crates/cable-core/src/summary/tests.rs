@@ -3,7 +3,7 @@
 use super::*;
 use crate::analysis::{Bending, end_stiffness, neglected_bending, settle_with_bending};
 use crate::model::{Model, Settings};
-use crate::scene::{Motion, Support, catalog};
+use crate::scene::{Motion, Obstacle, Shape, Support, catalog};
 use crate::simulation::Simulation;
 use crate::solution::{ContactReport, SupportReaction};
 
@@ -121,6 +121,28 @@ fn end_stiffness_is_that_of_the_catenary() {
         let k = end.stiffness_n_per_m;
         assert!((k[0][0] / (1e6 / 9.99) - 1.0).abs() < 1e-6, "{k:?}");
         assert!((k[1][1] / (tension / 10.0) - 1.0).abs() < 1e-5, "{k:?} against {}", tension / 10.0);
+    }
+}
+
+/// An end from which a loose cable hangs plumb carries what hangs: a metre more of it for each metre
+/// that it is raised, and nothing more where it is moved aside.
+#[test]
+fn issue_016_an_end_over_loose_cable_is_as_stiff_as_the_cable_is_heavy() {
+    for (slack, heights) in [(0.1, [1.21, 1.61]), (1.5, [0.4, 2.0])] {
+        let mut scene = catalog::slack_to_floor();
+        scene.loads.clear();
+        let floor = Shape::Terrain { points_m: vec![[-5.0, 0.0], [10.0, 0.0]] };
+        scene.obstacles = vec![Obstacle { name: "floor".into(), shape: floor, friction: Some(0.5) }];
+        let cable = &mut scene.cables[0];
+        (cable.diameter_m, cable.bending_stiffness_n_m2, cable.linear_density_kg_per_m) = (0.02, 0.0, 1.0);
+        cable.route_m.clear();
+        cable.length_m = 4.0 + heights[0] + heights[1] + slack;
+        cable.supports = vec![Support::fixed("a", [0.0, heights[0]]), Support::fixed("b", [4.0, heights[1]])];
+        for end in end_stiffness(&scene, Model::Auto, Settings::default()).unwrap() {
+            let [[xx, xy], [yx, yy]] = end.stiffness_n_per_m;
+            assert!((yy / 9.80665 - 1.0).abs() < 1e-3, "{end:?}");
+            assert!(xx.abs() + xy.abs() + yx.abs() < 1e-3, "{end:?}");
+        }
     }
 }
 

@@ -19,29 +19,33 @@ pub struct Refinement {
 }
 
 /// A run without outputs for every time it is to be finer, until errors are as asked: the
-/// simulation to begin with, settled, and its step (s).
+/// simulation to begin with, settled, and its step (s). A finer one that finds no first rest, or
+/// does not come to the end where it is tried, is not taken.
 ///
 /// # Errors
-/// As [`Timeline::new`] and [`Timeline::at`].
+/// As [`Timeline::new`].
 pub fn refine_until_accurate(
-    mut simulation: Simulation,
+    simulation: Simulation,
     inertia: Inertia,
     asked: &Refinement,
 ) -> Result<(Simulation, Option<f64>), SolveError> {
-    let (mut step, mut before) = (asked.step_s, f64::INFINITY);
+    let mut taken = (simulation, asked.step_s);
+    let mut coarser = (taken.clone(), f64::INFINITY);
     for _ in 0..asked.max_halvings {
-        let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
-        timeline.at(Instant::nearest(asked.duration_s), |_| ())?;
+        let mut timeline = Timeline::new(taken.0.clone(), inertia, taken.1)?.with_errors();
+        if timeline.at(Instant::nearest(asked.duration_s), |_| ()).is_err() {
+            return Ok(coarser.0);
+        }
         let Some(error) = timeline.monitor().relative_error() else { break };
         // Paths are chaotic if a finer run is no nearer: still finer ones are not either.
-        if error <= asked.tolerance || error > before {
+        if error <= asked.tolerance || error > coarser.1 {
             break;
         }
-        before = error;
-        let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
-        finer.settle()?;
-        step = Some(0.5 * timeline.step_s());
-        simulation = finer;
+        let Ok(Some(mut finer)) = taken.0.resolved(2.0) else { break };
+        if finer.settle().is_err() {
+            break;
+        }
+        coarser = (std::mem::replace(&mut taken, (finer, Some(0.5 * timeline.step_s()))), error);
     }
-    Ok((simulation, step))
+    Ok(taken)
 }

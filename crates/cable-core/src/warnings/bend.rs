@@ -20,10 +20,13 @@
 //! Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ pushes at the point
 //! where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) /
 //! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
+//!
+//! The bars of a stiff cable in motion may be longer than that bend. They spread its turn over their
+//! length and show it too gentle by up to two times, so the formula judges it there, too.
 
 use super::guide_at_node::{Guide, guide_at_node};
 use super::tangle::turns;
-use crate::math::larger;
+use crate::math::{larger, smaller};
 use crate::problem::Problem;
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Warning, WarningCause};
 
@@ -32,10 +35,21 @@ use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Warning, 
 /// pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
 const CORNER_TURN: f64 = 0.26;
 
-/// A stiff cable whose line has no more than this times the radius of a corner's own arc was given
-/// no moment there: its mesh follows the corner. Closer to 1: rounding passes for a moment;
+/// A stiff cable whose line has no more than this times the radius of a corner's or post's own arc
+/// may have been given no moment there: its mesh follows the arc. Closer to 1: rounding passes for a moment;
 /// further: bends that are as sharp are judged by the formula, which says the same.
 const CORNER_ARC_RATIO: f64 = 1.05;
+
+/// Length of the bars beside a node of a stiff cable in motion, in bending lengths √(EI/T), above
+/// which they do not show a led bend as sharp as it is. Smaller: bends that bars show are judged by
+/// the formula, which does not know what else is near; larger: bends up to 1.8 times too gentle
+/// (6 of 19 random bends over corners and posts).
+const COARSE_BAR_LENGTHS: f64 = 0.5;
+
+/// Distance from a corner, in bending lengths √(EI/T), within which a cable makes nearly all of its
+/// turn there: tan(φ/4) falls by e a bending length. Smaller: parts of the turn are left out; larger:
+/// the turns of other corners are counted.
+const BEND_REACH_LENGTHS: f64 = 3.0;
 
 /// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a
 /// hundred elements.
@@ -48,6 +62,31 @@ const KINK_DIAMETERS: f64 = 1.0;
 /// Radius of a bend from which the cable is straight, in lengths of the cable, which turns by less
 /// than a billionth of a radian then: that is rounding of its nodes.
 const STRAIGHT_LENGTHS: f64 = 1e9;
+
+/// How well the line of an answer shows a bend at a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ShownBend {
+    /// It has the curvature of the cable, or that of a flexible one.
+    Exact,
+    /// It consists of bars short enough to show the bend.
+    FineBars,
+    /// It consists of bars that are too long for it.
+    CoarseBars,
+}
+
+impl ShownBend {
+    /// How well the line shows a bend at node `k` of a piece.
+    fn of(problem: &Problem, answer: &CableSolution, piece: &[Node], k: usize) -> Self {
+        if !answer.assumptions.inertia || problem.bending_stiffness == 0.0 {
+            return Self::Exact;
+        }
+        let bar = |a: usize, b: usize| Some(piece.get(b)?.arc_length_m - piece.get(a)?.arc_length_m);
+        let longest = larger(k.checked_sub(1).and_then(|a| bar(a, k)).unwrap_or(0.0), bar(k, k + 1).unwrap_or(0.0));
+        let pull = piece.get(k).map_or(0.0, |n| larger(n.tension_n, 0.0));
+        let coarse = longest * longest * pull > COARSE_BAR_LENGTHS * COARSE_BAR_LENGTHS * problem.bending_stiffness;
+        if coarse { Self::CoarseBars } else { Self::FineBars }
+    }
+}
 
 /// The sharpest bends of an answer, and the greatest pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,14 +124,20 @@ impl SharpestBends {
                 // A corner between two nodes is shared by them, a round by all that lie on it.
                 let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
                 let guide_at_node = guide_at_node(problem, answer, start + k);
+                let shown = ShownBend::of(problem, answer, piece, k);
                 let shared = match guide_at_node {
-                    Guide::Round(radius) | Guide::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
+                    Guide::Round(radius) | Guide::Corner(radius) => {
+                        let quarter = std::f64::consts::FRAC_PI_2 * radius;
+                        let far =
+                            if shown == ShownBend::Exact { quarter } else { larger(quarter, bend_reach(problem, n)) };
+                        larger(pair, turn_within(piece, &turns, k, far))
+                    }
                     _ => pair,
                 };
                 if guide_at_node == Guide::Free && curvature > sharpest {
                     sharpest = curvature;
                 }
-                this.add(problem, n, guide_at_node, shared);
+                this.add(problem, n, guide_at_node, shared, shown);
             }
             start += piece.len();
         }
@@ -117,7 +162,7 @@ impl SharpestBends {
         self.free
     }
 
-    fn add(&mut self, problem: &Problem, n: &Node, guide_at_node: Guide, turn: f64) {
+    fn add(&mut self, problem: &Problem, n: &Node, guide_at_node: Guide, turn: f64, shown: ShownBend) {
         let stiff = problem.bending_stiffness > 0.0;
         let own = 1.0 / n.curvature_per_m.abs();
         let line = match guide_at_node {
@@ -141,6 +186,14 @@ impl SharpestBends {
         }
         keep(&mut self.led, line);
         let judged = match guide_at_node {
+            Guide::Corner(radius) | Guide::Round(radius) if shown != ShownBend::Exact => {
+                let bend = larger(radius, corner_radius(problem.bending_stiffness, n.tension_n, turn));
+                match shown {
+                    _ if own <= CORNER_ARC_RATIO * radius => bend,
+                    ShownBend::CoarseBars => smaller(own, bend),
+                    _ => own,
+                }
+            }
             Guide::Corner(radius) if stiff && own > CORNER_ARC_RATIO * radius => own,
             Guide::Corner(radius) if self.bending_stiffness > 0.0 => {
                 larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
@@ -178,10 +231,15 @@ pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> 
     0.5 * (bending_stiffness / pull).sqrt() / sine
 }
 
-/// Returns how far the nodes beside node `k` turn that are within a quarter of a round of a radius
-/// (m), rad.
-fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
-    let far = std::f64::consts::FRAC_PI_2 * radius;
+/// The distance from a corner within which a cable with bending stiffness makes nearly all of its
+/// turn there, m.
+fn bend_reach(problem: &Problem, n: &Node) -> f64 {
+    let reach = BEND_REACH_LENGTHS * (problem.bending_stiffness / larger(n.tension_n, 0.0)).sqrt();
+    if reach < problem.length { reach } else { problem.length }
+}
+
+/// Returns how far the nodes turn that are within a distance (m) of node `k`, rad.
+fn turn_within(piece: &[Node], turns: &[f64], k: usize, far: f64) -> f64 {
     let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
     let first = piece[..k].iter().rposition(|n| !near(n)).map_or(0, |i| i + 1);
     let count = piece[first..].iter().take_while(|n| near(n)).count();

@@ -1,7 +1,7 @@
 //! Waves along the cable run at c = √(EA/ρ), ρ and length unstretched; it swings at φ c/L, N bars
 //! at that to the order 1/N⁴. Its loss takes ζω of the amplitude a second at every frequency.
 
-use cable_core::scene::{Support, SupportKind};
+use cable_core::scene::{Obstacle, Shape, Support, SupportKind};
 
 use super::measure::{Ring, behind, cable, climbs, masses, ring, sampled, settled, spread_energy, started};
 
@@ -69,7 +69,7 @@ fn its_free_end_swings_at_the_speed_of_its_wave_too() {
 /// frequency and decay of its free swing, 1/s.
 ///
 /// Steps are a hundredth of the swing, so that they take less than 1e-5 of critical.
-fn rings(ratio: f64, wanted: f64) -> [f64; 2] {
+fn rings(ratio: f64, wanted: f64, obstacles: &[Obstacle]) -> [f64; 2] {
     let (length, density, ea, segments) = (10.0f64, 0.1f64, 1e5f64, 32);
     let first = std::f64::consts::PI * (ea / density).sqrt() / length;
     let mode = (wanted / first).round();
@@ -84,6 +84,7 @@ fn rings(ratio: f64, wanted: f64) -> [f64; 2] {
     let mut scene = cable([length, density, ea], segments, vec![wall, end]);
     scene.environment.gravity_m_per_s2 = 0.0;
     scene.cables[0].damping_ratio = ratio;
+    scene.obstacles = obstacles.to_vec();
     let shape = |s: f64| if mode == 0.0 { s / length } else { (mode * std::f64::consts::PI * s / length).sin() };
     let mut sim = started(&scene, |state| {
         for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
@@ -105,7 +106,7 @@ fn rings(ratio: f64, wanted: f64) -> [f64; 2] {
 fn it_rings_down_by_its_damping_ratio_at_every_frequency() {
     for ratio in [0.005f64, 0.02] {
         for wanted in [2.0, 10.0, 50.0, 314.16, 1256.6] {
-            let [omega, decay] = rings(ratio, wanted);
+            let [omega, decay] = rings(ratio, wanted, &[]);
             let (found, faster) = (decay / omega / ratio, omega / wanted - 1.0);
             let stiffened = 2.0 * ratio / std::f64::consts::PI * (wanted / 0.628).ln();
             println!(
@@ -115,6 +116,24 @@ fn it_rings_down_by_its_damping_ratio_at_every_frequency() {
             // The lower edge of the band is not sharp: the lowest branch has half of its stiffness
             // there.
             assert!((faster - stiffened).abs() < 1.5 * ratio, "{wanted} rad/s: faster by {faster}, not {stiffened}");
+        }
+    }
+}
+
+/// A bar that can touch something, here a pipe beside it, has the same loss up to the frequency
+/// 2ζ/τ at which the viscous loss of τ = 1 ms is as great, and that above.
+#[test]
+fn issue_017_it_rings_down_by_its_damping_ratio_beside_a_pipe() {
+    let shape = Shape::Circle { center_m: [5.0, 1.0], radius_m: 0.2 };
+    let pipe = [Obstacle { name: "pipe".to_owned(), shape, friction: Some(0.3) }];
+    for ratio in [0.01f64, 0.02, 0.05] {
+        for wanted in [1.0, 2.0, 5.0, 10.0, 30.0, 50.0] {
+            let [omega, decay] = rings(ratio, wanted, &pipe);
+            let viscous = 0.5e-3 * omega;
+            let expected = if viscous < ratio { ratio } else { viscous };
+            let found = decay / omega / expected;
+            println!("ratio {ratio} at {wanted} rad/s: {found:.3} of {expected:.4}");
+            assert!((0.8..1.35).contains(&found), "{found} of a damping ratio of {expected} at {wanted} rad/s");
         }
     }
 }

@@ -35,6 +35,7 @@ pub(in crate::model::fem) fn cable_along_route(
         cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
         cable.contacts.self_contacts.friction = cable.problem.cable.friction;
     }
+    cable.loss = Loss::of(&cable.problem, cable.even(), cable.can_rub());
     cable.forget_history();
     prepare_input(&mut cable, 0.0, None);
     for k in 0..cable.mesh.nodes() {
@@ -46,6 +47,7 @@ pub(in crate::model::fem) fn cable_along_route(
     let mut x = std::mem::take(&mut cable.motion.positions);
     depenetrate(&cable.problem, &cable.mesh, &mut x, PUSHED_OUT_REACHES * contact.reach_m);
     cable.motion.positions = x;
+    cable.loss = Loss::of(&cable.problem, cable.even(), cable.can_rub());
     cable.forget_history();
     cable
 }
@@ -102,7 +104,7 @@ fn cable_at_rest(
             was_contact_free: false,
             found: Vec::with_capacity(n),
         },
-        loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
+        loss: Loss::default(),
         answers: StepAnswers {
             reaction: vec![Vec2::zeros(); n],
             held_back: Vec::new(),

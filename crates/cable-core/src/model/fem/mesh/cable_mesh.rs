@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
+use crate::model::fem::mesh::branch_forces::BranchForces;
 use crate::model::fem::mesh::mass_matrix::{MassMatrix, Spread};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, StraightPart, TangentPath, angle_between};
@@ -45,6 +46,8 @@ pub struct Mesh {
     pub bending_stiffness: f64,
     /// Difference of its mass matrix from the lumped one.
     pub spread: Spread,
+    /// Forces in the relaxation branches of its bars.
+    pub(in crate::model::fem) branch_forces: BranchForces,
 }
 
 impl Mesh {
@@ -76,6 +79,7 @@ impl Mesh {
                 MassMatrix::Spread => Spread::of(&stretches),
                 MassMatrix::Lumped => Spread::default(),
             },
+            branch_forces: BranchForces::default(),
         }
     }
 
@@ -100,13 +104,14 @@ impl Mesh {
 
     /// As [`Self::copy_from`] where neither mesh can have sliding nodes.
     pub fn copy_material_nodes_from(&mut self, other: &Self) {
-        let Self { tuning, arc_length, rest_length, held, clamps, spread, .. } = other;
+        let Self { tuning, arc_length, rest_length, held, clamps, spread, branch_forces, .. } = other;
         self.tuning.clone_from(tuning);
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
         self.held.clone_from(held);
         self.clamps.clone_from(clamps);
         self.spread.copy_from(spread);
+        self.branch_forces.copy_from(branch_forces);
         self.thermal_stretch = other.thermal_stretch;
         self.axial_stiffness = other.axial_stiffness;
         self.bending_stiffness = other.bending_stiffness;
@@ -202,13 +207,25 @@ impl Mesh {
         !(self.is_break(k - 1) || self.is_break(k))
     }
 
-    /// The bar from node `e` to node `e + 1`; without stiffness at a break.
+    /// Tension of bar `e` at a length (m), N: that of its stretch and its relaxation branches;
+    /// negative in compression, except in a flexible bar.
+    #[inline]
     #[must_use]
-    pub fn bar(&self, e: usize) -> Bar {
+    pub(in crate::model::fem) fn tension(&self, e: usize, length: f64) -> f64 {
+        self.tension_with(e, length, self.rest_length[e])
+    }
+
+    /// The tension of bar `e` at a length with another unstretched length (m), N.
+    #[inline]
+    #[must_use]
+    pub(in crate::model::fem) fn tension_with(&self, e: usize, length: f64, rest_length: f64) -> f64 {
         if self.is_break(e) {
-            return Bar { rest_length: 1.0, stiffness: 0.0 };
+            return 0.0;
         }
-        Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
+        let stretching = Bar { rest_length, stiffness: self.axial_stiffness }.tension(length);
+        let tension =
+            if stretching > 0.0 || !self.is_flexible() { stretching + self.branch_forces.sum(e) } else { stretching };
+        if tension < 0.0 && self.is_flexible() { 0.0 } else { tension }
     }
 
     /// Tributary arc length of a node, m: half of the bars beside it at rest temperature, corrected
@@ -257,7 +274,7 @@ impl Mesh {
 
     /// Greatest tension of a bar, N.
     pub(in crate::model::fem) fn greatest_tension(&self, x: &[Vec2]) -> f64 {
-        let tension = |e| self.bar(e).tension(self.path(e, x).length);
+        let tension = |e| self.tension(e, self.path(e, x).length);
         (0..self.rest_length.len()).map(tension).fold(0.0, |most, t| if t > most { t } else { most })
     }
 
@@ -287,6 +304,7 @@ impl Mesh {
     pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         let (a, b) = (self.arc_length[k - 1], self.arc_length[k]);
         self.spread.clear();
+        self.branch_forces.divide(k - 1);
         self.arc_length.insert(k, arc_length);
         self.rest_length[k - 1] = self.thermal_stretch * (arc_length - a);
         self.rest_length.insert(k, self.thermal_stretch * (b - arc_length));
@@ -297,6 +315,7 @@ impl Mesh {
     /// Breaks the cable at node `k`: its second piece begins with node `k` + 1 at the same place.
     pub(in crate::model::fem) fn break_at(&mut self, k: usize) {
         self.arc_length.insert(k + 1, self.arc_length[k]);
+        self.branch_forces.insert_break(k);
         self.rest_length.insert(k, 0.0);
         self.held.insert(k + 1, false);
         self.sliding.insert(k + 1, None);
@@ -305,6 +324,7 @@ impl Mesh {
     /// Removes node `k`.
     pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
         self.spread.clear();
+        self.branch_forces.merge(k - 1, self.material_between(k - 1, k) / self.material_between(k - 1, k + 1));
         self.arc_length.remove(k);
         self.rest_length.remove(k);
         self.rest_length[k - 1] = self.thermal_stretch * (self.arc_length[k] - self.arc_length[k - 1]);

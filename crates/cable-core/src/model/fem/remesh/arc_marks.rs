@@ -29,7 +29,7 @@ pub(in crate::model::fem) fn move_marks(cable: &mut CableState, inertia: Inertia
         }
         let x = &cable.motion.positions;
         let paths = [cable.mesh.path(k - 1, x), cable.mesh.path(k, x)];
-        let tensions = [0, 1].map(|j| cable.mesh.bar(k - 1 + j).tension(paths[j].length));
+        let tensions = [0, 1].map(|j| cable.mesh.tension(k - 1 + j, paths[j].length));
         let whole = paths[0].arcs[1] + paths[1].arcs[0];
         let shift = part_before(tensions) * whole - paths[0].arcs[1];
         if !(shift.abs() * node.end.radius > MARK_TOLERANCE) {

@@ -197,7 +197,7 @@ impl<'a> Criteria<'a> {
         let first = bar.saturating_sub(1);
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.direction(first, x), mesh.direction(beyond, x));
-        let tension = mesh.bar(bar).tension(path.length);
+        let tension = mesh.tension(bar, path.length);
         if !(wrap > 0.0 && tension > mesh.tuning.remesh.sliding_tension_weights * self.meshing.bar_weight) {
             return None;
         }

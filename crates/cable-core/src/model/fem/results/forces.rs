@@ -7,7 +7,6 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::{Mesh, SlidingNodeLoad};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, Weight, bar_weight};
-use crate::model::fem::time::loss_memory;
 
 /// Tension in the middle of the straight part of each bar, N; it may be negative in a stiff cable.
 pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
@@ -16,14 +15,16 @@ pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
 
 pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let path = d.mesh.path(e, x);
-    let t = d.mesh.bar(e).tension(path.length);
-    let flexible = d.mesh.is_flexible();
+    let tension = d.mesh.tension(e, path.length);
     if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-        return Weight::of(&d.mesh, e, &path, d.input.loads.body).in_the_middle(t, material, flexible);
+        return Weight::of(&d.mesh, e, &path, d.input.loads.body).in_the_middle(
+            tension,
+            material,
+            d.mesh.is_flexible(),
+        );
     }
-    let t = if t > 0.0 || !flexible { t + loss_memory::force(d, e) } else { t };
-    if t < 0.0 && flexible { 0.0 } else { t }
+    tension
 }
 
 /// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
@@ -184,7 +185,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
         if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
             let [before, after] = [k - 1, k].map(|e| {
                 let path = d.mesh.path(e, x);
-                path.direction * d.mesh.bar(e).tension(path.length)
+                path.direction * d.mesh.tension(e, path.length)
             });
             sum += before - after - bar_weight::on_node(&d.mesh, k, x, problem.body_force(time_s));
         } else {

@@ -23,7 +23,6 @@ pub(in crate::model::fem) use bending_error::bending_error;
 use self::forces::{bar_tension, bar_tensions, end_forces, force_at_break};
 use crate::math::larger;
 use crate::model::fem::state::CableState;
-use crate::model::fem::time::loss_memory;
 use crate::solution::{Assumptions, CableSolution};
 
 /// The answer of a cable at this instant: that of the last step on the mesh on which it was
@@ -70,11 +69,7 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     gauged.bars.clear();
     if cable.meshing.never_slides {
         let mesh = &cable.mesh;
-        gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
-            let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
-            let t = if t > 0.0 { t + loss_memory::force(cable, e) } else { t };
-            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
-        }));
+        gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| mesh.tension(e, (pair[1] - pair[0]).norm())));
     } else {
         gauged.bars.extend((0..cable.mesh.rest_length.len()).map(|e| bar_tension(cable, x, e)));
     }

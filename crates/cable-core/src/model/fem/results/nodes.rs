@@ -5,7 +5,6 @@ use crate::math::Vec2;
 use crate::model::fem::results::forces::{curvature_at, force_at_break, half, moments, shear};
 use crate::model::fem::results::points_on_round::points_on_round;
 use crate::model::fem::state::CableState;
-use crate::model::fem::time::loss_memory;
 use crate::solution::Node;
 
 /// Room for so many points on each round: more are rare, and only cost a copy.
@@ -74,7 +73,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
         let beside = if k == 0 { 0..1 } else { k - 1..if k + 1 < n { k + 1 } else { k } };
         let count = beside.len() as f64;
         let by_branches =
-            beside.map(|e| if tension[e] > 0.0 { loss_memory::force(d, e) } else { 0.0 }).sum::<f64>() / count;
+            beside.map(|e| if tension[e] > 0.0 { mesh.branch_forces.sum(e) } else { 0.0 }).sum::<f64>() / count;
         out.push(Node { strain: node.strain - by_branches / d.problem.axial_stiffness, ..node });
     }
     out

@@ -194,7 +194,7 @@ impl<'a> Round<'a> {
                 continue;
             }
             let strained = |tension: f64| 1.0 + tension / self.cable.problem.axial_stiffness;
-            let even = mesh.bar(bar).tension(self.paths[j].length);
+            let even = mesh.tension(bar, self.paths[j].length);
             let beyond = if even > 0.0 { stretch[j] * strained(tension[bar]) / strained(even) } else { stretch[j] };
             let own = (p.arc_length - mesh.arc_length[beside]).abs() * stretch[j] / beyond;
             let more = bounded((p.at - x[beside]).norm() / beyond - own, 0.0, spare / beyond);

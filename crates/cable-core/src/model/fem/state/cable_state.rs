@@ -52,7 +52,7 @@ pub(in crate::model::fem) struct CableState {
     pub(in crate::model::fem) meshing: Meshing,
     pub(in crate::model::fem) contacts: ContactSet,
     pub(in crate::model::fem) motion: NodalMotion,
-    /// Material damping of taut bars, if the cable can touch nothing.
+    /// Material damping of taut bars.
     pub(in crate::model::fem) loss: Loss,
     /// The outline of the robot, if there is one.
     pub(in crate::model::fem) outline: Option<MovingOutline>,
@@ -67,6 +67,11 @@ impl CableState {
         self.contacts.meets_nothing(&self.problem)
     }
 
+    /// True if the cable can rub on anything: an obstacle, itself, a pulley, or the floor of a plan.
+    pub(in crate::model::fem) fn can_rub(&self) -> bool {
+        !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none())
+    }
+
     /// Stores the friction of a balanced step in the memory of the contacts.
     pub(in crate::model::fem) fn commit_contacts(&mut self, unknowns: &Unknowns) {
         self.contacts.commit(&self.problem, &self.mesh, &unknowns.positions, &self.motion.positions, &unknowns.slides);
@@ -76,6 +81,7 @@ impl CableState {
     pub(in crate::model::fem) fn forget_history(&mut self) {
         self.answers.stepped = None;
         self.motion.forget(&self.mesh.arc_length);
+        self.mesh.branch_forces.clear();
     }
 
     /// Position of a support, m.

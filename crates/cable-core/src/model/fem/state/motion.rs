@@ -40,9 +40,6 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) older_velocities: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(in crate::model::fem) previous_arc_length: Vec<f64>,
-    /// Forces of the relaxation branches of each bar, one bar after the other, N; empty: none (see
-    /// `loss`).
-    pub(in crate::model::fem) branch_forces: Vec<f64>,
     /// Rate of the arc length at sliding nodes, m/s, now and one step ago.
     pub(in crate::model::fem) slide_rates: Vec<f64>,
     pub(in crate::model::fem) previous_slide_rates: Vec<f64>,
@@ -89,11 +86,9 @@ impl NodalMotion {
             previous_slide_rates: w_before,
             followers,
             hands,
-            branch_forces: branch,
             ..
         } = other;
         self.positions.clone_from(x);
-        self.branch_forces.clone_from(branch);
         self.velocities.clone_from(v);
         self.previous_positions.clone_from(x_before);
         self.previous_velocities.clone_from(v_before);
@@ -118,7 +113,6 @@ impl NodalMotion {
         self.previous_arc_length.clear();
         self.previous_arc_length.extend_from_slice(arc_length);
         self.step_before = 0.0;
-        self.branch_forces.clear();
         (self.account, self.energies) = (MomentumSums::unknown(), Energies::default());
     }
 

@@ -148,6 +148,7 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
     input.inertial.coupling.clear();
     input.losses.predicted_length.clear();
     input.losses.predicted_length.extend_from_slice(&mesh.rest_length);
+    input.losses.damped_from.clone_from(&mesh.rest_length);
     input.inertial.predicted_slide.clear();
     input.inertial.predicted_slide.resize(n, 0.0);
     input.inertial.momentum_flux.clear();

@@ -65,7 +65,7 @@ impl Stepper {
             self.solver.ways.end(&unknowns.positions);
             (before, work_in_step(&self.cable, &unknowns, &self.solver))
         });
-        loss_memory::relax(&mut self.cable, h, &unknowns.positions);
+        loss_memory::relax(&mut self.cable, h, &unknowns);
         self.cable.commit_contacts(&unknowns);
         self.move_to(&unknowns, weights);
         self.cable.mesh.slide(&unknowns.slides);

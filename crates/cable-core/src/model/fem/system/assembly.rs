@@ -146,8 +146,9 @@ impl System {
             self.gradient[2 * i] = -f.x;
             self.gradient[2 * i + 1] = -f.y;
         }
-        for e in 0..mesh.rest_length.len() {
-            value += self.add_energy(&mesh.bar(e), [e, e + 1], x, curvature);
+        for (e, &rest_length) in mesh.rest_length.iter().enumerate() {
+            let bar = crate::energy::axial::Bar { rest_length, stiffness: mesh.axial_stiffness };
+            value += self.add_energy(&bar, [e, e + 1], x, curvature);
         }
         if mesh.bending_stiffness > 0.0 {
             let bends = Bends { stiffness: mesh.bending_stiffness, scale: &[], from: None };
@@ -223,6 +224,7 @@ mod tests {
             sliding: vec![None; 9],
             thermal_stretch: 1.0,
             spread: Spread::default(),
+            ..Mesh::default()
         }
     }
 

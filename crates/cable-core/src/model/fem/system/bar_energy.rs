@@ -79,16 +79,16 @@ impl PlainBar {
         }
         let [taut, slack] = input.losses.bars.get(e).copied().unwrap_or_default();
         let slopes = [(ea + taut) / length, slack / length];
-        // The bar was longer than its material at the start of the step.
-        let late = if taut + slack == 0.0 { 0.0 } else { input.losses.predicted_length[e] - length };
+        if taut + slack == 0.0 {
+            return Self { taut_from: length, pull_there: 0.0, slopes, flexible };
+        }
+        let damped_from = input.losses.damped_from[e] - length;
         if !flexible {
-            return Self { taut_from: length, pull_there: -late * taut / length, slopes, flexible };
+            return Self { taut_from: length, pull_there: -damped_from * taut / length, slopes, flexible };
         }
-        if late > 0.0 {
-            Self { taut_from: length + late * taut / (ea + taut), pull_there: 0.0, slopes, flexible }
-        } else {
-            Self { taut_from: length, pull_there: -late * slopes[1], slopes, flexible }
-        }
+        let taut_from = length + damped_from * taut / (ea + taut);
+        let folded = taut_from - input.losses.predicted_length[e];
+        Self { taut_from, pull_there: if folded > 0.0 { folded * slopes[1] } else { 0.0 }, slopes, flexible }
     }
 
     /// Its branch at a length, m.
@@ -166,7 +166,7 @@ impl BarEnergy {
     /// normal force.
     fn of(mesh: &Mesh, input: &StepInput, e: usize, at: [f64; 2]) -> Self {
         let (ea, loss) = (mesh.axial_stiffness, input.damping(e));
-        let ratio = input.losses.predicted_length[e] / mesh.rest_length[e];
+        let ratio = input.losses.damped_from[e] / mesh.rest_length[e];
         let (elastic, viscous) = (Self::spring(ea, 1.0, at), Self::spring(loss, ratio, at));
         if !mesh.is_flexible() || elastic.slope[0] > 0.0 && elastic.slope[0] + viscous.slope[0] > 0.0 {
             return elastic.and(viscous);

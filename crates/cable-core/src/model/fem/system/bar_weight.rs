@@ -210,7 +210,7 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
     [k - 1, k].map(|e| {
         let path = mesh.path(e, x);
-        let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+        let tension = mesh.tension(e, path.length);
         may_lie(mesh, e, &path, body, tension)
     })
 }
@@ -325,7 +325,7 @@ mod tests {
             prop_assume!(mesh.rest_length[0] > 0.5);
             let mut input = StepInput { scale: vec![1.4], ..StepInput::default() };
             input.loads.body = BODY;
-            input.losses.predicted_length.clone_from(&mesh.rest_length);
+            input.losses.damped_from.clone_from(&mesh.rest_length);
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let unknowns = Unknowns { positions: x.to_vec(), slides: slide.to_vec() };

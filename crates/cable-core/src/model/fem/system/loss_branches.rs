@@ -26,7 +26,7 @@
 //! damping of slack bars in that step. Branches are strained only in steps in which their force
 //! acts, so they give back only energy that was put in.
 
-use crate::math::bounded;
+use crate::math::{bounded, smaller};
 use crate::problem::Problem;
 
 /// Least time constant of material damping, s, of a cable with possible friction. Without it a soft
@@ -81,30 +81,34 @@ pub(in crate::model::fem) struct Loss {
 }
 
 impl Loss {
-    /// The loss of a cable of even bars of length `bar` (m): constant up to their highest
-    /// frequency.
-    pub(in crate::model::fem) fn of(problem: &Problem, bar: f64) -> Self {
+    /// The loss of a cable of even bars of length `bar` (m): constant up to their highest frequency,
+    /// or, if it `rubs`, up to that at which the viscous loss is as great.
+    pub(in crate::model::fem) fn of(problem: &Problem, bar: f64, rubs: bool) -> Self {
         let ratio = problem.cable.damping_ratio;
         let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
-        let highest = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
-        if !(ratio > 0.0 && highest.is_finite()) {
+        let cutoff = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
+        if !(ratio > 0.0 && cutoff.is_finite()) {
             return Self::default();
         }
-        let even = if ratio > CONSTANT_LOSS_RATIO_LIMIT { CONSTANT_LOSS_RATIO_LIMIT } else { ratio };
-        let rubs = false;
-        Self {
-            branches: fit(2.0 * even, [lowest, highest]),
-            viscous: damping_time(problem, rubs) * (1.0 - even / ratio),
+        let even = smaller(ratio, CONSTANT_LOSS_RATIO_LIMIT);
+        if !rubs {
+            let viscous = damping_time(problem, false) * (1.0 - even / ratio);
+            return Self { branches: fit(2.0 * even, 0.0, [lowest, cutoff]), viscous };
         }
+        let viscous = damping_time(problem, true);
+        let highest = smaller(cutoff, 2.0 * even / viscous);
+        let branches = if highest > lowest { fit(2.0 * even, viscous, [lowest, highest]) } else { Vec::new() };
+        Self { branches, viscous }
     }
 }
 
-/// Fits branches to a loss factor from the lowest to the highest frequency (rad/s).
+/// Fits branches beside a viscous loss with a time constant `viscous` (s) to a loss factor from the
+/// lowest to the highest frequency (rad/s).
 ///
 /// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor). Then each is multiplied
 /// repeatedly by the ratio of the wanted to the present loss factor at its own frequency, which
 /// keeps them positive.
-fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
+fn fit(factor: f64, viscous: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
     let decades = bounded((highest / lowest).ln() / RATIO.ln(), 0.0, MOST_DECADES);
     let steps = if decades > 1.0 { decades.ceil() } else { 1.0 };
     let ratio = if decades > 0.0 { RATIO.powf(decades / steps) } else { RATIO };
@@ -114,7 +118,7 @@ fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
         .map(|k| RelaxationBranch { time: 1.0 / (lowest * ratio.powi(k)), part: part * ratio.powi(k).powf(power) })
         .collect();
     for _ in 0..ROUNDS {
-        let found: Vec<f64> = branches.iter().map(|b| loss_factor(&branches, 1.0 / b.time)).collect();
+        let found: Vec<f64> = branches.iter().map(|b| loss_factor(&branches, viscous, 1.0 / b.time)).collect();
         for (b, found) in branches.iter_mut().zip(found) {
             b.part *= factor / found;
         }
@@ -123,8 +127,8 @@ fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
 }
 
 /// Im M/Re M at a frequency (rad/s).
-fn loss_factor(branches: &[RelaxationBranch], omega: f64) -> f64 {
-    let (mut real, mut imaginary) = (1.0, 0.0);
+fn loss_factor(branches: &[RelaxationBranch], viscous: f64, omega: f64) -> f64 {
+    let (mut real, mut imaginary) = (1.0, viscous * omega);
     for b in branches {
         let r = omega * b.time;
         real += b.part * r * r / (1.0 + r * r);
@@ -151,20 +155,37 @@ mod tests {
     #[test]
     fn the_loss_factor_is_constant_from_the_lowest_frequency_to_the_highest() {
         for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (CONSTANT_LOSS_RATIO_LIMIT, 1e5)] {
-            let branches = fit(2.0 * ratio, [LOWEST_LOSS_FREQUENCY, highest]);
+            let branches = fit(2.0 * ratio, 0.0, [LOWEST_LOSS_FREQUENCY, highest]);
             for k in 0..=200 {
                 let omega = LOWEST_LOSS_FREQUENCY * (highest / LOWEST_LOSS_FREQUENCY).powf(f64::from(k) / 200.0);
-                let found = loss_factor(&branches, omega) / (2.0 * ratio);
+                let found = loss_factor(&branches, 0.0, omega) / (2.0 * ratio);
                 assert!((0.92..1.09).contains(&found), "{ratio}, {omega} rad/s: {found} of what was asked");
             }
             assert!(branches.iter().all(|b| b.part > 0.0));
         }
     }
 
+    /// The test sums the loss of branches and of a viscous part that has the wanted factor alone at
+    /// the highest frequency.
+    #[test]
+    fn the_loss_factor_is_constant_up_to_where_the_viscous_loss_is_as_great() {
+        for ratio in [0.002, 0.005, 0.02, 0.05, 0.1] {
+            let viscous = MATERIAL_DAMPING;
+            let highest = 2.0 * ratio / viscous;
+            let branches = fit(2.0 * ratio, viscous, [LOWEST_LOSS_FREQUENCY, highest]);
+            for k in 0..=200 {
+                let omega = LOWEST_LOSS_FREQUENCY * (highest / LOWEST_LOSS_FREQUENCY).powf(f64::from(k) / 200.0);
+                let found = loss_factor(&branches, viscous, omega) / (2.0 * ratio);
+                assert!((0.8..1.3).contains(&found), "{ratio}, {omega} rad/s: {found} of what was asked");
+            }
+            assert!(branches.iter().all(|b| b.part >= 0.0));
+        }
+    }
+
     /// Cycles of strain with the exact update lose the energy that the loss factor gives.
     #[test]
     fn steps_lose_what_the_law_says() {
-        let branches = fit(0.04, [LOWEST_LOSS_FREQUENCY, 1e4]);
+        let branches = fit(0.04, 0.0, [LOWEST_LOSS_FREQUENCY, 1e4]);
         for omega in [2.0f64, 30.0, 400.0] {
             let h = std::f64::consts::TAU / omega / 200.0;
             let mut q = vec![0.0; branches.len()];

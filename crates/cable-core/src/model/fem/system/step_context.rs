@@ -58,8 +58,8 @@ impl StepContext<'_> {
             if slide.is_some() && self.input.inertial.moves {
                 return bar_energy::pull_on(mesh, self.input, k - 1 + j, x, rest[j]);
             }
-            let elastic = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
-            if elastic < 0.0 { 0.0 } else { elastic }
+            let tension = mesh.tension_with(k - 1 + j, path[j].length, rest[j]);
+            if tension < 0.0 { 0.0 } else { tension }
         });
         let body = self.input.loads.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));

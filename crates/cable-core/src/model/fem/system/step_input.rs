@@ -82,6 +82,10 @@ pub struct LossTerms {
     pub bars: Vec<[f64; 2]>,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
+    /// Length of each bar at which the damping of a taut bar has no force, m.
+    pub damped_from: Vec<f64>,
+    /// Engineering strain of the material of each bar at the start of the step.
+    pub material_strain: Vec<f64>,
     /// Bars beside the wheels of pulleys, with the length (m) of the path of each at the start of
     /// the step, before the wheels move.
     pub lengths_at_wheels: Vec<(usize, f64)>,

@@ -148,6 +148,9 @@ fn the_capstan_holds_in_motion() {
             let mut scene = round_a_post(friction, turn, 0.5);
             // The pull grows to e^{7.5} times the load: as stiff a cable as bears it.
             scene.cables[0].axial_stiffness_n *= if expected > 20.0 { expected / 20.0 } else { 1.0 };
+            // A material that creeps after the start has a viscous force of 1e-4 of the pull, which
+            // rubs and is not reported.
+            scene.cables[0].damping_ratio = 0.0;
             let ratios = ratios(&scene, Inertia::Dynamic, 1.0);
             let (low, high) = ratios.iter().fold((f64::INFINITY, 0.0f64), |(l, h), r| (r.min(l), r.max(h)));
             let (off, ripple) =

@@ -1,7 +1,7 @@
 //! Hands drag supports in a step with inertia: by a spring, which is a force on a node, or by
 //! prescribing the support's position.
 
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{Unknowns, bar_weight};
 use crate::model::hand::Hand;
@@ -13,8 +13,7 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let pull = |e: usize| {
         let path = mesh.path(e, x);
-        let tension = mesh.bar(e).tension(path.length);
-        path.direction * if tension > 0.0 { tension } else { 0.0 }
+        path.direction * larger(mesh.tension(e, path.length), 0.0)
     };
     let before = if node > 0 { pull(node - 1) } else { Vec2::zeros() };
     let after = if node + 1 < mesh.nodes() { pull(node) } else { Vec2::zeros() };

@@ -1,97 +1,89 @@
-//! This module holds the state of the relaxation branches of material damping, and adds them to a
-//! step.
+//! This module adds the relaxation branches of material damping to a step, and updates the forces
+//! in them after it.
+//!
+//! The material of a bar has the strain of the bar, ε = P/L − 1. A flexible bar that is shorter
+//! gives way sideways. Its material then has the strain at which its tension ends, EA ε + Σ q = 0:
+//! just after a stretch it is a little longer than at rest, and recovers with the times of the
+//! branches.
 
-use crate::math::Vec2;
+use crate::math::larger;
 use crate::model::fem::state::CableState;
+use crate::model::fem::system::{Unknowns, bar_energy};
 
-/// Engineering strain of bar `e` at positions `x` (m).
-fn strain(cable: &CableState, e: usize, x: &[Vec2]) -> f64 {
-    (x[e + 1] - x[e]).norm() / cable.mesh.rest_length[e] - 1.0
-}
-
-/// True if the bars have branches: for a cable that can touch nothing and has no sliding nodes.
-///
-/// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the
-/// tank of the catalogue costs 1.14 times as much, but the greatest tension of a drop on rubble
-/// is 555 and 771 N with 84 and 168 bars at 1/960 s and 1105 N with 168 at 1/3840 s, where the
-/// viscous loss of 1 ms in all bars has 409, 455 and 479 N.
-fn has_branches(cable: &CableState) -> bool {
-    !cable.loss.branches.is_empty() && !cable.mesh.spread.is_lumped()
-}
-
-/// True if a bar with this strain at the start of a step has the damping of its branches in it.
-fn relaxes(cable: &CableState, strain: f64) -> bool {
-    strain >= 0.0 || !cable.mesh.is_flexible()
-}
-
-/// Updates the branches by a step of `h` (s) to positions `x` (m), before the motion itself is
+/// Updates the branches by a step of `h` (s) to the unknowns at its end, before the motion itself is
 /// updated.
-pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
-    if !has_branches(cable) {
+pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
+    if cable.loss.branches.is_empty() {
         return;
     }
     let (count, bars, ea) = (cable.loss.branches.len(), cable.mesh.rest_length.len(), cable.problem.axial_stiffness);
-    let mut memory = std::mem::take(&mut cable.motion.branch_forces);
-    if memory.len() != count * bars {
-        memory.clear();
-        memory.resize(count * bars, 0.0);
-    }
-    for (k, b) in cable.loss.branches.iter().enumerate() {
-        let [decay, part] = b.in_step(h);
-        for e in 0..bars {
-            let before = strain(cable, e, &cable.motion.positions);
-            let change = if relaxes(cable, before) {
-                let now = strain(cable, e, x);
-                if relaxes(cable, now) { now - before } else { -before }
-            } else {
-                0.0
-            };
-            let q = &mut memory[e * count + k];
+    let stiffness: f64 = cable.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum();
+    let mut memory = std::mem::take(&mut cable.mesh.branch_forces);
+    let mesh = &cable.mesh;
+    for (e, forces) in memory.of_all(bars, count).chunks_exact_mut(count).enumerate() {
+        if mesh.is_break(e) {
+            continue;
+        }
+        let before = cable.input.losses.material_strain[e];
+        let length = bar_energy::rest_length(mesh, e, &unknowns.slides);
+        let strain = mesh.path(e, &unknowns.positions).length / length - 1.0;
+        let kept: f64 = forces.iter().zip(&cable.loss.branches).map(|(q, b)| q * b.in_step(h)[0]).sum();
+        let slack_strain = (stiffness * before - kept) / (ea + stiffness);
+        let change = if mesh.is_flexible() { larger(strain, slack_strain) } else { strain } - before;
+        for (q, b) in forces.iter_mut().zip(&cable.loss.branches) {
+            let [decay, part] = b.in_step(h);
             *q = *q * decay + ea * part * change;
         }
     }
-    cable.motion.branch_forces = memory;
+    cable.mesh.branch_forces = memory;
 }
 
-/// The forces of the branches, one bar after the other, N, and the number of branches of a bar;
-/// None without branches.
-pub(in crate::model::fem) fn forces(cable: &CableState) -> Option<(&[f64], usize)> {
-    let (forces, count) = (cable.motion.branch_forces.as_slice(), cable.loss.branches.len());
-    (has_branches(cable) && forces.len() == count * cable.mesh.rest_length.len()).then_some((forces, count))
-}
-
-/// The force of the branches of bar `e`, N.
-pub(in crate::model::fem) fn force(cable: &CableState, e: usize) -> f64 {
-    forces(cable).map_or(0.0, |(forces, count)| forces[e * count..][..count].iter().sum())
-}
-
-/// Replaces the viscous damping by that of the branches in a step of `h` (s) with velocities `rate`
-/// (1/s) times differences.
+/// Adds the damping of the branches in a step of `h` (s) to the viscous damping, with velocities
+/// `rate` (1/s) times differences.
 pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, decay: &mut Vec<f64>) {
-    if !has_branches(cable) {
+    let (mesh, losses, ea) = (&cable.mesh, &mut cable.input.losses, cable.problem.axial_stiffness);
+    let slides = |e: usize| mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some();
+    losses.damped_from.clone_from(&losses.predicted_length);
+    if mesh.is_flexible() {
+        for (e, from) in losses.damped_from.iter_mut().enumerate().filter(|(e, _)| !slides(*e)) {
+            *from = larger(*from, mesh.rest_length[e]);
+        }
+    }
+    if cable.loss.branches.is_empty() {
         return;
     }
-    let (count, bars, ea) = (cable.loss.branches.len(), cable.mesh.rest_length.len(), cable.problem.axial_stiffness);
-    let viscous = ea * cable.loss.viscous * rate;
-    let mut stiffness = viscous;
     decay.clear();
     decay.extend(cable.loss.branches.iter().map(|b| b.in_step(h)[0]));
-    stiffness += cable.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
-    let has_memory = cable.motion.branch_forces.len() == count * bars;
-    for e in 0..bars {
-        let before = strain(cable, e, &cable.motion.positions);
-        if !relaxes(cable, before) {
+    let viscous = ea * cable.loss.viscous * rate;
+    let stiffness = viscous + cable.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
+    let part = viscous / stiffness;
+    losses.material_strain.clear();
+    for (e, &length) in mesh.rest_length.iter().enumerate() {
+        if mesh.is_break(e) {
+            losses.material_strain.push(0.0);
             continue;
         }
-        let kept = if has_memory {
-            cable.motion.branch_forces[e * count..][..count].iter().zip(&*decay).map(|(q, d)| q * d).sum()
+        // The path at the start of the step, before wheels move.
+        let path = if slides(e) {
+            losses.predicted_length[e]
         } else {
-            0.0
+            (cable.motion.positions[e + 1] - cable.motion.positions[e]).norm()
         };
-        let l = cable.mesh.rest_length[e];
-        let late = cable.input.losses.predicted_length[e];
-        let part = viscous / stiffness;
-        cable.input.losses.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
-        cable.input.losses.bars[e][0] = stiffness;
+        let forces = mesh.branch_forces.of_bar(e);
+        let slack_strain = -forces.iter().sum::<f64>() / ea;
+        let strain = path / length - 1.0;
+        let is_slack = mesh.is_flexible() && strain < slack_strain;
+        let strain = if is_slack { slack_strain } else { strain };
+        losses.material_strain.push(strain);
+        // A slack bar with a sliding node resists by its viscous damping alone.
+        if is_slack && slides(e) {
+            continue;
+        }
+        let kept: f64 = forces.iter().zip(&*decay).map(|(q, d)| q * d).sum();
+        let material = length * (1.0 + strain);
+        let late = if is_slack { material } else { losses.predicted_length[e] };
+        let from = part * late + (1.0 - part) * material - length * kept / stiffness;
+        losses.damped_from[e] = if mesh.is_flexible() { larger(from, length) } else { from };
+        losses.bars[e][0] = stiffness;
     }
 }

@@ -22,7 +22,7 @@ const FOLD_DAMPING: f64 = 10.0;
 /// of the error of BDF2 in a vibration.
 pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
     let Weights { now, past, rate: a, .. } = weights;
-    let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
+    let rubs = cable.can_rub();
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
     for k in 0..m.positions.len() {

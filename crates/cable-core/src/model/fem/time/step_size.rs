@@ -113,7 +113,7 @@ impl StepSizeController {
 fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
-    let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.positions).length) > weight;
+    let taut = |e: usize| mesh.tension(e, mesh.path(e, &motion.positions).length) > weight;
     let alone =
         cable.contacts.friction_contacts.is_empty() && cable.contacts.self_contacts.friction_contacts.is_empty();
     alone && (0..mesh.rest_length.len()).all(taut)

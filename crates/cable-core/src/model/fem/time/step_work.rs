@@ -22,7 +22,6 @@ use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight::{self};
 use crate::model::fem::system::{ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope};
-use crate::model::fem::time::loss_memory;
 use crate::scene::SupportKind;
 use crate::solution::Energy;
 
@@ -195,11 +194,10 @@ impl BalancedStep<'_> {
         }
     }
 
-    /// Adds the damping work of a bar without sliding nodes; `was` is the force (N) of its branches
-    /// at the start. Returns the work of stretch at the end of the step and the energy that it
+    /// Adds the damping work of a bar without sliding nodes. Returns the work of stretch at the end of the step and the energy that it
     /// stores then, J.
     #[inline]
-    fn plain_bar(&self, works: &mut Works, e: usize, was: f64) -> [f64; 2] {
+    fn plain_bar(&self, works: &mut Works, e: usize) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let (d, way, l) = (x[e + 1] - x[e], self.ways[e + 1] - self.ways[e], mesh.rest_length[e]);
         if mesh.is_break(e) {
@@ -212,6 +210,7 @@ impl BalancedStep<'_> {
         let loss = bar.pull(bar.branch(p), p).0 - pull;
         let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
         if loss != 0.0 {
+            let was = mesh.branch_forces.sum(e);
             let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
             let longer = p - (d - way).norm();
             note(&mut works.material, &mut works.numerical, [-mean * longer, -loss * along]);
@@ -222,12 +221,10 @@ impl BalancedStep<'_> {
     /// Adds the damping work of all bars of a mesh without sliding nodes; returns the work of
     /// stretch at the end of the step (J) and the energy stored then without kinetic energy.
     fn plain_bars(&self, works: &mut Works) -> (f64, Energy) {
-        let (branches, count) = loss_memory::forces(self.cable).unwrap_or((&[], 1));
         let (arc_length, x) = (&self.mesh().arc_length, &self.unknowns.positions);
-        let (mut branches, mut moment, mut sum) = (branches.chunks_exact(count), Vec2::zeros(), [0.0; 2]);
+        let (mut moment, mut sum) = (Vec2::zeros(), [0.0; 2]);
         for e in 0..self.mesh().rest_length.len() {
-            let was = branches.next().map_or(0.0, |forces| forces.iter().sum());
-            let [work, stretch_j] = self.plain_bar(works, e, was);
+            let [work, stretch_j] = self.plain_bar(works, e);
             sum = [sum[0] + work, sum[1] + stretch_j];
             moment += (x[e] + x[e + 1]) * (0.5 * (arc_length[e + 1] - arc_length[e]));
         }
@@ -242,7 +239,7 @@ impl BalancedStep<'_> {
         let mut stretched = 0.0;
         for e in 0..mesh.rest_length.len() {
             if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
-                stretched += self.plain_bar(works, e, 0.0)[0];
+                stretched += self.plain_bar(works, e)[0];
                 continue;
             }
             let way = self.ways[e + 1] - self.ways[e];
