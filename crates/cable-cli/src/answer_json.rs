@@ -16,7 +16,7 @@ use crate::finite_check::check_finite;
 
 /// The output of `solve --json`, and of `run --json` for each time.
 #[derive(Debug, Serialize)]
-pub struct Answer<'a> {
+pub struct AnswerJson<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
@@ -55,9 +55,9 @@ pub struct Answer<'a> {
     pub sidewall_pressure: Option<OfCable<'a, Pressure>>,
     /// The summary of each cable.
     pub summary: Vec<Summary<'a>>,
-    pub supports: Vec<Support<'a>>,
+    pub supports: Vec<SupportJson<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
-    pub contacts: Vec<Contact<'a>>,
+    pub contacts: Vec<ContactJson<'a>>,
     pub warnings: Vec<WarningEntry<'a>>,
     /// The robot, where the scene has one that can move, with the work of each force on it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -167,7 +167,7 @@ pub struct Summary<'a> {
 
 /// The summary figures of a solution.
 #[derive(Debug, Default)]
-pub struct Figures {
+pub struct SummaryJson {
     /// One summary for each cable.
     pub cables: Vec<CableSummary>,
     /// The stiffness of all held ends, if it was requested.
@@ -192,7 +192,7 @@ pub struct OfCable<'a, T> {
 }
 
 #[derive(Debug, Serialize)]
-pub struct Support<'a> {
+pub struct SupportJson<'a> {
     cable: &'a str,
     #[serde(flatten)]
     support: &'a SupportReaction,
@@ -212,7 +212,7 @@ pub struct NodeEntry<'a> {
 }
 
 #[derive(Debug, Serialize)]
-pub struct Contact<'a> {
+pub struct ContactJson<'a> {
     cable: &'a str,
     obstacle: &'a str,
     x_m: f64,
@@ -232,7 +232,7 @@ pub struct Contact<'a> {
 
 /// The output of `--json` if there is no answer.
 #[derive(Debug, Serialize)]
-pub struct NoAnswer {
+pub struct NoAnswerJson {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
@@ -241,7 +241,7 @@ pub struct NoAnswer {
     pub error: String,
 }
 
-impl NoAnswer {
+impl NoAnswerJson {
     /// Reports why a model has no answer, and at which time (s).
     pub fn new(model: Model, reason: Option<&ModelReason>, time_s: Option<f64>, error: &SolveError) -> Self {
         let reason = reason.map_or_else(|| "no answer".to_owned(), ToString::to_string);
@@ -252,16 +252,16 @@ impl NoAnswer {
 /// The answer of a solution, or the name of the number in it that is not finite.
 pub fn answer<'a>(
     s: &'a Solution,
-    figures: &'a Figures,
+    figures: &'a SummaryJson,
     wall_time_s: f64,
     time_s: Option<f64>,
-) -> Result<Answer<'a>, String> {
+) -> Result<AnswerJson<'a>, String> {
     check_finite(s)?;
     let top = s.max_tension();
     let name = |c: &'a CableSolution| c.name.as_str();
     let bends = s.cables.iter().filter_map(|c| c.tightest_bend.map(|of| OfCable { cable: name(c), of }));
     let pressures = s.cables.iter().filter_map(|c| c.sidewall_pressure.map(|of| OfCable { cable: name(c), of }));
-    let mut out = Answer {
+    let mut out = AnswerJson {
         time_s,
         model: s.model.name(),
         reason: &s.reason,
@@ -295,14 +295,14 @@ pub fn answer<'a>(
     };
     for c in &s.cables {
         let cable = name(c);
-        out.supports.extend(c.supports.iter().map(|support| Support { cable, support }));
+        out.supports.extend(c.supports.iter().map(|support| SupportJson { cable, support }));
         out.nodes.extend(c.nodes.iter().map(|n| node(cable, n)));
         out.contacts.extend(c.contacts.iter().map(|k| contact(cable, k)));
     }
     Ok(out)
 }
 
-fn summary<'a>(of: &'a CableSummary, figures: &'a Figures) -> Summary<'a> {
+fn summary<'a>(of: &'a CableSummary, figures: &'a SummaryJson) -> Summary<'a> {
     let own = |all: &'a Vec<EndStiffness>| all.iter().filter(|e| e.cable == of.cable).collect();
     let neglected_bending = figures.bending.iter().find(|b| b.cable == of.cable);
     Summary { figures: of, end_stiffness: figures.stiffness.as_ref().map(own), neglected_bending }
@@ -322,8 +322,8 @@ fn node<'a>(cable: &'a str, n: &Node) -> NodeEntry<'a> {
     }
 }
 
-fn contact<'a>(cable: &'a str, k: &'a ContactReport) -> Contact<'a> {
-    Contact {
+fn contact<'a>(cable: &'a str, k: &'a ContactReport) -> ContactJson<'a> {
+    ContactJson {
         cable,
         obstacle: &k.obstacle,
         x_m: k.x_m,

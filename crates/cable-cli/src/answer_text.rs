@@ -7,7 +7,7 @@ use cable_core::UnitSystem;
 use cable_core::solution::{ContactState, Solution};
 use cable_core::wording::Sentence;
 
-use crate::answer_json::{ComparedEntry, Figures};
+use crate::answer_json::{ComparedEntry, SummaryJson};
 use crate::summary;
 
 /// Greatest length of the reason why a model has no answer, characters.
@@ -46,7 +46,7 @@ fn compared(t: &mut String, entries: &[ComparedEntry]) {
 }
 
 /// An answer as tables with units. Writing to a `String` cannot fail, so its results are ignored.
-pub fn answer_text(s: &Solution, figures: &Figures) -> String {
+pub fn answer_text(s: &Solution, figures: &SummaryJson) -> String {
     let mut t = String::new();
     let top = s.max_tension();
     let _ = writeln!(t, "Model             {} ({})", s.model, s.reason);

@@ -19,11 +19,11 @@ use clap::{Args, Parser, Subcommand};
 )]
 pub struct Arguments {
     #[command(subcommand)]
-    pub command: Command,
+    pub command: CableCommand,
 }
 
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub enum CableCommand {
     /// Find where everything rests at time 0
     Solve(SolveArguments),
     /// Follow the scene over time and write a run folder

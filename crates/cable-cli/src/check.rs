@@ -6,7 +6,7 @@ use std::path::Path;
 use cable_core::files;
 
 use crate::CommandResult;
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 use crate::input::read_scene;
 use crate::output::Printer;
 
@@ -20,7 +20,7 @@ pub fn check(path: &Path) -> CommandResult {
         return check_run(path);
     }
     let scene = read_scene(path)?;
-    let notes = cable_core::problem::check(&scene).map_err(|e| Failure::from_core(path, e.into()))?;
+    let notes = cable_core::problem::check(&scene).map_err(|e| CommandFailure::from_core(path, e.into()))?;
     let mut out = Printer::new();
     let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
     out.line(&format!(
@@ -38,7 +38,7 @@ pub fn check(path: &Path) -> CommandResult {
 
 /// Reports how far the run in a folder came, and which part of its tables was ignored.
 fn check_run(path: &Path) -> CommandResult {
-    let run = files::load_run(path, MAX_TABLE_BYTES).map_err(Failure::File)?;
+    let run = files::load_run(path, MAX_TABLE_BYTES).map_err(CommandFailure::File)?;
     let kind = match run.is_complete() {
         Some(true) => "a complete run",
         Some(false) => "a partial run",

@@ -11,7 +11,7 @@ use crate::signals::Signal;
 
 /// The reason why a command did not end well.
 #[derive(Debug)]
-pub enum Failure {
+pub enum CommandFailure {
     /// The scene is wrong.
     Scene(PathBuf, Box<SceneError>),
     /// A file could not be read or written.
@@ -40,7 +40,7 @@ pub enum Failure {
     Thread(io::Error),
 }
 
-impl Failure {
+impl CommandFailure {
     /// The exit code.
     pub fn exit_code(&self) -> u8 {
         match self {
@@ -65,7 +65,7 @@ impl Failure {
     }
 }
 
-impl std::fmt::Display for Failure {
+impl std::fmt::Display for CommandFailure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Scene(path, e) => write!(f, "{}: {e}", path.display()),
@@ -91,7 +91,7 @@ impl std::fmt::Display for Failure {
 }
 
 /// Writes a failure to standard error. A closed pipe is no failure.
-pub fn report(failure: &Failure) {
+pub fn report(failure: &CommandFailure) {
     // If standard error is closed too, nothing can be reported.
     let _ = writeln!(io::stderr(), "cable: {failure}");
 }

@@ -6,15 +6,15 @@ use cable_core::model::Settings;
 use cable_core::{Scene, files};
 
 use crate::args::Common;
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
 /// Reads and validates a scene.
-pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
-    files::load_scene(path).map_err(Failure::File)
+pub fn read_scene(path: &Path) -> Result<Scene, CommandFailure> {
+    files::load_scene(path).map_err(CommandFailure::File)
 }
 
 /// The scene, altered by the arguments.
-pub fn scene_with_arguments(a: &Common) -> Result<Scene, Failure> {
+pub fn scene_with_arguments(a: &Common) -> Result<Scene, CommandFailure> {
     let mut scene = read_scene(&a.scene)?;
     if let Some(mobilised) = a.mobilised {
         scene.cables.iter_mut().for_each(|cable| cable.friction_mobilised = mobilised);

@@ -22,16 +22,16 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Arguments, Command};
-use failure::Failure;
+use args::{Arguments, CableCommand};
+use failure::CommandFailure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let done = match arguments.command {
-        Command::Solve(a) => solve::solve(&a),
-        Command::Run(a) => run::run(a),
-        Command::Check { scene } => check::check(&scene),
-        Command::Schema => schema::schema(),
+        CableCommand::Solve(a) => solve::solve(&a),
+        CableCommand::Run(a) => run::run(a),
+        CableCommand::Check { scene } => check::check(&scene),
+        CableCommand::Schema => schema::schema(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -43,4 +43,4 @@ fn main() -> ExitCode {
 }
 
 /// The result of every command.
-type CommandResult = Result<(), Failure>;
+type CommandResult = Result<(), CommandFailure>;

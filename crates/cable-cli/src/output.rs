@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::sync::{Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 
 /// Standard output that ends quietly when its reader has gone (`cable … | head`).
 pub struct Printer {
@@ -19,12 +19,12 @@ impl Printer {
     }
 
     /// Prints one line.
-    pub fn line(&mut self, text: &str) -> Result<(), Failure> {
+    pub fn line(&mut self, text: &str) -> Result<(), CommandFailure> {
         self.with(|out| writeln!(out, "{text}"))
     }
 
     /// Prints a value as one line of JSON.
-    pub fn json(&mut self, value: &impl serde::Serialize) -> Result<(), Failure> {
+    pub fn json(&mut self, value: &impl serde::Serialize) -> Result<(), CommandFailure> {
         self.with(|out| {
             serde_json::to_writer(&mut *out, value)?;
             writeln!(out)
@@ -32,11 +32,11 @@ impl Printer {
     }
 
     /// Flushes the buffer.
-    pub fn flush(&mut self) -> Result<(), Failure> {
+    pub fn flush(&mut self) -> Result<(), CommandFailure> {
         self.with(Write::flush)
     }
 
-    fn with(&mut self, f: impl FnOnce(&mut io::BufWriter<io::Stdout>) -> io::Result<()>) -> Result<(), Failure> {
+    fn with(&mut self, f: impl FnOnce(&mut io::BufWriter<io::Stdout>) -> io::Result<()>) -> Result<(), CommandFailure> {
         if self.closed {
             return Ok(());
         }
@@ -46,7 +46,7 @@ impl Printer {
                 self.closed = true;
                 Ok(())
             }
-            Err(e) => Err(Failure::Stdout(e)),
+            Err(e) => Err(CommandFailure::Stdout(e)),
         }
     }
 }
@@ -63,7 +63,7 @@ pub fn wait_for_line(print_lock: &Mutex<()>) {
 }
 
 /// Progress on standard error, only on a terminal.
-pub struct Progress {
+pub struct RunProgress {
     shown: bool,
     last: Option<Instant>,
 }
@@ -72,7 +72,7 @@ pub struct Progress {
 /// stuck.
 const PROGRESS_INTERVAL_S: f64 = 0.1;
 
-impl Progress {
+impl RunProgress {
     /// Makes the progress, which is shown if standard error is a terminal.
     pub fn new() -> Self {
         Self { shown: io::stderr().is_terminal(), last: None }

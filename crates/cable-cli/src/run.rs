@@ -22,12 +22,12 @@ use cable_core::timeline::{Instant as Moment, Refinement, RunPeaks, Timeline, re
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::CommandResult;
-use crate::answer_json::{Figures, NoAnswer, RunPeaksEntry, answer};
+use crate::answer_json::{NoAnswerJson, RunPeaksEntry, SummaryJson, answer};
 use crate::answer_text::answer_text;
 use crate::args::RunArguments;
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 use crate::input::{scene_with_arguments, settings};
-use crate::output::{Printer, Progress, wait_for_line};
+use crate::output::{Printer, RunProgress, wait_for_line};
 use crate::signals::Signals;
 use crate::summary::neglected_at_first_rest;
 
@@ -51,15 +51,15 @@ impl SharedRunFolder {
         write: impl FnOnce(&mut RunFolder) -> Result<(), WriteError>,
     ) -> CommandResult {
         match &mut *self.lock() {
-            Some(folder) => write(folder).map_err(|e| Failure::Table(out.to_owned(), e)),
-            None => Err(Failure::AlreadyEnded),
+            Some(folder) => write(folder).map_err(|e| CommandFailure::Table(out.to_owned(), e)),
+            None => Err(CommandFailure::AlreadyEnded),
         }
     }
 
     /// Ends the run, unless it has ended, and returns the path of its folder.
-    fn finish(&self, end: RunEnd) -> Option<Result<PathBuf, Failure>> {
+    fn finish(&self, end: RunEnd) -> Option<Result<PathBuf, CommandFailure>> {
         let mut guard = self.lock();
-        Some(guard.take()?.finish(end).map_err(Failure::File))
+        Some(guard.take()?.finish(end).map_err(CommandFailure::File))
     }
 
     /// The present path of the folder.
@@ -79,7 +79,7 @@ struct Outputs {
     folder: SharedRunFolder,
     print_lock: Arc<Mutex<()>>,
     printer: Printer,
-    progress: Progress,
+    progress: RunProgress,
     /// The greatest tensions of each cable since the last answer.
     peaks_since_output: Vec<Option<TensionPeaks>>,
     warning_log: WarningLog,
@@ -102,10 +102,11 @@ struct RunTotals {
 }
 
 impl RunTotals {
-    fn of(timeline: &Timeline, errors_asked: bool) -> Option<Self> {
+    fn of(timeline: &Timeline, arguments: &RunArguments) -> Option<Self> {
         let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
         let peaks = timeline.monitor().peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
         let relative_error = timeline.monitor().relative_error();
+        let errors_asked = !arguments.no_errors;
         Some(Self { peaks, relative_error, inertia: timeline.inertia_effect(), errors_asked })
     }
 
@@ -187,7 +188,7 @@ impl Outputs {
         let json = self.arguments.common.json;
         let cables = if json { summaries(&self.scene, &solution) } else { Vec::new() };
         let mut figures =
-            Figures { cables, run_peaks: self.run_peaks.clone(), inertia: self.inertia, ..Figures::default() };
+            SummaryJson { cables, run_peaks: self.run_peaks.clone(), inertia: self.inertia, ..SummaryJson::default() };
         if self.last.is_none() && !self.arguments.common.no_bending {
             figures.bending = neglected_bending(&self.scene, &solution, settings(&self.arguments.common));
             if !json {
@@ -195,7 +196,8 @@ impl Outputs {
                 self.neglected = neglected_at_first_rest(&figures);
             }
         }
-        let printable = answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(Failure::NonFinite)?;
+        let printable =
+            answer(&solution, &figures, wall_time_s, Some(solution.time_s)).map_err(CommandFailure::NonFinite)?;
         let push = match order {
             OutputOrder::Intermediate => RunFolder::push,
             OutputOrder::Last => RunFolder::push_last,
@@ -225,7 +227,7 @@ impl Outputs {
 
     /// Notes what is known of the run so far.
     fn update_totals(&mut self, timeline: &Timeline) {
-        self.totals = RunTotals::of(timeline, !self.arguments.no_errors);
+        self.totals = RunTotals::of(timeline, &self.arguments);
         self.inertia = timeline.inertia_effect();
         let tolerance = self.arguments.common.tolerance();
         self.run_peaks = timeline.monitor().peaks().iter().map(|run| RunPeaksEntry::of(run, tolerance)).collect();
@@ -301,18 +303,18 @@ const STACK_BYTES: usize = 8 << 20;
 pub fn run(a: RunArguments) -> CommandResult {
     let every = a.every_s();
     check_durations(&a, every)?;
-    let choice = a.node_choice().map_err(Failure::Argument)?;
+    let choice = a.node_choice().map_err(CommandFailure::Argument)?;
     let written = scene_with_arguments(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };
     let at_rest = Settings { histories: false, ..settings };
     let (scene, bending) = scene_with_bending(&written, a.common.model, at_rest, a.common.bending)
-        .map_err(|e| Failure::from_core(&a.common.scene, e))?;
+        .map_err(|e| CommandFailure::from_core(&a.common.scene, e))?;
     let simulation = Simulation::for_question(scene.clone(), a.common.model, settings, Question::History(inertia))
-        .map_err(|e| Failure::from_core(&a.common.scene, e))?;
+        .map_err(|e| CommandFailure::from_core(&a.common.scene, e))?;
     // From here on a signal ends the run properly.
-    let signals = Signals::new().map_err(Failure::Signals)?;
+    let signals = Signals::new().map_err(CommandFailure::Signals)?;
     let request = RunRequest {
         program: format!("cable {}", env!("CARGO_PKG_VERSION")),
         model: Some(a.common.model.name().to_owned()),
@@ -321,10 +323,10 @@ pub fn run(a: RunArguments) -> CommandResult {
         every_s: Some(every),
         step_s: a.step,
     };
-    let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
+    let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(CommandFailure::File)?;
     // Even a run that is ended before its first instant has tables then.
     let robot = RobotColumns::of(&simulation.solution());
-    folder.begin(&scene, robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
+    folder.begin(&scene, robot).map_err(|e| CommandFailure::Table(a.out.clone(), e))?;
     let shared = SharedRunFolder(Arc::new(Mutex::new(Some(folder))));
     let print_lock = Arc::new(Mutex::new(()));
     let outputs = Outputs {
@@ -335,7 +337,7 @@ pub fn run(a: RunArguments) -> CommandResult {
         folder: shared.clone(),
         print_lock: print_lock.clone(),
         printer: Printer::new(),
-        progress: Progress::new(),
+        progress: RunProgress::new(),
         totals: None,
         run_peaks: Vec::new(),
         inertia: None,
@@ -349,20 +351,20 @@ pub fn run(a: RunArguments) -> CommandResult {
         // The receiver is gone if a signal has ended the run.
         let _ = done.send(run_to_end(simulation, inertia, outputs, began));
     });
-    let solver = solver.map_err(Failure::Thread)?;
+    let solver = solver.map_err(CommandFailure::Thread)?;
     await_end(&ended, solver, &signals, &shared, &print_lock)
 }
 
 /// Refuses durations that make too many outputs, or no step.
-fn check_durations(a: &RunArguments, every: f64) -> Result<(), Failure> {
+fn check_durations(a: &RunArguments, every: f64) -> Result<(), CommandFailure> {
     if a.duration_s / every > MAX_OUTPUTS {
-        return Err(Failure::Argument(format!(
+        return Err(CommandFailure::Argument(format!(
             "--for {} s with --every {every} s makes more than {MAX_OUTPUTS:.0e} output times: make --every longer",
             a.duration_s
         )));
     }
     if let Some(step) = a.step.filter(|step| *step > a.duration_s && a.duration_s > 0.0) {
-        return Err(Failure::Argument(format!(
+        return Err(CommandFailure::Argument(format!(
             "--step {step} s is longer than the run (--for {} s): peaks and errors are looked for at steps",
             a.duration_s
         )));
@@ -388,7 +390,7 @@ fn await_end(
                     // noted or not.
                     let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
                     wait_for_line(print_lock);
-                    return Err(Failure::Interrupted(signal, place));
+                    return Err(CommandFailure::Interrupted(signal, place));
                 }
             }
             Err(RecvTimeoutError::Disconnected) => match solver.join() {
@@ -396,7 +398,7 @@ fn await_end(
                     let _ = shared.finish(RunEnd::Partial(RunStop::Panicked));
                     std::panic::resume_unwind(panic)
                 }
-                Ok(()) => return Err(Failure::AlreadyEnded),
+                Ok(()) => return Err(CommandFailure::AlreadyEnded),
             },
         }
     }
@@ -413,10 +415,10 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     let finished = outputs.folder.finish(end);
     // Why the run stopped matters more than a folder that could not be closed after it.
     walked?;
-    let place = finished.ok_or(Failure::AlreadyEnded)??;
+    let place = finished.ok_or(CommandFailure::AlreadyEnded)??;
     let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
-        let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
+        let figures = SummaryJson { cables: summaries(&scene, &last), ..SummaryJson::default() };
         printer.line(answer_text(&last, &figures).trim_end())?;
         for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
             printer.line(&line)?;
@@ -481,17 +483,17 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
     Ok(())
 }
 
-fn end_with_error(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
+fn end_with_error(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> CommandFailure {
     let reached_s = simulation.time_s();
     let reason = outputs.with_bending(simulation.reason().clone());
     if outputs.arguments.common.json {
-        let answer = NoAnswer::new(simulation.model(), Some(&reason), Some(reached_s), &error);
+        let answer = NoAnswerJson::new(simulation.model(), Some(&reason), Some(reached_s), &error);
         if let Err(e) = outputs.printer.json(&answer).and_then(|()| outputs.printer.flush()) {
             return e;
         }
     }
     let place = outputs.folder.place().unwrap_or_else(|| outputs.arguments.out.clone());
-    Failure::Run { reached_s, out: place, error: Box::new(error) }
+    CommandFailure::Run { reached_s, out: place, error: Box::new(error) }
 }
 
 #[cfg(test)]

@@ -7,10 +7,10 @@ use cable_core::summary::summaries;
 use cable_core::{Scene, Solution};
 
 use crate::CommandResult;
-use crate::answer_json::{ComparedEntry, Figures, NoAnswer, answer};
+use crate::answer_json::{ComparedEntry, NoAnswerJson, SummaryJson, answer};
 use crate::answer_text::answer_text;
 use crate::args::{Common, SolveArguments};
-use crate::failure::Failure;
+use crate::failure::CommandFailure;
 use crate::input::{scene_with_arguments, settings};
 use crate::output::Printer;
 use crate::progress_line::WaitingNotice;
@@ -28,13 +28,13 @@ pub fn solve(arguments: &SolveArguments) -> CommandResult {
     match solved {
         Ok((scene, solution)) => {
             let stiffness = arguments.stiffness.then(|| end_stiffness(&scene, a.model, settings(a))).transpose();
-            let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
+            let stiffness = stiffness.map_err(|e| CommandFailure::from_core(&a.scene, e))?;
             let neglected = || neglected_bending(&scene, &solution, settings(a));
             let bending = if a.no_bending { Vec::new() } else { neglected() };
             let compared = if arguments.compare { compared(&scene, &solution, a) } else { Vec::new() };
             let cables = summaries(&scene, &solution);
-            let figures = Figures { cables, stiffness, bending, compared, ..Figures::default() };
-            let printable = answer(&solution, &figures, wall_time_s, None).map_err(Failure::NonFinite)?;
+            let figures = SummaryJson { cables, stiffness, bending, compared, ..SummaryJson::default() };
+            let printable = answer(&solution, &figures, wall_time_s, None).map_err(CommandFailure::NonFinite)?;
             if a.json {
                 out.json(&printable)?;
             } else {
@@ -44,10 +44,10 @@ pub fn solve(arguments: &SolveArguments) -> CommandResult {
         }
         Err(e) => {
             if let (true, cable_core::Error::Solve(e)) = (a.json, &e) {
-                out.json(&NoAnswer::new(a.model, None, None, e))?;
+                out.json(&NoAnswerJson::new(a.model, None, None, e))?;
                 out.flush()?;
             }
-            Err(Failure::from_core(&a.scene, e))
+            Err(CommandFailure::from_core(&a.scene, e))
         }
     }
 }

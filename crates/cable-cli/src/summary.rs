@@ -6,10 +6,10 @@ use cable_core::analysis::{EndStiffness, NeglectedBending};
 use cable_core::solution::JudgedBend;
 use cable_core::summary::{CablePlace, CableSummary, EndForce, ForceBalance, FrictionUse, TouchKind, Utilisation};
 
-use crate::answer_json::Figures;
+use crate::answer_json::SummaryJson;
 
 /// Appends a block for each cable. Writing to a `String` cannot fail, so its results are ignored.
-pub fn write(t: &mut String, figures: &Figures) {
+pub fn write(t: &mut String, figures: &SummaryJson) {
     for s in &figures.cables {
         let _ = writeln!(t, "\nCable `{}`, what is read first", s.cable);
         for (line, value) in lines(s) {
@@ -125,7 +125,7 @@ fn percent(ratio: f64) -> String {
 
 /// A line for each cable on the changes that the neglected bending stiffness would make to the
 /// first equilibrium of a run, whose figures are given.
-pub fn neglected_at_first_rest(figures: &Figures) -> Vec<String> {
+pub fn neglected_at_first_rest(figures: &SummaryJson) -> Vec<String> {
     let of = |b: &NeglectedBending| {
         let rest = figures.cables.iter().find(|s| s.cable == b.cable)?;
         let changes = neglected(b, rest.greatest_tension.tension_n);

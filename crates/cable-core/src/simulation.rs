@@ -10,10 +10,10 @@
 //! | `simulation/cheaper_model_error.rs` | error of the next cheaper model |
 
 mod cheaper_model_error;
-mod coupling;
 mod loading_histories;
 mod model_fallback;
 mod non_unique_equilibrium;
+mod robot_coupling;
 mod speed_search;
 
 use std::sync::Arc;
@@ -31,10 +31,10 @@ use crate::simulated_cable::SimulatedCable;
 use crate::solution::error_estimates::MIN_COMPARED_ELEMENTS;
 use crate::solution::{
     CableSolution, Cost, Energy, ErrorEstimates, MaxTension, ModelReason, MomentumAccount, NextCheaper, Node,
-    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, node_motion,
+    SharedNodes, Solution, TensionPeaks, Warning, WarningCause, WarningKind, material_point_motion,
 };
 use crate::state::State;
-use crate::warnings::{Bends, Observed, WarningMonitor};
+use crate::warnings::{Observed, SharpestBends, WarningMonitor};
 
 /// Step with inertia, s: the inner step of `fem`.
 pub(crate) const STEP_S: f64 = 1.0 / 240.0;
@@ -260,14 +260,14 @@ impl Simulation {
             RunPhase::AtRest => self.initial_nodes = self.answers.iter().map(|a| a.nodes.clone()).collect(),
             RunPhase::InMotion => {
                 for (answer, first) in self.answers.iter_mut().zip(&self.initial_nodes) {
-                    node_motion::displace(&mut answer.nodes, first);
+                    material_point_motion::displace(&mut answer.nodes, first);
                 }
             }
         }
         self.model = self.cables.iter().map(SimulatedCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
         for (cable, answer) in self.cables.iter().zip(&mut self.answers) {
-            let found = Bends::of(cable.problem(), answer);
+            let found = SharpestBends::of(cable.problem(), answer);
             (answer.tightest_bend, answer.sidewall_pressure) = (found.tightest(), found.pressure);
             (answer.free_bend, answer.judged_bend) = (found.free(), found.judged());
             bends.push(found);
@@ -497,7 +497,7 @@ impl Simulation {
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
-            node_motion::accelerate(&mut answer.nodes, before, last_s);
+            material_point_motion::accelerate(&mut answer.nodes, before, last_s);
         }
         Ok(())
     }

@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod dice;
+mod momentum_balance;
 mod segments;
 
 use cable_core::math::Vec2;
@@ -196,7 +197,7 @@ fn run(scene: &Scene, model: Model, seconds: f64) -> Seen {
             seen.by_breaks = seen.by_breaks.max(account.breaks_j.abs() / whole);
         }
         if let Some(account) = &cable.momentum {
-            seen.momentum = seen.momentum.max(dice::imbalance(account));
+            seen.momentum = seen.momentum.max(momentum_balance::imbalance(account));
         }
         if std::env::var("TELL").is_ok() {
             let grown: Vec<String> = answer.warnings.iter().map(ToString::to_string).collect();

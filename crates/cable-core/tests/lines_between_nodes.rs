@@ -3,9 +3,12 @@
 //! distances here are brute force, written for this test: nothing of them is shared with the
 //! solvers.
 
+mod dice;
+
 use cable_core::scene::{Shape, SupportKind, catalog};
 use cable_core::solution::{CableSolution, Node};
 use cable_core::{Model, Scene, Simulation};
+use dice::MmixDice;
 
 type P = [f64; 2];
 
@@ -125,38 +128,20 @@ fn chords_of_catalogue_answers_cut_nothing() {
     assert!(faults.is_empty(), "{} of {looked}:\n{}", faults.len(), faults.join("\n"));
 }
 
-/// Numbers from 0 to 1 (a linear congruential generator: Knuth's MMIX constants).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn scale(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-}
-
 /// A cable drawn over a post, a beam or a wheel (by `kind`), of random sizes, 4 mm of slack to
 /// none.
 fn wrap(seed: u64, kind: usize) -> String {
-    let mut r = Random(seed.wrapping_mul(7919).wrapping_add(17));
+    let mut r = MmixDice(seed.wrapping_mul(7919).wrapping_add(17));
     for _ in 0..4 {
-        r.next();
+        r.unit();
     }
-    let diameter = r.scale(0.003, 0.08);
-    let radius = r.scale(0.5 * diameter, 3.0);
+    let diameter = r.log(0.003, 0.08);
+    let radius = r.log(0.5 * diameter, 3.0);
     let (left, right) = (r.within(1.2, 4.0) + radius, r.within(1.2, 4.0) + radius);
     let (drop_l, drop_r) = (r.within(0.3, 6.0) + radius, r.within(0.3, 6.0) + radius);
     let top = radius + 0.5 * diameter;
-    let friction = if r.next() < 0.3 { 0.0 } else { r.within(0.05, 0.6) };
-    let weight = r.scale(0.05, 5.0);
+    let friction = if r.unit() < 0.3 { 0.0 } else { r.within(0.05, 0.6) };
+    let weight = r.log(0.05, 5.0);
     let mut route = vec![[-left, -drop_l]];
     let obstacle = match kind {
         0 => format!("[[obstacles]]\nname = \"post\"\nkind = \"circle\"\ncenter_m = [0.0, 0.0]\nradius_m = {radius}\n"),

@@ -6,7 +6,7 @@
 //! `--test violent`).
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-mod dice;
+mod momentum_balance;
 
 use cable_core::answer_verifier::{Depth, Law, Verifier};
 use cable_core::scene::{Scene, catalog};
@@ -31,7 +31,10 @@ fn run(name: &str, scene: &Scene, model: Model, (seconds, dt_s): (f64, f64), fou
             }
             if let Some(account) = cable.momentum {
                 count += 1;
-                found.push((dice::imbalance(&account), format!("{name} by {model}, step {step}: {account:?}")));
+                found.push((
+                    momentum_balance::imbalance(&account),
+                    format!("{name} by {model}, step {step}: {account:?}"),
+                ));
             }
             *before = cable.momentum;
         }
@@ -55,7 +58,7 @@ fn momentum_is_kept_in_the_motions_of_the_catalogue() {
                 println!("{name} by {model}: {count} steps");
             }
         }
-        dice::tell_imbalance(&found);
+        momentum_balance::tell_imbalance(&found);
         let worst = found.iter().map(|f| f.0).fold(0.0, f64::max);
         assert!(found.len() > 20 && worst < 1e-4, "{worst}");
     }

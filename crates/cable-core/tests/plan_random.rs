@@ -3,55 +3,36 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, View, catalog};
 use cable_core::{Model, Simulation};
-
-/// A generator with a fixed seed (splitmix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable
-/// pseudorandom number generators", OOPSLA 2014).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[(self.next() * all.len() as f64) as usize]
-    }
-}
+use dice::Dice;
 
 /// A cable in a zigzag between one to five posts and corners, too short for its lay or loose; its
 /// hitch is moved from 1 s on.
 fn scene(seed: u64) -> Scene {
-    let mut r = Random(seed);
-    let posts = 1 + (r.next() * 5.0) as usize;
-    let width = 2.0 * (posts as f64 + 1.0) + r.between(-1.0, 1.0);
-    let end = [width, r.between(-1.0, 1.0)];
-    let (mut route, mut obstacles, mut side) = (vec![[0.0, 0.0]], Vec::new(), r.of(&[-1.0, 1.0]));
+    let mut r = Dice(seed);
+    let posts = 1 + (r.unit() * 5.0) as usize;
+    let width = 2.0 * (posts as f64 + 1.0) + r.within(-1.0, 1.0);
+    let end = [width, r.within(-1.0, 1.0)];
+    let (mut route, mut obstacles, mut side) = (vec![[0.0, 0.0]], Vec::new(), r.pick(&[-1.0, 1.0]));
     for k in 0..posts {
-        let x = width * (k as f64 + 1.0) / (posts as f64 + 1.0) + r.between(-0.3, 0.3);
-        side *= if r.next() < 0.8 { -1.0 } else { 1.0 };
-        let (y, radius) = (-side * r.between(-0.6, 1.0), r.between(0.1, 0.4));
-        let shape = if r.next() < 0.6 {
+        let x = width * (k as f64 + 1.0) / (posts as f64 + 1.0) + r.within(-0.3, 0.3);
+        side *= if r.unit() < 0.8 { -1.0 } else { 1.0 };
+        let (y, radius) = (-side * r.within(-0.6, 1.0), r.within(0.1, 0.4));
+        let shape = if r.unit() < 0.6 {
             Shape::Circle { center_m: [x, y], radius_m: radius }
         } else {
-            let (n, first) = (r.of(&[3.0, 4.0, 5.0, 6.0]), r.between(0.0, 7.0));
+            let (n, first) = (r.pick(&[3.0, 4.0, 5.0, 6.0]), r.within(0.0, 7.0));
             let corner = |j: usize| {
                 let (sin, cos) = (first + std::f64::consts::TAU * j as f64 / n).sin_cos();
                 [x + radius * cos, y + radius * sin]
             };
             Shape::Polygon { points_m: (0..n as usize).map(corner).collect() }
         };
-        obstacles.push(Obstacle { name: format!("o{k}"), shape, friction: Some(r.of(&[0.0, 0.2, 0.4, 0.8])) });
-        let clear = radius + r.between(0.05, 0.3);
+        obstacles.push(Obstacle { name: format!("o{k}"), shape, friction: Some(r.pick(&[0.0, 0.2, 0.4, 0.8])) });
+        let clear = radius + r.within(0.05, 0.3);
         route.extend([(-0.6, 1.1), (0.0, 1.3), (0.6, 1.1)].map(|(a, b)| [x + a * clear, y + side * b * clear]));
     }
     route.push(end);
@@ -59,14 +40,14 @@ fn scene(seed: u64) -> Scene {
     let mut scene = catalog::plan_posts();
     scene.view = View::Plan;
     scene.obstacles = obstacles;
-    let (by, angle) = (r.between(0.1, 0.8), r.between(-1.2, 1.2));
+    let (by, angle) = (r.within(0.1, 0.8), r.within(-1.2, 1.2));
     let there = [end[0] + by * angle.cos(), end[1] + by * angle.sin()];
     let motion = Motion { times_s: vec![0.0, 1.0, 7.0], points_m: vec![end, end, there] };
     let cable = &mut scene.cables[0];
-    let tight = [r.between(0.9, 0.97), r.between(0.95, 1.0), r.between(1.0, 1.2)];
-    cable.length_m = way * r.of(&tight);
-    cable.segments = r.of(&[None, Some(40), Some(80), Some(120)]);
-    cable.friction = r.of(&[0.0, 0.2, 0.5, 1.0]);
+    let tight = [r.within(0.9, 0.97), r.within(0.95, 1.0), r.within(1.0, 1.2)];
+    cable.length_m = way * r.pick(&tight);
+    cable.segments = r.pick(&[None, Some(40), Some(80), Some(120)]);
+    cable.friction = r.pick(&[0.0, 0.2, 0.5, 1.0]);
     (cable.service_tension_n, cable.breaking_tension_n) = (1e7, 1e7);
     cable.route_m = route;
     cable.supports =

@@ -3,42 +3,25 @@
 //! what is found is looked at with what is written here alone: contacts and supports carry the
 //! weight, nothing pushes, no support is pushed, and no bar is longer than its material.
 
+mod dice;
+
 use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, SupportKind, View, catalog};
 use cable_core::{Model, Simulation};
+use dice::MmixDice;
 
 const GRAVITY: f64 = 9.80665;
 
-/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming",
-/// volume 2, 1981, 3.3.4).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    /// Evenly in the logarithm.
-    fn scale(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-}
-
 /// A scene of family `seed` modulo their number, and its name.
 fn scene(seed: u64) -> (&'static str, Scene) {
-    let mut r = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
+    let mut r = MmixDice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
     for _ in 0..8 {
-        r.next();
+        r.unit();
     }
     let mut s = catalog::hanging_span();
     s.loads.clear();
     let (width, friction) = (r.within(2.0, 20.0), r.within(0.0, 1.0));
-    let rise = 0.014_1 + r.scale(1e-2, 3.0);
-    let (mut a, mut b) = ([0.0, 0.014_1 + r.scale(1e-2, 3.0)], [width, rise]);
+    let rise = 0.014_1 + r.log(1e-2, 3.0);
+    let (mut a, mut b) = ([0.0, 0.014_1 + r.log(1e-2, 3.0)], [width, rise]);
     let names = ["floor", "pit", "crest", "slope", "plan", "vertical", "near the ground"];
     let name = names[(seed % names.len() as u64) as usize];
     let ground = match name {
@@ -47,7 +30,7 @@ fn scene(seed: u64) -> (&'static str, Scene) {
             vec![[-50.0, 0.0], [0.0, 0.0], [at, -depth], [width, 0.0], [width + 50.0, 0.0]]
         }
         "crest" => {
-            let (at, height) = (width * r.within(0.4, 0.6), 0.2 * width * r.next());
+            let (at, height) = (width * r.within(0.4, 0.6), 0.2 * width * r.unit());
             vec![
                 [-50.0, 0.0],
                 [at - 2.0 * height - 0.1, 0.0],
@@ -64,7 +47,7 @@ fn scene(seed: u64) -> (&'static str, Scene) {
         _ => vec![[-50.0, 0.0], [width + 50.0, 0.0]],
     };
     match name {
-        "vertical" => b[0] = if r.next() < 0.5 { 0.0 } else { r.scale(1e-9, 1e-1) },
+        "vertical" => b[0] = if r.unit() < 0.5 { 0.0 } else { r.log(1e-9, 1e-1) },
         "near the ground" => (a[1], b[1]) = (0.014_1, 0.02),
         _ => {}
     }
@@ -74,10 +57,10 @@ fn scene(seed: u64) -> (&'static str, Scene) {
     let over: f64 = way.windows(2).map(|p| along(p[0], p[1])).sum();
     let c: &mut Cable = &mut s.cables[0];
     (c.bending_stiffness_n_m2, c.diameter_m, c.segments) = (0.0, 0.028, None);
-    c.axial_stiffness_n = r.scale(1e4, 1e8);
-    c.linear_density_kg_per_m = r.scale(0.1, 10.0);
+    c.axial_stiffness_n = r.log(1e4, 1e8);
+    c.linear_density_kg_per_m = r.log(0.1, 10.0);
     c.friction = friction;
-    c.length_m = (over + 0.1) * (1.0 + r.scale(1e-2, 3.0));
+    c.length_m = (over + 0.1) * (1.0 + r.log(1e-2, 3.0));
     c.supports = vec![Support::fixed("a", a), Support::fixed("b", b)];
     s.obstacles.clear();
     if name == "plan" {
@@ -221,14 +204,14 @@ fn draw(mut s: Scene, [far, speed]: [f64; 2], mut see: impl FnMut(f64, &cable_co
 /// below a support as soon as the other one was moved (21 of 25 random floors, by up to 3.9 times).
 #[test]
 fn issue_016_what_hangs_from_a_support_stays_when_a_loose_cable_is_drawn() {
-    let mut r = Chance(16);
+    let mut r = MmixDice(16);
     for case in 0..12 {
         let place = [r.within(0.5, 4.0), r.within(0.2, 1.0), r.within(4.0, 12.0)];
         let [top, end, along] = place;
-        let spare = r.scale(0.05, 1.0);
+        let spare = r.log(0.05, 1.0);
         let s = riser(place, (top + end + along) * (1.0 + spare), r.within(0.0, 0.8));
         let hangs = top - 0.5 * s.cables[0].diameter_m;
-        let far = r.scale(1e-3, 0.5 * spare * along);
+        let far = r.log(1e-3, 0.5 * spare * along);
         draw(s, [far, 6.0 * far], |at, answer| {
             let c = &answer.cables[0];
             let bar = c.nodes.windows(2).map(|n| n[1].arc_length_m - n[0].arc_length_m);
@@ -282,11 +265,11 @@ fn issue_016_a_loose_cable_pulls_the_harder_the_farther_it_is_drawn() {
 /// `spans` pulls with what hangs: half of a bar's weight was taken for another equilibrium.
 #[test]
 fn issue_016_coarse_meshes_of_loose_cable_rest_as_fine_ones_do() {
-    let mut r = Chance(61);
+    let mut r = MmixDice(61);
     let mut coarse = 0;
     for case in 0..24 {
         let place = [r.within(0.5, 4.0), 0.0141, r.within(4.0, 12.0)];
-        let mut s = riser(place, (place[0] + place[2]) * (1.0 + r.scale(0.002, 0.3)), r.within(0.2, 0.8));
+        let mut s = riser(place, (place[0] + place[2]) * (1.0 + r.log(0.002, 0.3)), r.within(0.2, 0.8));
         s.cables[0].segments = Some(r.within(8.0, 40.0) as usize);
         let bar = s.cables[0].length_m / s.cables[0].segments.unwrap() as f64;
         let hangs = place[0] - 0.5 * s.cables[0].diameter_m;
@@ -323,14 +306,14 @@ fn issue_016_a_beam_overhead_is_not_in_the_way() {
 #[test]
 fn issue_016_an_end_on_a_surface_is_in_no_way() {
     for number in 0..40 {
-        let mut dice = Chance(number * 7 + 3);
-        (0..8).for_each(|_| _ = dice.next());
+        let mut dice = MmixDice(number * 7 + 3);
+        (0..8).for_each(|_| _ = dice.unit());
         let (_, mut s) = scene(0);
         let radius = dice.within(0.005, 0.015);
         let span = dice.within(3.0, 12.0);
-        let stands_m = if dice.next() < 0.5 { 0.0 } else { dice.within(0.1, 0.4) };
+        let stands_m = if dice.unit() < 0.5 { 0.0 } else { dice.within(0.1, 0.4) };
         let [low, high] = [[span, stands_m + radius], [0.0, dice.within(0.5, 4.0)]];
-        let ends = if dice.next() < 0.5 { [high, low] } else { [low, high] };
+        let ends = if dice.unit() < 0.5 { [high, low] } else { [low, high] };
         let c = &mut s.cables[0];
         c.preset = None;
         c.diameter_m = 2.0 * radius;
@@ -344,7 +327,7 @@ fn issue_016_an_end_on_a_surface_is_in_no_way() {
         let named = |name: &str, shape: Shape| Obstacle { name: name.to_owned(), shape, friction: Some(0.3) };
         s.obstacles = vec![named("floor", Shape::Terrain { points_m: vec![[-5.0, 0.0], [20.0, 0.0]] })];
         if stands_m > 0.0 {
-            let shape = if dice.next() < 0.5 {
+            let shape = if dice.unit() < 0.5 {
                 polygon([span - 0.1, span + 0.1], [-0.01, stands_m])
             } else {
                 Shape::Circle { center_m: [span, 0.5 * stands_m], radius_m: 0.5 * stands_m }

@@ -9,30 +9,15 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use cable_core::scene::Scene;
 use cable_core::solution::{CableSolution, ContactReport};
 use cable_core::{Model, Settings, Simulation};
+use dice::MmixDice;
 use nalgebra::{DMatrix, DVector, Vector2};
 
 type V = Vector2<f64>;
-
-/// Numbers between 0 and 1 (Knuth's MMIX generator).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        (self.between(low.ln(), high.ln())).exp()
-    }
-}
 
 /// An obstacle of a scene as the shooting sees it: rounds of the centre line, and lines.
 #[derive(Clone, Copy, Debug)]
@@ -435,15 +420,15 @@ fn cable_text(length: f64, ei: f64, ea: f64, w: f64, friction: f64, diameter: f6
 }
 
 /// A cable from a held or clamped end over a post to a dead load or a second held end.
-fn over_a_post(r: &mut Random, k: usize) -> Case {
+fn over_a_post(r: &mut MmixDice, k: usize) -> Case {
     let (radius, diameter) = (r.log(0.05, 1.0), 0.01);
     let center_radius = radius + 0.5 * diameter;
     let pull = r.log(20.0, 500.0);
     // Shorter layers are more than shots can cross: see the closed form below.
     let ei = pull * r.log(0.08, 0.6).powi(2);
-    let friction = if k % 3 == 2 { r.between(0.05, 0.5) } else { 0.0 };
-    let (left, right) = (r.between(20.0, 80.0f64).to_radians(), r.between(20.0, 80.0f64).to_radians());
-    let spans = [r.between(1.5, 3.0), r.between(1.5, 3.0)];
+    let friction = if k % 3 == 2 { r.within(0.05, 0.5) } else { 0.0 };
+    let (left, right) = (r.within(20.0, 80.0f64).to_radians(), r.within(20.0, 80.0f64).to_radians());
+    let spans = [r.within(1.5, 3.0), r.within(1.5, 3.0)];
     let round = |a: f64| V::new(a.sin(), a.cos()) * center_radius;
     let a = round(-left) - V::new(left.cos(), left.sin()) * spans[0];
     let b = round(right) + V::new(right.cos(), -right.sin()) * spans[1];
@@ -453,7 +438,7 @@ fn over_a_post(r: &mut Random, k: usize) -> Case {
     // Held at both ends its tension comes of its stretch.
     let length = if k.is_multiple_of(2) { way } else { way * (1.0 - pull / ea) };
     let clamp = k % 5 == 4;
-    let angle = left.to_degrees() + r.between(-20.0, 20.0);
+    let angle = left.to_degrees() + r.within(-20.0, 20.0);
     let mut text = cable_text(length, ei, ea, w, friction, diameter);
     let turns = (0..=8).map(|i| round(-left + (left + right) * f64::from(i) / 8.0) * 1.05);
     let route: Vec<String> =
@@ -495,15 +480,15 @@ fn over_a_post(r: &mut Random, k: usize) -> Case {
 }
 
 /// A cable over the edge of a table, or over both edges of a box.
-fn over_corners(r: &mut Random, k: usize) -> Case {
+fn over_corners(r: &mut MmixDice, k: usize) -> Case {
     let diameter = r.log(0.005, 0.05);
     let pull = r.log(20.0, 500.0);
     let ei = pull * r.log(0.08, 0.5).powi(2);
-    let friction = if k % 3 == 2 { r.between(0.05, 0.4) } else { 0.0 };
-    let width = r.between(0.8, 2.0);
-    let (left, right) = (r.between(15.0, 60.0f64).to_radians(), r.between(20.0, 75.0f64).to_radians());
+    let friction = if k % 3 == 2 { r.within(0.05, 0.4) } else { 0.0 };
+    let width = r.within(0.8, 2.0);
+    let (left, right) = (r.within(15.0, 60.0f64).to_radians(), r.within(20.0, 75.0f64).to_radians());
     let corners = [V::new(-0.5 * width, 0.0), V::new(0.5 * width, 0.0)];
-    let spans = [r.between(1.5, 3.0), r.between(1.5, 3.0)];
+    let spans = [r.within(1.5, 3.0), r.within(1.5, 3.0)];
     let a = corners[0] + V::new(-left.cos(), -left.sin()) * spans[0] + V::new(0.0, diameter);
     let force = V::new(right.cos(), -right.sin()) * pull;
     let w = if k.is_multiple_of(4) { 1e-5 } else { pull * r.log(1e-3, 0.1) };
@@ -511,7 +496,7 @@ fn over_corners(r: &mut Random, k: usize) -> Case {
     let lift = V::new(0.0, 2.0 * diameter);
     let length = spans[0] + width + spans[1];
     let clamp = k % 5 == 3;
-    let angle = left.to_degrees() + r.between(-15.0, 15.0);
+    let angle = left.to_degrees() + r.within(-15.0, 15.0);
     let mut text = cable_text(length, ei, 1e6, w, friction, diameter);
     let route: Vec<String> =
         [a, corners[0] + lift, corners[1] + lift, b].iter().map(|p| format!("[{:?}, {:?}]", p.x, p.y)).collect();
@@ -551,15 +536,15 @@ fn over_corners(r: &mut Random, k: usize) -> Case {
 }
 
 /// A heavy cable from a height down to a floor, along which its end is pulled.
-fn to_a_floor(r: &mut Random, k: usize) -> Case {
-    let (w, diameter, height) = (r.log(2.0, 30.0), r.log(0.01, 0.05), r.between(1.0, 4.0));
+fn to_a_floor(r: &mut MmixDice, k: usize) -> Case {
+    let (w, diameter, height) = (r.log(2.0, 30.0), r.log(0.01, 0.05), r.within(1.0, 4.0));
     let pull = w * height * r.log(0.2, 3.0);
     let ei = w * r.log(0.4, 2.0f64).powi(3);
-    let friction = if k % 3 == 2 { r.between(0.05, 0.5) } else { 0.0 };
+    let friction = if k % 3 == 2 { r.within(0.05, 0.5) } else { 0.0 };
     let length = 3.0 * height + 2.5 * pull / w;
     let a = V::new(0.0, height);
     let clamp = k % 2 == 1;
-    let angle = r.between(-80.0, -10.0);
+    let angle = r.within(-80.0, -10.0);
     let mut text = cable_text(length, ei, 1e6, w, friction, diameter);
     text += &if clamp {
         format!(
@@ -628,8 +613,8 @@ fn error(case: &Case) -> Result<(f64, f64), String> {
     Ok((off / most, said))
 }
 
-fn campaign(seed: u64, count: usize, draw: impl Fn(&mut Random, usize) -> Case) {
-    let mut r = Random(seed);
+fn campaign(seed: u64, count: usize, draw: impl Fn(&mut MmixDice, usize) -> Case) {
+    let mut r = MmixDice(seed);
     let (mut right, mut bad, mut missed) = (0, Vec::new(), Vec::new());
     for k in 0..count {
         let case = draw(&mut r, k);

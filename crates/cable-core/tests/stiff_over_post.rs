@@ -6,18 +6,11 @@
 //! the two ends of the contact the tension grows as on a capstan.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::{Model, Simulation};
-
-/// Numbers between 0 and 1 (Knuth's MMIX generator).
-struct Random(u64);
-
-impl Random {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1u64 << 53) as f64)
-    }
-}
+use dice::MmixDice;
 
 /// A cable over a post: radius of the centre line there (m), bending stiffness (N·m²), friction,
 /// and the load (N).
@@ -32,11 +25,11 @@ struct Post {
 
 impl Post {
     fn new(seed: u64) -> Self {
-        let mut r = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
-        r.between(0.0, 1.0);
-        let (radius, wrap, friction) = (r.between(0.1, 0.6), r.between(0.7, 3.0), r.between(0.1, 0.5));
-        let load = r.between(50f64.ln(), 800f64.ln()).exp();
-        let stiffness = load * radius * radius * 10f64.powf(r.between(-2.5, 0.0));
+        let mut r = MmixDice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
+        r.within(0.0, 1.0);
+        let (radius, wrap, friction) = (r.within(0.1, 0.6), r.within(0.7, 3.0), r.within(0.1, 0.5));
+        let load = r.within(50f64.ln(), 800f64.ln()).exp();
+        let stiffness = load * radius * radius * 10f64.powf(r.within(-2.5, 0.0));
         Self { radius, stiffness, friction, load, wrap }
     }
 

@@ -6,40 +6,25 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod dice;
+
 use std::fmt::Write;
 
 use cable_core::scene::Scene;
 use cable_core::{Model, Simulation};
-
-/// Numbers between 0 and 1 (Knuth's MMIX generator).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    fn pick(&mut self, of: &[f64]) -> f64 {
-        of[((self.next() * of.len() as f64) as usize).min(of.len() - 1)]
-    }
-}
+use dice::MmixDice;
 
 /// A power cable over rough ground, boxes and posts; three of ten have L/chord up to 3.
 fn scene(seed: u64) -> String {
-    let mut r = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
+    let mut r = MmixDice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
     for _ in 0..4 {
-        r.next();
+        r.unit();
     }
-    let w = r.between(8.0, 20.0);
-    let (a, b) = (r.between(1.2, 6.0), r.between(1.2, 6.0));
-    let slack = r.next() < 0.3;
-    let length = w.hypot(a - b) * if slack { r.between(1.3, 3.0) } else { r.between(1.02, 1.3) };
-    let ei = 10f64.powf(r.between(-1.0, 2.0));
+    let w = r.within(8.0, 20.0);
+    let (a, b) = (r.within(1.2, 6.0), r.within(1.2, 6.0));
+    let slack = r.unit() < 0.3;
+    let length = w.hypot(a - b) * if slack { r.within(1.3, 3.0) } else { r.within(1.02, 1.3) };
+    let ei = 10f64.powf(r.within(-1.0, 2.0));
     let mut text = format!(
         "version = 1\n[[cables]]\nname = \"c\"\npreset = \"soow-6-4\"\nlength_m = {length}\nbending_stiffness_n_m2 = {ei}\n\
          [[cables.supports]]\nname = \"a\"\nkind = \"fixed\"\nat_m = [0.0, {a}]\n\
@@ -49,7 +34,7 @@ fn scene(seed: u64) -> String {
     let mut points = String::new();
     let mut x = -5.0;
     while x < w + 5.0 {
-        write!(points, "[{x}, {}], ", r.between(-rough, rough)).unwrap();
+        write!(points, "[{x}, {}], ", r.within(-rough, rough)).unwrap();
         x += 1.3;
     }
     let friction = r.pick(&[0.0, 0.3, 0.6]);
@@ -59,13 +44,13 @@ fn scene(seed: u64) -> String {
         w + 6.0
     )
     .unwrap();
-    let things = (r.next() * 4.0) as usize;
+    let things = (r.unit() * 4.0) as usize;
     for k in 0..things {
-        let (x, y, friction) = (r.between(1.5, w - 1.5), r.between(0.6, 4.0), r.pick(&[0.0, 0.3, 0.4]));
-        let what = if r.next() < 0.5 {
-            format!("kind = \"circle\"\ncenter_m = [{x}, {y}]\nradius_m = {}", r.between(0.05, 0.5))
+        let (x, y, friction) = (r.within(1.5, w - 1.5), r.within(0.6, 4.0), r.pick(&[0.0, 0.3, 0.4]));
+        let what = if r.unit() < 0.5 {
+            format!("kind = \"circle\"\ncenter_m = [{x}, {y}]\nradius_m = {}", r.within(0.05, 0.5))
         } else {
-            let (u, v) = (x + r.between(0.1, 0.5), y + r.between(0.1, 0.5));
+            let (u, v) = (x + r.within(0.1, 0.5), y + r.within(0.1, 0.5));
             format!("kind = \"polygon\"\npoints_m = [[{x}, {y}], [{u}, {y}], [{u}, {v}], [{x}, {v}]]")
         };
         writeln!(text, "[[obstacles]]\nname = \"o{k}\"\n{what}\nfriction = {friction}").unwrap();

@@ -10,6 +10,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
+mod momentum_balance;
 
 use std::collections::BTreeMap;
 
@@ -116,7 +117,7 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         let cable = &answer.cables[0];
         match &cable.momentum {
             Some(account) => {
-                let part = dice::imbalance(account);
+                let part = momentum_balance::imbalance(account);
                 found.imbalance.push((part, format!("scene {number} step {step}: {account:?}")));
                 if cable.breaks.is_empty()
                     && let Some(before) = before
@@ -184,7 +185,7 @@ fn tell(found: &Found) {
         println!("  {line}");
     }
     println!("{} steps that move without an account of momentum", found.no_account);
-    dice::tell_imbalance(&found.imbalance);
+    momentum_balance::tell_imbalance(&found.imbalance);
     for (law, (count, over, worst)) in &found.broken {
         println!("  {law}: {count} output steps, worst {over:.2} times what is let pass: {worst}");
     }

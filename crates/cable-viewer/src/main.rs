@@ -15,7 +15,7 @@ use clap::Parser;
 /// The cable simulator's window.
 #[derive(Parser)]
 #[command(version, about)]
-struct Arguments {
+struct WindowArguments {
     /// Scene file to open; left out: the first scene of the catalogue.
     scene: Option<PathBuf>,
     /// Draw the window to this PNG file instead of opening it.
@@ -63,7 +63,7 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
 }
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
+    match run(WindowArguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             eprintln!("cable-viewer: {message}");
@@ -72,7 +72,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: Arguments) -> Result<(), String> {
+fn run(arguments: WindowArguments) -> Result<(), String> {
     if let Some(folder) = arguments.gallery {
         return documentation_pictures::save(&folder);
     }

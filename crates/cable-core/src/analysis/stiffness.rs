@@ -12,7 +12,7 @@ use crate::any_error::Error;
 use crate::math::{Point, Vec2, larger, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
-use crate::problem::Series;
+use crate::problem::TimeSeries;
 use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 
@@ -114,7 +114,7 @@ fn scene_at_time_zero(scene: &Scene) -> Scene {
     let hitch = scene.hitch_m();
     still.robot = None;
     let first = |times: &mut Vec<f64>, values: &mut Vec<Point>| {
-        let value = (!times.is_empty()).then(|| Series::new(times, values).at(0.0));
+        let value = (!times.is_empty()).then(|| TimeSeries::new(times, values).at(0.0));
         times.clear();
         values.clear();
         value.map(|v| [v.x, v.y])

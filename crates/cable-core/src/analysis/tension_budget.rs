@@ -15,7 +15,7 @@
 //! the contacts of an answer.
 
 use crate::math::Vec2;
-use crate::problem::Series;
+use crate::problem::TimeSeries;
 use crate::scene::{Scene, SupportKind, View};
 use crate::solution::{CableSolution, Node, Solution};
 
@@ -171,7 +171,7 @@ fn distributed_load(scene: &Scene, cable: usize, time_s: f64) -> Option<Distribu
     };
     let wind = match e.winds_n_per_m.len().min(e.wind_times_s.len()) {
         0 => Vec2::new(e.wind_n_per_m[0], e.wind_n_per_m[1]),
-        n => Series::new(&e.wind_times_s[..n], &e.winds_n_per_m[..n]).at(time_s),
+        n => TimeSeries::new(&e.wind_times_s[..n], &e.winds_n_per_m[..n]).at(time_s),
     };
     Some(DistributedLoad { weight, wind, thermal_stretch: 1.0 + c.thermal_expansion_per_k * e.temperature_change_k })
 }

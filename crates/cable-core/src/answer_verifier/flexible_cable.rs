@@ -98,19 +98,20 @@ fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, near:
 fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
     let touches = checked.touches(near, bar.index);
     let [spread, at_end] = checked.forces_at_end(bar);
-    let spread = strained(checked, bar, spread, bar.forces[1], touches);
+    let path = BarPath { checked, bar, touches };
+    let spread = path.strained(spread, bar.forces[1]);
     if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
         return;
     }
     let lengths = |strained: Option<(Vec2, f64)>, q: f64| match strained {
         Some((off, limit)) => LengthDeviation { value: off.norm(), limit, folded: 0.0 },
-        None => folded(checked, bar, q, touches),
+        None => path.folded(q),
     };
     let spread = lengths(spread, bar.forces[1]);
     if spread.value <= spread.limit && spread.folded == 0.0 {
         return;
     }
-    let at_end = lengths(strained(checked, bar, at_end, at_end.norm(), touches), at_end.norm());
+    let at_end = lengths(path.strained(at_end, at_end.norm()), at_end.norm());
     let off = |l: &LengthDeviation| l.value / l.limit;
     let lengths = if off(&at_end) < off(&spread) { at_end } else { spread };
     check_slack(checked, found, near, bar, lengths.limit);
@@ -129,49 +130,61 @@ pub(super) fn report_length(
     }
 }
 
-/// Allowed error of a path (m) by round-off, and beside contacts.
-fn length_slack(checked: &CheckedCable<'_>, material: f64, touches: bool) -> f64 {
-    let aside = if touches { CONTACT_SHIFT_DIAMETERS * checked.cable.diameter_m } else { 0.0 };
-    checked.length_rounding(material) + aside
+/// The path of a bar of a flexible cable.
+struct BarPath<'a> {
+    checked: &'a CheckedCable<'a>,
+    bar: &'a CheckedBar<'a>,
+    /// True if it lies against something.
+    touches: bool,
 }
 
-/// Returns the deviation of the path of a flexible bar, whose internal force at its end is `end`
-/// (N) of size `q` (N), and the allowed one, m; None if the force has no direction, or the bar's
-/// own weight turns it too far.
-#[inline]
-fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
-    let (compliance, start, p) = (1.0 / checked.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
-    let (least, most) = if p < q { (p, q) } else { (q, p) };
-    let turn = (end - start).norm_squared() / (least * least);
-    // A force within the allowed unbalanced one has no reliable direction, and may be zero.
-    if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * checked.scale) {
-        return None;
+impl BarPath<'_> {
+    /// Allowed error of the path (m) of material (m) by round-off, and beside contacts.
+    fn slack(&self, material: f64) -> f64 {
+        let aside = if self.touches { CONTACT_SHIFT_DIAMETERS * self.checked.cable.diameter_m } else { 0.0 };
+        self.checked.length_rounding(material) + aside
     }
-    // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
-    let middle = (start + end) * 0.5;
-    let rates = start * (1.0 / p + compliance)
-        + middle * (4.0 * (1.0 / middle.norm() + compliance))
-        + end * (1.0 / q + compliance);
-    let material = checked.thermal * bar.length;
-    // Weight that a bar carries beyond its straight part turns it by that much.
-    let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.index) / most } else { 0.0 };
-    if lumped > FOLD_TURN {
-        return None;
-    }
-    // The floor of a plan view may act anywhere between two nodes, not evenly: the mean direction
-    // is then anywhere between those at the nodes.
-    let by_floor = if checked.floor_rubs() { 0.5 * turn.sqrt() } else { 0.0 };
-    let limit = length_slack(checked, material, touches) + (TURN * turn + lumped + by_floor) * material;
-    Some((bar.way - rates * (material / 6.0), limit))
-}
 
-/// Handles a bar whose force, of size `q` (N) at its end, has no direction: it must not be longer
-/// than its material.
-fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: bool) -> LengthDeviation {
-    let material = checked.thermal * bar.length;
-    let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
-    let (way, limit) = (bar.way.norm(), length_slack(checked, material, touches));
-    LengthDeviation { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+    /// Returns the deviation of the path of a flexible bar, whose internal force at its end is
+    /// `end` (N) of size `q` (N), and the allowed one, m; None if the force has no direction, or
+    /// the bar's own weight turns it too far.
+    #[inline]
+    fn strained(&self, end: Vec2, q: f64) -> Option<(Vec2, f64)> {
+        let &Self { checked, bar, touches } = self;
+        let (compliance, start, p) = (1.0 / checked.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
+        let (least, most) = if p < q { (p, q) } else { (q, p) };
+        let turn = (end - start).norm_squared() / (least * least);
+        // A force within the allowed unbalanced one has no reliable direction, and may be zero.
+        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * checked.scale) {
+            return None;
+        }
+        // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
+        let middle = (start + end) * 0.5;
+        let rates = start * (1.0 / p + compliance)
+            + middle * (4.0 * (1.0 / middle.norm() + compliance))
+            + end * (1.0 / q + compliance);
+        let material = checked.thermal * bar.length;
+        // Weight that a bar carries beyond its straight part turns it by that much.
+        let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.index) / most } else { 0.0 };
+        if lumped > FOLD_TURN {
+            return None;
+        }
+        // The floor of a plan view may act anywhere between two nodes, not evenly: the mean
+        // direction is then anywhere between those at the nodes.
+        let by_floor = if checked.floor_rubs() { 0.5 * turn.sqrt() } else { 0.0 };
+        let limit = self.slack(material) + (TURN * turn + lumped + by_floor) * material;
+        Some((bar.way - rates * (material / 6.0), limit))
+    }
+
+    /// Handles a bar whose force, of size `q` (N) at its end, has no direction: it must not be
+    /// longer than its material.
+    fn folded(&self, q: f64) -> LengthDeviation {
+        let &Self { checked, bar, .. } = self;
+        let material = checked.thermal * bar.length;
+        let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
+        let (way, limit) = (bar.way.norm(), self.slack(material));
+        LengthDeviation { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+    }
 }
 
 /// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than

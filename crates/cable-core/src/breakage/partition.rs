@@ -1,7 +1,7 @@
 //! A partition says which stretch, supports and loads of a broken cable belong to which piece.
 
 use crate::math::Vec2;
-use crate::problem::{Problem, Series, SupportPoint};
+use crate::problem::{Problem, SupportPoint, TimeSeries};
 use crate::scene::{PulleySide, SupportKind};
 use crate::state::State;
 
@@ -173,7 +173,7 @@ fn free_end() -> SupportPoint {
         wheel_radius: 0.0,
         side: PulleySide::Over,
         friction: 0.0,
-        force: Series::default(),
+        force: TimeSeries::default(),
         mass: 0.0,
         release: None,
     }

@@ -24,6 +24,8 @@
 //!
 //! Nothing divides by w, so a weightless piece is no special case.
 
+use crate::numerics::backtrack;
+
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the
 /// logarithms would lose as many to their difference; anything between 0.5 and 0.9 gives the same
 /// results to 2e-16.
@@ -240,30 +242,24 @@ pub(super) fn minimise(
         iterations += 1;
         let slope = gx * ph + gz * pv;
         let value = e.phi - h * chord[0] - v * chord[1];
-        let mut alpha = 1.0;
-        if sign == HorizontalForce::Positive && h + ph < MIN_FORCE_RATIO * h {
-            alpha = (1.0 - MIN_FORCE_RATIO) * h / -ph;
-        }
-        let mut accepted = false;
-        for _ in 0..MAX_HALVINGS {
+        let changes_sign = sign == HorizontalForce::Positive && h + ph < MIN_FORCE_RATIO * h;
+        let longest = if changes_sign { (1.0 - MIN_FORCE_RATIO) * h / -ph } else { 1.0 };
+        let next = backtrack(longest, MAX_HALVINGS, |alpha| {
             let (hn, vn) = (h + alpha * ph, v + alpha * pv);
             let en = energy(hn, vn);
             let (gxn, gzn) = (en.x - chord[0], en.z - chord[1]);
             let decrease = en.phi - hn * chord[0] - vn * chord[1] - value;
             let in_noise = -slope * alpha <= ENERGY_NOISE * (e.phi.abs() + value.abs());
             if decrease <= ARMIJO * alpha * slope || (in_noise && gxn.abs() + gzn.abs() < closure) {
-                (h, v, e, gx, gz) = (hn, vn, en, gxn, gzn);
-                accepted = true;
-                break;
+                return Some(Some((hn, vn, en, gxn, gzn)));
             }
             // Halving a Newton step reduces any gradient above round-off.
-            if in_noise && closure <= ACCEPTED_CLOSURE * lengths {
-                break;
-            }
-            alpha *= 0.5;
-        }
-        if !accepted {
-            return end(closure <= ACCEPTED_CLOSURE * lengths);
+            let is_exhausted = in_noise && closure <= ACCEPTED_CLOSURE * lengths;
+            is_exhausted.then_some(None)
+        });
+        match next.flatten() {
+            Some(next) => (h, v, e, gx, gz) = next,
+            None => return end(closure <= ACCEPTED_CLOSURE * lengths),
         }
     }
 }

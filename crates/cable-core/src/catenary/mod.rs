@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `span.rs` | [`Catenary`] and [`Span`]: the solved span and its quantities |
 //! | `closed_form.rs` | the formulas and the Newton iteration of one piece |
-//! | `chain.rs` | several pieces with dead loads between them |
+//! | `span_with_loads.rs` | several pieces with dead loads between them |
 //!
 //! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the
 //! end force; M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly
@@ -17,12 +17,12 @@
 //! αΔT and keeps total load and EA, so the span is solved with length (1 + αΔT)L and the same total
 //! load.
 
-mod chain;
 mod closed_form;
 mod span;
+mod span_with_loads;
 #[cfg(test)]
 mod tests;
 
 pub use crate::error::SpanError;
-pub use chain::{Chain, ChainForce, PointForce};
 pub use span::{Catenary, Span};
+pub use span_with_loads::{Chain, ChainForce, PointForce};

@@ -31,12 +31,12 @@ impl From<SpanError> for SolveError {
 
 /// The frame in which the load points along −`up`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Frame {
+pub(super) struct LoadAxes {
     pub(super) across: Vec2,
     pub(super) up: Vec2,
 }
 
-impl Frame {
+impl LoadAxes {
     /// Against `load`; without one, across `chord`.
     pub(super) fn new(load: Vec2, chord: Vec2) -> Self {
         let (n, c) = (load.norm(), chord.norm());
@@ -85,7 +85,7 @@ impl Frame {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Catenary {
     span: Span,
-    frame: Frame,
+    frame: LoadAxes,
     /// Force at the start in the frame, N.
     horizontal: f64,
     va: f64,
@@ -126,7 +126,7 @@ impl Catenary {
             return Self::bar(span, chord, length);
         }
         // In units of the load and the length.
-        let frame = Frame::new(span.weight, span.chord).facing(span.chord);
+        let frame = LoadAxes::new(span.weight, span.chord).facing(span.chord);
         let (x, z) = frame.split(span.chord);
         let chord = [x / length, z / length];
         let piece = ChainPiece { w: 1.0, l: 1.0, eps };
@@ -151,7 +151,7 @@ impl Catenary {
             return Err(SpanError::Slack { length_m: length, chord_m: chord });
         }
         let straight = Span { weight: Vec2::zeros(), ..*span };
-        let frame = Frame::new(Vec2::zeros(), span.chord).facing(span.chord);
+        let frame = LoadAxes::new(Vec2::zeros(), span.chord).facing(span.chord);
         Ok(Self {
             span: straight,
             frame,
@@ -165,7 +165,7 @@ impl Catenary {
     /// a hanging tail, for instance. `span.chord` is not read.
     #[must_use]
     pub fn from_start_force(span: &Span, force: Vec2) -> Self {
-        let frame = Frame::new(span.weight, force).facing(force);
+        let frame = LoadAxes::new(span.weight, force).facing(force);
         let (h, va) = frame.split(force);
         let mut c = Self { span: *span, frame, horizontal: h, va, iterations: 0 };
         c.span.chord = c.position_at(span.length);

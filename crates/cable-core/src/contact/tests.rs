@@ -1,26 +1,19 @@
 //! Queries are compared with a search of everything, and sweeps with exact crossing times.
 
+#[path = "../../tests/dice/mod.rs"]
+mod dice;
+
 use super::*;
 use crate::contact::sweep::WayEnd;
 use crate::math::{Point, cross, vec2};
 use crate::scene::Shape;
+use dice::MmixDice;
 
 const RADIUS: f64 = 0.014;
 
-/// A small generator with a fixed seed: the same numbers on every machine.
-struct Dice(u64);
-
-impl Dice {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, a: f64, b: f64) -> f64 {
-        a + (b - a) * self.unit()
-    }
-    fn point(&mut self, half: f64, offset: f64) -> Vec2 {
-        Vec2::new(offset + self.between(-half, half), offset + self.between(-half, half))
-    }
+/// A point in a square of a size (m) at an offset (m).
+fn point(dice: &mut MmixDice, half: f64, offset: f64) -> Vec2 {
+    Vec2::new(offset + dice.within(-half, half), offset + dice.within(-half, half))
 }
 
 fn obstacle(shape: Shape) -> Obstacle {
@@ -35,9 +28,9 @@ fn terrain(points: &[Point]) -> Shape {
 /// `o`.
 fn yard(o: f64) -> Vec<Obstacle> {
     let at = |p: [f64; 2]| [p[0] + o, p[1] + o];
-    let mut dice = Dice(7);
+    let mut dice = MmixDice(7);
     let ground: Vec<Point> =
-        (0..=40).map(|i| at([-10.0 + 0.5 * f64::from(i), -6.0 + dice.between(-1.0, 1.0)])).collect();
+        (0..=40).map(|i| at([-10.0 + 0.5 * f64::from(i), -6.0 + dice.within(-1.0, 1.0)])).collect();
     let star: Vec<Point> = (0..10)
         .map(|i| {
             let (a, r) = (std::f64::consts::PI * f64::from(i) / 5.0, if i % 2 == 0 { 1.5 } else { 0.5 });
@@ -102,9 +95,9 @@ fn signed_gaps_agree_with_brute_force_near_and_far() {
     for offset in [0.0, 1e7] {
         let obstacles = yard(offset);
         let world = World::new(&obstacles, 0.5, RADIUS);
-        let (mut dice, tolerance) = (Dice(1), 1e-12 + 8.0 * f64::EPSILON * offset);
+        let (mut dice, tolerance) = (MmixDice(1), 1e-12 + 8.0 * f64::EPSILON * offset);
         for _ in 0..50_000 {
-            let p = dice.point(9.5, offset);
+            let p = point(&mut dice, 9.5, offset);
             let g = world.signed_gap(p, 30.0).unwrap();
             // Beyond a terrain's end "below" has no meaning for the brute force; the yard's ends
             // are at ±10.
@@ -171,10 +164,10 @@ fn corners_that_do_not_turn_are_not_felt() {
 fn the_nearest_pair_is_the_gap_of_the_segment() {
     let obstacles = yard(0.0);
     let world = World::new(&obstacles, 0.5, RADIUS);
-    let (mut dice, mut out, mut met) = (Dice(3), Vec::new(), 0);
+    let (mut dice, mut out, mut met) = (MmixDice(3), Vec::new(), 0);
     for _ in 0..100_000 {
-        let a = dice.point(9.0, 0.0);
-        let b = a + dice.point(0.5, 0.0);
+        let a = point(&mut dice, 9.0, 0.0);
+        let b = a + point(&mut dice, 0.5, 0.0);
         out.clear();
         world.segment_gaps(a, b, 0.3, &mut out);
         let mut nearest = f64::INFINITY;
@@ -214,12 +207,12 @@ fn pair_sums_have_no_jump() {
         g.segment_pairs(x[1], x[2], reach, &mut add);
         sum
     };
-    let mut dice = Dice(11);
+    let mut dice = MmixDice(11);
     let (mut worst, steps) = (0.0f64, 400);
     for _ in 0..400 {
-        let start = dice.point(8.0, 0.0);
-        let x0 = [start, start + dice.point(0.4, 0.0), start + dice.point(0.6, 0.0)];
-        let move_ = [dice.point(0.05, 0.0), dice.point(0.05, 0.0), dice.point(0.05, 0.0)];
+        let start = point(&mut dice, 8.0, 0.0);
+        let x0 = [start, start + point(&mut dice, 0.4, 0.0), start + point(&mut dice, 0.6, 0.0)];
+        let move_ = [point(&mut dice, 0.05, 0.0), point(&mut dice, 0.05, 0.0), point(&mut dice, 0.05, 0.0)];
         let at = |t: f64| [x0[0] + move_[0] * t, x0[1] + move_[1] * t, x0[2] + move_[2] * t];
         // A node that crosses an edge flips normals but not distances, and only distances are
         // summed here.
@@ -273,14 +266,14 @@ fn first_crossing(from: [Vec2; 2], to: [Vec2; 2], p: Vec2, q: Vec2) -> Option<f6
 #[test]
 fn sweeps_never_cross_anything() {
     let world = World::new(&yard(0.0), 0.5, RADIUS);
-    let mut dice = Dice(5);
+    let mut dice = MmixDice(5);
     let (mut stopped, mut blocked) = (0, 0);
     for round in 0..100_000 {
         // A third of the moves are 10 m long, a third are short, and a third are tiny.
         let reach = [10.0, 0.3, 1e-3][round % 3];
-        let a = dice.point(9.0, 0.0);
-        let from = [a, a + dice.point(0.3, 0.0)];
-        let to = [from[0] + dice.point(reach, 0.0), from[1] + dice.point(reach, 0.0)];
+        let a = point(&mut dice, 9.0, 0.0);
+        let from = [a, a + point(&mut dice, 0.3, 0.0)];
+        let to = [from[0] + point(&mut dice, reach, 0.0), from[1] + point(&mut dice, reach, 0.0)];
         let f = world.free_fraction(from, to, 0.2);
         assert!((0.0..=1.0).contains(&f));
         let end = [from[0] + (to[0] - from[0]) * f, from[1] + (to[1] - from[1]) * f];
@@ -367,7 +360,7 @@ fn ten_metres_in_a_step_do_not_pass_a_beam_or_a_thin_line() {
 fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
     let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.05 };
     let world = World::new(&[Obstacle { name: "post".to_owned(), shape, friction: None }], 0.5, RADIUS);
-    let mut dice = Dice(11);
+    let mut dice = MmixDice(11);
     let mut cut = 0;
     for _ in 0..2000 {
         let gap = 10f64.powf(-6.0 + 3.0 * dice.unit());

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use super::time_series::{Series, TIME_TOLERANCE_S, turn_between};
+use super::time_series::{TIME_TOLERANCE_S, TimeSeries, turn_between};
 use super::wheels_as_posts::WheelPost;
 use crate::contact::World;
 use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
-use crate::scene::similarity::Similarity;
+use crate::scene::froude_scaling::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
 use crate::solution::{CableSolution, Warning};
 
@@ -32,7 +32,7 @@ pub struct Problem {
     /// Weight per metre, N/m, a vector (zero in plan view).
     pub weight: Vec2,
     /// Wind per metre as a function of time, N/m.
-    pub wind: Series,
+    pub wind: TimeSeries,
     /// EA, N.
     pub axial_stiffness: f64,
     /// EI, N·m².
@@ -87,7 +87,7 @@ pub struct SupportPoint {
     /// Pulley friction.
     pub friction: f64,
     /// Load: force as a function of time, N.
-    pub force: Series,
+    pub force: TimeSeries,
     /// Lumped mass, kg.
     pub mass: f64,
     /// The time when it lets go, s.
@@ -133,7 +133,7 @@ pub struct PointLoad {
     /// Place on the cable, m.
     pub arc_length: f64,
     /// Force as a function of time, N.
-    pub force: Series,
+    pub force: TimeSeries,
 }
 
 /// The wheels of a cable that stand still, of which any may be a post.
@@ -163,7 +163,7 @@ impl Problem {
     /// back or stops. Friction remembers it, so a step may not pass it.
     #[must_use]
     pub fn turn_between(&self, from: f64, to: f64) -> Option<f64> {
-        let series = |s: &Series| turn_between(&s.times, &s.values, from, to, |v| *v);
+        let series = |s: &TimeSeries| turn_between(&s.times, &s.values, from, to, |v| *v);
         let moves = |s: &SupportPoint| {
             let m = s.motion.as_ref()?;
             turn_between(&m.times_s, &m.points_m, from, to, |p| vec2(*p))

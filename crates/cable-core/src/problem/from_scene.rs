@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use super::definition::{PointLoad, Problem, StandingWheels, SupportPoint, WheelsAsPosts};
 use super::robot_outline::robot_outline;
-use super::time_series::Series;
+use super::time_series::TimeSeries;
 use super::wheels_as_posts::{WithPosts, standing_wheels, with_posts};
 use super::{ground_route, route_check, support_clearance};
 use crate::contact::World;
 use crate::error::SceneError;
 use crate::math::{Vec2, vec2};
-use crate::scene::similarity::Similarity;
+use crate::scene::froude_scaling::Similarity;
 use crate::scene::{Cable, FrictionMobilised, Scene, SupportKind, View};
 use crate::solution::Warning;
 
@@ -175,10 +175,10 @@ fn support_point(scene: &Scene, cable: &Cable, k: usize) -> SupportPoint {
     }
 }
 
-fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> Series {
+fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> TimeSeries {
     if times.is_empty() {
-        force.map_or_else(Series::default, |f| Series::constant(vec2(f)))
+        force.map_or_else(TimeSeries::default, |f| TimeSeries::constant(vec2(f)))
     } else {
-        Series::new(times, forces)
+        TimeSeries::new(times, forces)
     }
 }

@@ -38,4 +38,4 @@ pub use self::definition::{PointLoad, Problem, SupportPoint};
 pub(crate) use self::definition::{StandingWheels, WheelsAsPosts};
 pub use self::from_scene::{check, problems};
 pub use self::robot_outline::{OUTLINE_NAME, robot_outline};
-pub use self::time_series::Series;
+pub use self::time_series::TimeSeries;

@@ -8,12 +8,12 @@ pub(super) const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// A vector as a function of time: linear between knots, constant outside them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series {
+pub struct TimeSeries {
     pub(super) times: Vec<f64>,
     pub(super) values: Vec<Vec2>,
 }
 
-impl Series {
+impl TimeSeries {
     /// The same value at all times.
     #[must_use]
     pub fn constant(value: Vec2) -> Self {

@@ -6,7 +6,7 @@
 //! | `manifest.rs` | `run.toml`: what was asked, how far the run came, which files are its own |
 //! | `run_tables.rs` | the three tables of a run, read together |
 //! | `columns.rs`, `node_choice.rs` | names of the tables' columns; which nodes and figures are written |
-//! | `run_writer.rs`, `page.rs` | the tables are written in whole instants; rows that lie on one page of a file |
+//! | `run_writer.rs`, `page_aligned_rows.rs` | the tables are written in whole instants; rows that lie on one page of a file |
 //! | `table_reader.rs`, `csv_records.rs` | the tables are read up to their last whole row |
 //! | `table_error.rs` | faults of tables |
 //! | `fingerprint.rs` | whether two runs are the same to the bit |
@@ -33,7 +33,7 @@ mod fingerprint;
 mod history;
 mod manifest;
 mod node_choice;
-mod page;
+mod page_aligned_rows;
 mod run_tables;
 mod run_writer;
 mod table_error;
@@ -47,7 +47,7 @@ pub use history::History;
 pub(crate) use manifest::MANIFEST_HEAD;
 pub use manifest::{FileRecord, Manifest, NodeSummary, RunRequest, RunStatus, RunStop};
 pub use node_choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
-pub(crate) use page::Pages;
+pub(crate) use page_aligned_rows::Pages;
 pub(crate) use run_tables::read_run;
 pub use run_tables::{LeftOut, RunTables};
 pub use run_writer::RunWriter;

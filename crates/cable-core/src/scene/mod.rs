@@ -10,7 +10,7 @@
 //! | `read/` | files in and out, and the refusal of what cannot be solved |
 //! | `library/` | named scenes and presets |
 //! | `nearest_name.rs` | the known name that a mistyped one means |
-//! | `import.rs`, `similarity.rs` | lines from tables and drawings; a similar copy at another scale |
+//! | `import.rs`, `froude_scaling.rs` | lines from tables and drawings; a similar copy at another scale |
 //! | `comparison.rs` | in which keys do two scenes differ? |
 //!
 //! A [`Scene`] is a plain document: every field is public, so that an editor can hold a half-typed
@@ -21,6 +21,7 @@ pub(crate) mod cable;
 mod comparison;
 mod document;
 pub(crate) mod environment;
+pub(crate) mod froude_scaling;
 pub(crate) mod ground;
 pub mod import;
 pub(crate) mod library;
@@ -31,7 +32,6 @@ pub(crate) mod obstacle;
 pub(crate) mod read;
 pub(crate) mod robot;
 mod robot_contact_outline;
-pub(crate) mod similarity;
 pub(crate) mod support;
 
 pub use cable::{Cable, FrictionMobilised};

@@ -1,7 +1,7 @@
 //! A piece advances until its tension reaches the breaking tension, and the instant of that is
 //! found between two of its steps.
 
-use super::piece::Piece;
+use super::piece::CablePiece;
 use crate::breakage::rupture::{self, Rupture};
 use crate::error::SolveError;
 use crate::math::larger;
@@ -40,7 +40,7 @@ pub(super) enum StepOutcome {
     Broke(Box<BreakPoint>),
 }
 
-impl Piece {
+impl CablePiece {
     /// Advances until it breaks, at most by `dt_s`.
     pub fn advance(
         &mut self,

@@ -7,8 +7,8 @@
 //! accounts of the present ones.
 
 use super::SimulatedCable;
-use super::former_energy::{FormerEnergy, Replacement};
-use super::piece::Piece;
+use super::former_energy::{FormerEnergy, ReplacementReason};
+use super::piece::CablePiece;
 use crate::math::larger;
 use crate::model::Mechanics;
 use crate::solution::{Energy, EnergyAccount};
@@ -16,7 +16,7 @@ use crate::solution::{Energy, EnergyAccount};
 impl SimulatedCable {
     /// Adds the account of a model that `next` ones replace in its present state; `answer` is its
     /// last.
-    pub(super) fn replace_account(&mut self, k: usize, next: &[&dyn Mechanics], why: Replacement) {
+    pub(super) fn replace_account(&mut self, k: usize, next: &[&dyn Mechanics], why: ReplacementReason) {
         let Some(old) = self.pieces.get(k) else { return };
         // A model that replaced another one may itself be replaced before its first step.
         let begun = old.answer.energy_account.or(self.former_energy.map(|_| EnergyAccount::default()));
@@ -28,8 +28,8 @@ impl SimulatedCable {
         let gained: Energy = [account.gained, after, before * -1.0].into_iter().sum();
         let given = after.total_j() - before.total_j();
         let account = match why {
-            Replacement::Break => EnergyAccount { gained, breaks_j: account.breaks_j + given, ..account },
-            Replacement::Edit => EnergyAccount { gained, edits_j: account.edits_j + given, ..account },
+            ReplacementReason::Break => EnergyAccount { gained, breaks_j: account.breaks_j + given, ..account },
+            ReplacementReason::Edit => EnergyAccount { gained, edits_j: account.edits_j + given, ..account },
         };
         self.former_energy = Some(match self.former_energy {
             Some(former) => {
@@ -43,7 +43,7 @@ impl SimulatedCable {
     /// The energy account of all pieces since the cable began to move, where each has one; if the
     /// account of the former models is not known, since then.
     pub(super) fn energy_account(&self) -> Option<EnergyAccount> {
-        let own = |p: &Piece| p.answer.energy_account;
+        let own = |p: &CablePiece| p.answer.energy_account;
         let Some(former) = self.former_energy else {
             let accounts: Option<Vec<EnergyAccount>> = self.pieces.iter().map(own).collect();
             return accounts?.into_iter().reduce(|a, b| a.with(&b));

@@ -12,7 +12,7 @@ pub(super) struct FormerEnergy {
 
 /// The reason why a model is replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Replacement {
+pub(super) enum ReplacementReason {
     Break,
     Edit,
 }

@@ -1,7 +1,7 @@
 //! The same cable goes on in another state, by another model or after an edit.
 
 use super::SimulatedCable;
-use super::piece::Piece;
+use super::piece::CablePiece;
 use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
 use crate::model::{Model, ModelSource, Settings};
@@ -54,7 +54,7 @@ impl SimulatedCable {
 
     /// Builds a piece like one of another model: in one mesh if this model can break, else as what
     /// it broke into.
-    fn rebuilt_piece(&self, old: &Piece) -> Result<Vec<Piece>, SolveError> {
+    fn rebuilt_piece(&self, old: &CablePiece) -> Result<Vec<CablePiece>, SolveError> {
         let state = old.mechanics.state();
         let mut piece = self.build_piece(old.part.clone(), &state)?;
         if old.breaks.is_empty() {

@@ -11,7 +11,7 @@
 //! | `support_targets.rs` | supports that are dragged or pulled, and the robot's pose |
 //! | `obstacles_in_reach.rs` | obstacles that a cable comes to which were out of its reach |
 //! | `handover.rs` | the same cable in another state, by another model or after an edit |
-//! | `answer.rs` | the pieces read as one cable |
+//! | `answer_of_pieces.rs` | the pieces read as one cable |
 //! | `support_speed_limit.rs` | motions of supports that are too fast to be followed |
 //!
 //! Most models know unbroken cables only. Where the tension reaches the breaking tension,
@@ -19,10 +19,10 @@
 //! [`Problem`]s with free ends (`crate::breakage`), and continues with a model for each, from the
 //! positions and velocities of that instant. So every model can break. Pieces of models of their
 //! own do not meet each other; a model that lets a cable touch itself keeps the pieces in one mesh
-//! ([`Mechanics::break_at`](crate::model::Mechanics::break_at)), and is one [`Piece`] here.
+//! ([`Mechanics::break_at`](crate::model::Mechanics::break_at)), and is one [`CablePiece`] here.
 
 mod advance;
-mod answer;
+mod answer_of_pieces;
 mod break_search;
 mod energy_over_breaks;
 mod former_energy;
@@ -38,7 +38,7 @@ mod tests;
 use std::sync::Arc;
 
 use self::former_energy::FormerEnergy;
-use self::piece::Piece;
+use self::piece::CablePiece;
 use self::support_speed_limit::too_fast;
 use self::support_targets::{SupportGrip, SupportTarget, Targets};
 use crate::breakage::{Break, CablePart};
@@ -56,7 +56,7 @@ pub(crate) struct SimulatedCable {
     /// Builds the whole cable, and the pieces it breaks into.
     source: ModelSource,
     settings: Settings,
-    pieces: Vec<Piece>,
+    pieces: Vec<CablePiece>,
     breaks: Vec<Break>,
     /// The energy account of the models that pieces replaced; None where there is none.
     former_energy: Option<FormerEnergy>,
@@ -79,7 +79,7 @@ impl SimulatedCable {
         let settings = Settings { hand_stiffness_n_per_m: Some(stiffness), ..settings };
         let mechanics = source.build(problem.clone(), settings)?;
         let gauge = TensionGauge::over(problem.cable.breaking_time_s);
-        let piece = Piece::new(mechanics, CablePart::whole(&problem), gauge);
+        let piece = CablePiece::new(mechanics, CablePart::whole(&problem), gauge);
         let targets = Targets { supports: vec![None; problem.supports.len()], robot_pose: None };
         let too_fast = problem.supports.iter().find_map(too_fast);
         Ok(Self {
@@ -223,7 +223,7 @@ impl SimulatedCable {
 
     /// A copy to go back to.
     pub(crate) fn checkpoint(&self) -> Self {
-        self.with(self.pieces.iter().map(Piece::checkpoint).collect())
+        self.with(self.pieces.iter().map(CablePiece::checkpoint).collect())
     }
 
     /// Becomes what it was when `kept` was copied from it.
@@ -247,7 +247,7 @@ impl Clone for SimulatedCable {
 
 impl SimulatedCable {
     /// A copy with copies of its pieces.
-    fn with(&self, pieces: Vec<Piece>) -> Self {
+    fn with(&self, pieces: Vec<CablePiece>) -> Self {
         Self {
             problem: self.problem.clone(),
             source: self.source.clone(),

@@ -13,7 +13,7 @@ use crate::solution::{CableSolution, MomentumAccount, TensionPeak, TensionPeaks}
 const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 
 /// A part of the cable that holds together.
-pub(super) struct Piece {
+pub(super) struct CablePiece {
     pub mechanics: Box<dyn Mechanics>,
     pub part: CablePart,
     /// The answer at its present instant, in its own arc lengths.
@@ -30,7 +30,7 @@ pub(super) struct Piece {
     pub account: Option<MomentumAccount>,
 }
 
-impl Piece {
+impl CablePiece {
     pub fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
         let answer = mechanics.solution();
         Self {
@@ -152,7 +152,7 @@ impl Piece {
     }
 }
 
-impl Clone for Piece {
+impl Clone for CablePiece {
     fn clone(&self) -> Self {
         self.with(self.mechanics.boxed_clone())
     }

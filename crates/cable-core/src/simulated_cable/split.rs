@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::SimulatedCable;
 use super::break_search::BreakPoint;
-use super::former_energy::Replacement;
-use super::piece::Piece;
+use super::former_energy::ReplacementReason;
+use super::piece::CablePiece;
 use crate::breakage::{Break, CablePart, Cut, rupture};
 use crate::error::SolveError;
 use crate::model::tension_gauge::TensionGauge;
@@ -70,7 +70,7 @@ impl SimulatedCable {
         let new_pieces = parts.into_iter().map(|part| self.piece_after_break(part, from, point, inertia));
         let new_pieces = new_pieces.collect::<Result<Vec<_>, SolveError>>()?;
         let next: Vec<&dyn Mechanics> = new_pieces.iter().map(|p| &*p.mechanics).collect();
-        self.replace_account(k, &next, Replacement::Break);
+        self.replace_account(k, &next, ReplacementReason::Break);
         self.pieces.splice(k..=k, new_pieces);
         Ok(())
     }
@@ -83,7 +83,7 @@ impl SimulatedCable {
         division: Division<'_>,
         time_s: f64,
         inertia: Inertia,
-    ) -> Result<Option<Piece>, SolveError> {
+    ) -> Result<Option<CablePiece>, SolveError> {
         let Division { cut, parts, grown } = division;
         let Some(piece) = self.pieces.get(k).filter(|p| p.mechanics.problem().cable.self_contact) else {
             return Ok(None);
@@ -107,7 +107,7 @@ impl SimulatedCable {
             return Ok(None);
         }
         if rebuilt {
-            self.replace_account(k, &[&*broken.mechanics], Replacement::Break);
+            self.replace_account(k, &[&*broken.mechanics], ReplacementReason::Break);
         }
         if let [torn_off] = parts {
             broken.part = torn_off.clone();
@@ -124,7 +124,7 @@ impl SimulatedCable {
         from: f64,
         point: &BreakPoint,
         inertia: Inertia,
-    ) -> Result<Piece, SolveError> {
+    ) -> Result<CablePiece, SolveError> {
         let mut state = rupture::section(&point.state, part.from - from, part.to - from);
         // A piece that broke at rest is not at rest any more.
         state.in_motion = inertia == Inertia::Dynamic;
@@ -137,12 +137,12 @@ impl SimulatedCable {
     }
 
     /// Builds a piece in a state, whose arc lengths are its own.
-    pub(super) fn build_piece(&self, part: CablePart, state: &State) -> Result<Piece, SolveError> {
+    pub(super) fn build_piece(&self, part: CablePart, state: &State) -> Result<CablePiece, SolveError> {
         let problem = Arc::new(part.problem(&self.problem, state));
         let mut mechanics = self.source.build(problem, Settings { segments: None, ..self.settings })?;
         self.targets.tell(&part, mechanics.as_mut());
         mechanics.set_state(state)?;
-        Ok(Piece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
+        Ok(CablePiece::new(mechanics, part, TensionGauge::over(self.problem.cable.breaking_time_s)))
     }
 
     /// Takes pieces off the pulleys that their new ends have come to.
@@ -157,7 +157,7 @@ impl SimulatedCable {
                 let mut state = piece.mechanics.state();
                 state.in_motion = inertia == Inertia::Dynamic;
                 let next = self.build_piece(piece.part.without(support), &state)?;
-                self.replace_account(k, &[&*next.mechanics], Replacement::Edit);
+                self.replace_account(k, &[&*next.mechanics], ReplacementReason::Edit);
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
                 }

@@ -11,7 +11,7 @@
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `inertia_effect.rs` | [`InertiaEffect`]: how fast a motion is, and what it would be without inertia |
 //! | `cheaper_choice_error.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
-//! | `node_motion.rs` | displacements and accelerations of the nodes, from earlier ones |
+//! | `material_point_motion.rs` | displacements and accelerations of the nodes, from earlier ones |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
 
 mod cheaper_choice_error;
@@ -19,8 +19,8 @@ mod energy;
 mod energy_account;
 pub(crate) mod error_estimates;
 mod inertia_effect;
+pub(crate) mod material_point_motion;
 mod model_reason;
-pub(crate) mod node_motion;
 pub(crate) mod robot_report;
 mod shared_nodes;
 mod warning;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::shape::lies_on_something;
 use crate::math::Vec2;
-use crate::problem::Series;
+use crate::problem::TimeSeries;
 use crate::scene::{Cable, Scene, SupportKind, View};
 use crate::solution::CableSolution;
 
@@ -73,10 +73,10 @@ fn hangs_at_a_support(cable: &Cable, arc_length_m: f64) -> bool {
     })
 }
 
-fn series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> Series {
+fn series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> TimeSeries {
     match force {
-        _ if !times.is_empty() => Series::new(times, forces),
-        Some(f) => Series::constant(Vec2::from(f)),
-        None => Series::default(),
+        _ if !times.is_empty() => TimeSeries::new(times, forces),
+        Some(f) => TimeSeries::constant(Vec2::from(f)),
+        None => TimeSeries::default(),
     }
 }

@@ -103,7 +103,7 @@ impl ShownBend {
 
 /// The sharpest bends of an answer, and the greatest pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Bends {
+pub(crate) struct SharpestBends {
     /// The sharpest of the answer's line.
     line: Option<Bend>,
     /// The sharpest that the cable has with its bending stiffness where nothing leads it.
@@ -116,7 +116,7 @@ pub(crate) struct Bends {
     pub pressure: Option<Pressure>,
 }
 
-impl Bends {
+impl SharpestBends {
     /// Looks for them.
     pub fn of(problem: &Problem, answer: &CableSolution) -> Self {
         let bending_stiffness = problem.cable.likely_bending_stiffness_n_m2();
@@ -277,7 +277,7 @@ fn turn_within(piece: &[Node], turns: &[f64], k: usize, far: f64) -> f64 {
 }
 
 /// Appends bends sharper than the cable stands, free and led, and pressure beyond its limit.
-pub(super) fn warn(problem: &Problem, bends: &Bends, out: &mut Vec<Warning>) {
+pub(super) fn warn(problem: &Problem, bends: &SharpestBends, out: &mut Vec<Warning>) {
     let cable = &problem.cable;
     let stated = cable.min_bend_radius_m;
     let kink = if stated > 0.0 { stated } else { KINK_DIAMETERS * cable.diameter_m };

@@ -195,7 +195,7 @@ impl EnergySnapshot {
         }
         loads.extend(problem.loads.iter().map(|l| along(answer, l.arc_length).0));
         let mut moment = Vec2::zeros();
-        if problem.wind != crate::problem::Series::constant(Vec2::zeros()) {
+        if problem.wind != crate::problem::TimeSeries::constant(Vec2::zeros()) {
             for pair in answer.pieces().flat_map(|p| p.windows(2)) {
                 let [a, b] = pair else { continue };
                 moment += (a.at() + b.at()) * (0.5 * (b.arc_length_m - a.arc_length_m));

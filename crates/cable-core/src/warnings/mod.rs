@@ -29,7 +29,7 @@ use crate::breakage::Break;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Energy};
 
-pub(crate) use bend::Bends;
+pub(crate) use bend::SharpestBends;
 pub(crate) use monitor::WarningMonitor;
 
 /// One cable, what it is said to do now, and where it broke.
@@ -42,7 +42,7 @@ pub(crate) struct Observed<'a> {
     /// Its energy.
     pub energy: Energy,
     /// Its bends.
-    pub bends: Bends,
+    pub bends: SharpestBends,
     /// Its breaks.
     pub breaks: &'a [Break],
 }

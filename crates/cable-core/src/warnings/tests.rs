@@ -1,6 +1,6 @@
 //! These tests give the warning monitor answers whose warnings are known.
 
-use super::Bends;
+use super::SharpestBends;
 use super::monitor::HOLD_TIME_S;
 use super::{Observed, WarningMonitor};
 use crate::breakage::Break;
@@ -64,7 +64,7 @@ fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
 }
 
 fn observed<'a>(problem: &'a Problem, answer: &'a CableSolution) -> Observed<'a> {
-    let (energy, bends) = (Energy::of(problem, answer), Bends::of(problem, answer));
+    let (energy, bends) = (Energy::of(problem, answer), SharpestBends::of(problem, answer));
     Observed { problem, answer, energy, bends, breaks: &[] }
 }
 
@@ -256,7 +256,7 @@ fn a_corner_bends_a_cable_as_its_stiffness_lets_it() {
     s.obstacles.push(Obstacle { name: "roof".into(), shape: Shape::Terrain { points_m }, friction: None });
     let answer = |tension: f64| along(&[[0.0, 0.015], [1.5, 0.516], [3.0, 1.014], [4.5, 0.516], [6.0, 0.015]], tension);
     let led = |s: &Scene, tension: f64| {
-        let bends = Bends::of(&problem(s), &answer(tension));
+        let bends = SharpestBends::of(&problem(s), &answer(tension));
         assert!((bends.tightest().unwrap().radius_m - 0.014).abs() < 1e-12, "the line itself is what it was");
         let judged = bends.judged().unwrap();
         (judged.bending_stiffness_n_m2, judged.bend.radius_m)

@@ -56,6 +56,11 @@ pub(super) fn percent(ratio: f64) -> String {
     text + " %"
 }
 
+/// Significant digits of a number that was given, or that was `converted` to another unit.
+fn given_digits(value: f64, converted: f64) -> usize {
+    if converted == value { 6 } else { 5 }
+}
+
 /// The number that so many significant digits are of.
 fn round_to(value: f64, digits: usize) -> f64 {
     let last = digits.saturating_sub(1);
@@ -97,19 +102,14 @@ impl Figures {
     pub(super) fn bare(self, quantity: Quantity, value: f64) -> String {
         let converted = quantity.convert(value, self.0);
         // A computed value, or one dragged by a hand, has more digits than anyone reads.
-        at_most(converted, self.given_digits(converted == value))
-    }
-
-    /// Significant digits of a number as it was given, or as it was converted.
-    fn given_digits(self, as_given: bool) -> usize {
-        if as_given { 6 } else { 5 }
+        at_most(converted, given_digits(value, converted))
     }
 
     /// A number beside the ends of its range, or one of them, without the unit; a power of ten
     /// where it is very small or large.
     pub(super) fn bound(self, quantity: Quantity, value: f64) -> String {
         let converted = quantity.convert(value, self.0);
-        let shown = round_to(converted, self.given_digits(converted == value));
+        let shown = round_to(converted, given_digits(value, converted));
         if shown == 0.0 || PLAIN_SIZES.contains(&shown.abs()) {
             self.bare(quantity, value)
         } else {

@@ -1,35 +1,15 @@
 //! These functions draw random scenes of cables with more length than they need, for the campaign
 //! of folds and the example that prints one.
 
+#[path = "../dice/mod.rs"]
+mod dice;
+
 use cable_core::scene::{Obstacle, Scene, Shape, Support, View, catalog};
+use dice::MmixDice;
 
 pub const GRAVITY: f64 = 9.80665;
 pub const RADIUS: f64 = 0.014;
 pub const FAMILIES: [&str; 7] = ["terrain", "floor", "inside", "one place", "no ground", "route", "plan"];
-
-/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming",
-/// volume 2, 1981, 3.3.4).
-struct Chance(u64);
-
-impl Chance {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
-    }
-
-    /// Evenly in the logarithm.
-    fn scale(&mut self, low: f64, high: f64) -> f64 {
-        self.within(low.ln(), high.ln()).exp()
-    }
-
-    fn of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[(self.next() * all.len() as f64) as usize]
-    }
-}
 
 /// Height of a polyline at x.
 pub fn height(ground: &[[f64; 2]], x: f64) -> f64 {
@@ -44,9 +24,9 @@ fn box_at(x: f64, y: f64, wide: f64, high: f64) -> Shape {
 
 /// A scene of family `seed` modulo their number, and its name.
 pub fn scene(seed: u64) -> (&'static str, Scene) {
-    let mut r = Chance(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
+    let mut r = MmixDice(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1);
     for _ in 0..8 {
-        r.next();
+        r.unit();
     }
     let name = FAMILIES[(seed % FAMILIES.len() as u64) as usize];
     let mut s = catalog::hanging_span();
@@ -56,16 +36,16 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
     let ground: Vec<[f64; 2]> = match name {
         "terrain" => {
             let n = 12;
-            let high = r.scale(0.05, 0.6);
+            let high = r.log(0.05, 0.6);
             let at = |k: usize| -5.0 + (width + 10.0) * k as f64 / n as f64;
             (0..=n).map(|k| [at(k), r.within(-high, high)]).collect()
         }
         _ => vec![[-50.0, 0.0], [width + 50.0, 0.0]],
     };
     let above = RADIUS + 1e-3;
-    let (mut a, mut b) = ([0.0, r.scale(0.1, 3.0)], [width, r.scale(0.1, 3.0)]);
+    let (mut a, mut b) = ([0.0, r.log(0.1, 3.0)], [width, r.log(0.1, 3.0)]);
     if name == "one place" {
-        b = if r.next() < 0.5 { a } else { [a[0], a[1] + r.within(0.0, 1.0)] };
+        b = if r.unit() < 0.5 { a } else { [a[0], a[1] + r.within(0.0, 1.0)] };
     }
     a[1] += height(&ground, a[0]) + above;
     b[1] += height(&ground, b[0]) + above;
@@ -73,8 +53,8 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
         b = a;
     }
     let count = match name {
-        "inside" | "route" | "no ground" | "plan" => 1 + (r.next() * 3.0) as usize,
-        _ => (r.next() * 4.0) as usize,
+        "inside" | "route" | "no ground" | "plan" => 1 + (r.unit() * 3.0) as usize,
+        _ => (r.unit() * 4.0) as usize,
     };
     let mut route = vec![a];
     for k in 0..count {
@@ -85,9 +65,9 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
         };
         let x = spread;
         let low = height(&ground, x);
-        let friction = Some(r.of(&[0.0, 0.2, 0.3, 0.4, 0.6]));
-        let (round, size) = (r.next() < 0.4, r.within(0.1, 0.4));
-        let on_ground = r.next() < 0.3;
+        let friction = Some(r.pick(&[0.0, 0.2, 0.3, 0.4, 0.6]));
+        let (round, size) = (r.unit() < 0.4, r.within(0.1, 0.4));
+        let on_ground = r.unit() < 0.3;
         let mut y = low + r.within(0.3, 3.2);
         let shape = if round {
             Shape::Circle { center_m: [x, y], radius_m: size }
@@ -108,7 +88,7 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
                 Shape::Polygon { points_m } => 0.5 * (points_m[0][0] + points_m[1][0]),
                 _ => x,
             };
-            let over = top + above + if r.next() < 0.5 { 0.0 } else { r.scale(0.01, 1.0) };
+            let over = top + above + if r.unit() < 0.5 { 0.0 } else { r.log(0.01, 1.0) };
             if k == 0 {
                 a = [middle, over];
                 route = vec![a];
@@ -117,8 +97,8 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
             }
         }
         if name == "route" || name == "plan" {
-            let side = if r.next() < 0.6 || name == "plan" { 1.0 } else { -1.0 };
-            let side = if name == "plan" && r.next() < 0.5 { -1.0 } else { side };
+            let side = if r.unit() < 0.6 || name == "plan" { 1.0 } else { -1.0 };
+            let side = if name == "plan" && r.unit() < 0.5 { -1.0 } else { side };
             let wide = match &shape {
                 Shape::Polygon { points_m } => [points_m[0][0], points_m[1][0]],
                 _ => [x - size, x + size],
@@ -136,7 +116,7 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
         s.obstacles.push(Obstacle { name: format!("o{k}"), shape, friction });
     }
     if name != "no ground" && name != "plan" {
-        let friction = Some(r.of(&[0.0, 0.1, 0.3, 0.6, 0.9]));
+        let friction = Some(r.pick(&[0.0, 0.1, 0.3, 0.6, 0.9]));
         s.obstacles
             .insert(0, Obstacle { name: "ground".to_owned(), shape: Shape::Terrain { points_m: ground }, friction });
     }
@@ -159,16 +139,16 @@ pub fn scene(seed: u64) -> (&'static str, Scene) {
     };
     let c = &mut s.cables[0];
     (c.bending_stiffness_n_m2, c.diameter_m, c.segments) = (0.0, 2.0 * RADIUS, None);
-    c.axial_stiffness_n = r.scale(1e5, 1e8);
-    c.linear_density_kg_per_m = r.scale(0.1, 5.0);
+    c.axial_stiffness_n = r.log(1e5, 1e8);
+    c.linear_density_kg_per_m = r.log(0.1, 5.0);
     c.friction = 0.5;
-    let factor = if name == "plan" { 1.0 + r.scale(1e-4, 0.1) } else { 1.0 + r.scale(0.02, 3.0) };
+    let factor = if name == "plan" { 1.0 + r.log(1e-4, 0.1) } else { 1.0 + r.log(0.02, 3.0) };
     c.length_m = (way + if name == "one place" { 0.5 } else { 0.02 }) * factor;
     (c.service_tension_n, c.breaking_tension_n) = (1e7, 1e7);
     c.supports = vec![Support::fixed("a", a), Support::fixed("b", b)];
     if name == "plan" {
         s.view = View::Plan;
-        c.friction = r.of(&[0.0, 0.3]);
+        c.friction = r.pick(&[0.0, 0.3]);
     }
     if name == "route" || name == "plan" {
         c.route_m = route;

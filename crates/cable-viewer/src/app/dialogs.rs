@@ -6,10 +6,10 @@ use cable_core::Scene;
 use cable_core::scene::{Obstacle, Shape};
 use egui::{Button, Context, Id, Modal, Ui};
 
-use crate::app::path_picker::{self, Purpose};
+use crate::app::path_picker::{self, PathPurpose};
 use crate::command::{Command, FileCommand};
 use crate::state::AppState;
-use crate::state::dialog::{Dialog, Replacement};
+use crate::state::dialog::{Dialog, SceneReplacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -20,8 +20,8 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
         ui.set_max_width(460.0);
         match dialog {
             Dialog::Message { title, text } => message(ui, title, text, commands),
-            Dialog::Open { path } => ask_path(ui, "Open a scene", path, Purpose::Open, commands),
-            Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, Purpose::Save, commands),
+            Dialog::Open { path } => ask_path(ui, "Open a scene", path, PathPurpose::Open, commands),
+            Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, PathPurpose::Save, commands),
             Dialog::Export { path, sheet } => {
                 ui.heading("Export the part of the graph in view");
                 ui.add_space(6.0);
@@ -50,7 +50,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::OpenRun { path, hold } => {
                 let title = if *hold { "Pin a recorded run to compare with" } else { "Open a run" };
                 let note = "A folder with scene.toml, history.csv, nodes.csv and events.csv, as this window and cable run write them";
-                let question = PathQuestion { title, purpose: Purpose::Open, hint: "A folder", note };
+                let question = PathQuestion { title, purpose: PathPurpose::Open, hint: "A folder", note };
                 if let Some(path) = ask(ui, &question, path, commands) {
                     let command = if *hold { FileCommand::AddReferenceRun(path) } else { FileCommand::OpenRun(path) };
                     commands.push(Command::File(command));
@@ -121,7 +121,7 @@ struct PathQuestion<'a> {
     /// Its heading; empty: none.
     title: &'a str,
     /// The use of the path.
-    purpose: Purpose,
+    purpose: PathPurpose,
     /// Help in the empty field.
     hint: &'a str,
     /// A sentence below it.
@@ -130,7 +130,7 @@ struct PathQuestion<'a> {
 
 /// A question for a path to save at, without a heading.
 fn save<'a>(hint: &'a str, note: &'a str) -> PathQuestion<'a> {
-    PathQuestion { title: "", purpose: Purpose::Save, hint, note }
+    PathQuestion { title: "", purpose: PathPurpose::Save, hint, note }
 }
 
 /// A path to type; some once it is entered.
@@ -175,7 +175,7 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], grounds: &[St
         ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
     });
     egui::CollapsingHeader::new("Pick a file").show_unindented(ui, |ui| {
-        path_picker::list(ui, path, &["csv", "tsv", "txt", "dat", "svg"], Purpose::Open);
+        path_picker::list(ui, path, &["csv", "tsv", "txt", "dat", "svg"], PathPurpose::Open);
     });
     let label = ui.label("or paste it here");
     egui::ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
@@ -281,7 +281,7 @@ const ABOUT: &[(&str, &[&str])] = &[
 ];
 
 /// A path to type or to pick.
-fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: Purpose, commands: &mut Vec<Command>) {
+fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: PathPurpose, commands: &mut Vec<Command>) {
     ui.heading(title);
     ui.add_space(6.0);
     let mut done = false;
@@ -292,10 +292,10 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: Purpose, comma
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         path_picker::system(ui, path, purpose);
     });
-    done |= path_picker::list(ui, path, &["toml"], purpose) && purpose == Purpose::Open;
+    done |= path_picker::list(ui, path, &["toml"], purpose) && purpose == PathPurpose::Open;
     ui.add_space(10.0);
     ui.horizontal(|ui| {
-        done |= ui.button(if purpose == Purpose::Save { "Save" } else { "Open" }).clicked();
+        done |= ui.button(if purpose == PathPurpose::Save { "Save" } else { "Open" }).clicked();
         if ui.button("Cancel").clicked() {
             commands.push(close());
         }
@@ -303,13 +303,13 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: Purpose, comma
     if done && !path.trim().is_empty() {
         let path = PathBuf::from(path.trim());
         commands.push(Command::File(match purpose {
-            Purpose::Open => FileCommand::Open(path),
-            Purpose::Save => FileCommand::SaveAs(path),
+            PathPurpose::Open => FileCommand::Open(path),
+            PathPurpose::Save => FileCommand::SaveAs(path),
         }));
     }
 }
 
-fn unsaved(ui: &mut Ui, name: &str, then: &Replacement, commands: &mut Vec<Command>) {
+fn unsaved(ui: &mut Ui, name: &str, then: &SceneReplacement, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     ui.add_space(6.0);
     ui.label(format!("“{name}” has changes that are not saved."));

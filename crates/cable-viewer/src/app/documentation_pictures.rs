@@ -23,7 +23,7 @@ const STILL_FRAMES: usize = 6;
 const RATE: usize = 60;
 
 /// A state of the window.
-pub struct State {
+pub struct PicturedState {
     /// Name of its file, without the ending.
     pub name: &'static str,
     scene: fn() -> Scene,
@@ -53,18 +53,23 @@ impl Frames {
 }
 
 /// All of them, in the order of the page.
-pub const STATES: [State; 8] = [
-    State { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: Frames::Still },
-    State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: Frames::Still },
-    State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: Frames::Still },
-    State { name: "motion", scene: catalog::tank, prepare: motion, frames: Frames::Moving(8 * RATE) },
-    State { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: Frames::Moving(5 * RATE) },
-    State { name: "break", scene: weak, prepare: motion, frames: Frames::Moving(2 * RATE / 3) },
-    State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: Frames::AfterJob },
-    State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: Frames::Still },
+pub const STATES: [PicturedState; 8] = [
+    PicturedState { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: Frames::Still },
+    PicturedState { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: Frames::Still },
+    PicturedState {
+        name: "tension-budget",
+        scene: catalog::draped_slipping,
+        prepare: tension_budget,
+        frames: Frames::Still,
+    },
+    PicturedState { name: "motion", scene: catalog::tank, prepare: motion, frames: Frames::Moving(8 * RATE) },
+    PicturedState { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: Frames::Moving(5 * RATE) },
+    PicturedState { name: "break", scene: weak, prepare: motion, frames: Frames::Moving(2 * RATE / 3) },
+    PicturedState { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: Frames::AfterJob },
+    PicturedState { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: Frames::Still },
 ];
 
-impl State {
+impl PicturedState {
     /// True if nothing moves in it and nothing is computed beside the window: it is drawn at once.
     #[must_use]
     pub fn rests(&self) -> bool {

@@ -56,13 +56,13 @@ impl Section {
 
     /// The contents. Where there is a panel on the right, the head of the readouts stands above
     /// what scrolls there.
-    fn panel(self, has_head_above: bool) -> PanelUi {
+    fn panel(self, state: &AppState) -> PanelUi {
         match self {
             Self::Outline => panels::scene::outline::ui,
             Self::Selected => panels::selected_item::ui,
             Self::Warnings => panels::warnings::ui,
             Self::MarkedPlace | Self::UnmarkedPlace => panels::analysis::tension_budget::ui,
-            Self::Readouts if has_head_above => panels::readouts::rest,
+            Self::Readouts if state.ui.results_beside => panels::readouts::rest,
             Self::Readouts => panels::readouts::ui,
             Self::SafeReach => panels::analysis::safe_reach::ui,
             Self::Compare => panels::analysis::compare::ui,
@@ -73,7 +73,7 @@ impl Section {
 
 /// A list of sections that scrolls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Column {
+enum SectionColumn {
     /// The outline of the scene, and in a small window the form of the selected thing.
     Edit,
     /// Draws all warnings except the worst, the form of the selected item, then the readouts. If a
@@ -81,7 +81,7 @@ enum Column {
     Results,
 }
 
-impl Column {
+impl SectionColumn {
     fn id(self) -> &'static str {
         match self {
             Self::Edit => "edit",
@@ -179,7 +179,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let mut picture = child(ui, "picture", beside_inspector.with_max_y(beside_inspector.max.y - drawer_height));
     if wide && open.edit {
         let outline = Panel::left("edit");
-        side(&mut picture, outline, OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
+        side(&mut picture, outline, OUTLINE_WIDTH.of(width), |ui| scroll(ui, SectionColumn::Edit, state, commands));
     }
     if !told_in_panel {
         strip_above(&mut picture, state, commands);
@@ -238,7 +238,7 @@ fn inspector(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     panels::readouts::head(ui, state, commands);
     panels::warnings::worst(ui, state, commands);
     ui.separator();
-    scroll(ui, Column::Results, state, commands);
+    scroll(ui, SectionColumn::Results, state, commands);
 }
 
 /// Draws the graphs, with the timeline, at the foot of a part of the window, at first in a height
@@ -346,7 +346,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs_tab: GraphsTab, commands: &mut Vec
         if let (count @ 1.., Some(tool)) = state.ui.section_request
             && is_new(ui, Id::unique("tools used in tabs"), count)
         {
-            let in_results = Column::Results.sections().contains(&Section::of_tool(tool));
+            let in_results = SectionColumn::Results.sections().contains(&Section::of_tool(tool));
             tab = if in_results && tool != ToolSection::Solver { Tab::Read } else { Tab::Edit };
         }
         ui.horizontal(|ui| {
@@ -367,8 +367,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs_tab: GraphsTab, commands: &mut Vec
         ui.separator();
         match tab {
             Tab::Graphs if graphs_tab == GraphsTab::Shown => panels::plots::ui(ui, state, commands),
-            Tab::Read => scroll(ui, Column::Results, state, commands),
-            Tab::Edit | Tab::Graphs => scroll(ui, Column::Edit, state, commands),
+            Tab::Read => scroll(ui, SectionColumn::Results, state, commands),
+            Tab::Edit | Tab::Graphs => scroll(ui, SectionColumn::Edit, state, commands),
         }
     });
 }
@@ -376,7 +376,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs_tab: GraphsTab, commands: &mut Vec
 /// The section to scroll to, since something else is marked or selected than in the frame before:
 /// where a tension comes from, a search that was begun elsewhere, a result that was pinned, or the
 /// form of the selected thing. Warnings stay in sight above it.
-fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
+fn newly_wanted(ui: &Ui, column: SectionColumn, state: &AppState) -> Option<Section> {
     let id = column.id();
     let marked = is_new(ui, Id::unique((id, "marked")), state.analysis.tension_marker)
         && state.analysis.tension_marker.is_some();
@@ -406,9 +406,9 @@ fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
     }
     // The form stands on the right where there is such a panel, else below the outline.
     match (selected, column, state.ui.results_beside) {
-        (true, Column::Results, true) if panels::warnings::has_more(state) => Some(Section::Warnings),
-        (true, Column::Results, true) => Some(Section::Selected),
-        (true, Column::Edit, false) => Some(Section::Selected),
+        (true, SectionColumn::Results, true) if panels::warnings::has_more(state) => Some(Section::Warnings),
+        (true, SectionColumn::Results, true) => Some(Section::Selected),
+        (true, SectionColumn::Edit, false) => Some(Section::Selected),
         _ => None,
     }
 }
@@ -420,7 +420,7 @@ fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, id: Id, now: T) 
     before != Some(now)
 }
 
-fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Command>) {
+fn scroll(ui: &mut Ui, column: SectionColumn, state: &AppState, commands: &mut Vec<Command>) {
     let shown = newly_wanted(ui, column, state);
     // The bar stands beside figures, not over their last letters.
     let bar = &mut ui.spacing_mut().scroll;
@@ -437,7 +437,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
             let hidden = match section {
                 // On the right where there is such a panel, else below the outline.
                 Section::Selected => {
-                    state.selection.selected.is_none() || (column == Column::Results) != state.ui.results_beside
+                    state.selection.selected.is_none() || (column == SectionColumn::Results) != state.ui.results_beside
                 }
                 Section::MarkedPlace => state.analysis.tension_marker.is_none(),
                 Section::UnmarkedPlace => state.analysis.tension_marker.is_some(),
@@ -445,12 +445,12 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
                 _ => false,
             };
             if hidden {
-                if section == Section::Warnings && column == Column::Results {
+                if section == Section::Warnings && column == SectionColumn::Results {
                     compensate_scroll(ui, ui.cursor().top());
                 }
                 continue;
             }
-            let panel = section.panel(state.ui.results_beside);
+            let panel = section.panel(state);
             let top = ui.cursor().top();
             // Widgets above that come and go must not change identities below: a drag in a section
             // would end.
@@ -465,7 +465,7 @@ fn scroll(ui: &mut Ui, column: Column, state: &AppState, commands: &mut Vec<Comm
                 })
             });
             let header = drawn.inner.header_response;
-            if section == Section::Warnings && column == Column::Results {
+            if section == Section::Warnings && column == SectionColumn::Results {
                 compensate_scroll(ui, top);
             }
             if shown == Some(section) {

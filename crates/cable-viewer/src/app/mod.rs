@@ -5,7 +5,7 @@
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `frame_pacing`: fewer frames where there is no GPU
 //! - `headline`: the scene's name and the figures that always stand at the top
-//! - `held_clicks`: clicks that come before the first frame, or are over within one
+//! - `early_clicks`: clicks that come before the first frame, or are over within one
 //! - `analysis_tools`: what is asked beside the answer, as verbs
 //! - `guidance`: hints of the first minute, the welcome dialog, and tutorials
 //! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
@@ -15,11 +15,11 @@ pub mod analysis_tools;
 mod canvas_picture;
 mod dialogs;
 pub mod documentation_pictures;
+mod early_clicks;
 mod feedback_form;
 mod frame_pacing;
 pub mod guidance;
 mod headline;
-mod held_clicks;
 mod keys;
 mod layout;
 mod menu;
@@ -114,7 +114,7 @@ impl ViewerApp {
 
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, worker_kind: WorkerKind) -> Self {
         theme::install(ctx);
-        ctx.add_plugin(held_clicks::HeldClicks::default());
+        ctx.add_plugin(early_clicks::HeldClicks::default());
         // A press that stays where it is is a click, however long a frame takes meanwhile.
         ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
         let frame_pacing = FramePacing::default();

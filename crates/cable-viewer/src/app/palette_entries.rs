@@ -1,6 +1,7 @@
 //! Every button of the window by the words on it, for the palette: what it does, or for what
 //! belongs to one thing the form that it stands in.
 
+use cable_core::analysis::safe_reach::line::Trip;
 use cable_core::scene::preset::{map_presets, robot_presets};
 use cable_core::scene::{Heading, RobotTask, SupportKind, View};
 use cable_core::summary::summary;
@@ -134,7 +135,11 @@ fn graphs(state: &AppState) -> Vec<PaletteEntry> {
 fn analyses(state: &AppState) -> Vec<PaletteEntry> {
     let reach = state.analysis.safe_reach.choice;
     let friction = &state.analysis.friction_range;
-    let both_ways = crate::jobs::safe_reach::SafeReachOptions { round_trip: !reach.round_trip, ..reach };
+    let other = match reach.trip {
+        Trip::There => Trip::ThereAndBack,
+        Trip::ThereAndBack => Trip::There,
+    };
+    let both_ways = crate::jobs::safe_reach::SafeReachOptions { trip: other, ..reach };
     let mut all = vec![
         view("Cancel comparison", ViewCommand::EndModelComparison),
         view("Cancel chart", ViewCommand::EndWorkPrecision),

@@ -18,14 +18,14 @@ const MIN_DIALOG_TIME: Duration = Duration::from_millis(300);
 
 /// The purpose of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
+pub enum PathPurpose {
     /// An existing file or folder is chosen for reading.
     Open,
     /// A file is chosen for writing: its typed name stays when another folder is entered.
     Save,
 }
 
-impl Purpose {
+impl PathPurpose {
     /// The word on the button that does it.
     #[must_use]
     pub fn verb(self) -> &'static str {
@@ -41,7 +41,7 @@ type CachedListing = (Result<Listing, String>, Instant);
 
 /// Lists the folder of the typed path; a click enters a folder or puts a file into the path.
 /// Returns whether a file was double-clicked.
-pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: Purpose) -> bool {
+pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: PathPurpose) -> bool {
     let folder = folder::of(path);
     let id = Id::unique("path picker").with((&folder, endings));
     let known = ui.data(|d| d.get_temp::<CachedListing>(id)).filter(|(_, read)| read.elapsed() < MAX_LISTING_AGE);
@@ -61,11 +61,12 @@ pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: Purpose) 
 }
 
 /// The folder above, folders and files; whether a file was double-clicked.
-fn rows(ui: &mut Ui, path: &mut String, listing: &Listing, purpose: Purpose) -> bool {
+fn rows(ui: &mut Ui, path: &mut String, listing: &Listing, purpose: PathPurpose) -> bool {
     ui.spacing_mut().item_spacing.y = 1.0;
     let mut chosen = false;
     let typed = Path::new(path.trim());
-    let kept = typed.file_name().filter(|_| purpose == Purpose::Save && !typed.is_dir()).unwrap_or_default().to_owned();
+    let kept =
+        typed.file_name().filter(|_| purpose == PathPurpose::Save && !typed.is_dir()).unwrap_or_default().to_owned();
     // Joined with nothing, a folder ends in a separator: the name is typed behind it.
     let enter = |folder: &Path| folder.join(&kept).display().to_string();
     if let Some(above) = listing.folder.parent()
@@ -95,15 +96,15 @@ fn rows(ui: &mut Ui, path: &mut String, listing: &Listing, purpose: Purpose) -> 
 }
 
 /// A button for the system's own file dialog; where none answers, that is said.
-pub fn system(ui: &mut Ui, path: &mut String, purpose: Purpose) {
+pub fn system(ui: &mut Ui, path: &mut String, purpose: PathPurpose) {
     let id = Id::unique("system file dialog is missing");
     let help = "The system's file dialog; where there is none, pick from the list below";
     if ui.button("Browse…").on_hover_text(help).clicked() {
         let dialog = rfd::FileDialog::new().add_filter("scene", &["toml"]);
         let began = Instant::now();
         let picked = match purpose {
-            Purpose::Open => dialog.pick_file(),
-            Purpose::Save => dialog.set_file_name("scene.toml").save_file(),
+            PathPurpose::Open => dialog.pick_file(),
+            PathPurpose::Save => dialog.set_file_name("scene.toml").save_file(),
         };
         ui.data_mut(|d| d.insert_temp(id, picked.is_none() && began.elapsed() < MIN_DIALOG_TIME));
         if let Some(picked) = picked {

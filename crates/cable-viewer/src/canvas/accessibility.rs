@@ -1,6 +1,7 @@
 //! A screen reader, and the tests, find on the canvas a name for each thing where it is painted,
 //! and the scene in words.
 
+use cable_core::analysis::safe_reach::line::Trip;
 use cable_core::math::Point;
 use cable_core::solution::ContactState;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo, vec2};
@@ -125,10 +126,14 @@ pub fn summary(state: &AppState) -> String {
         }
     }
     if let Some((maps, _)) = state.analysis.safe_reach.found() {
-        let shown = if state.analysis.safe_reach.choice.round_trip { "there and back" } else { "there" };
+        let trip = state.analysis.safe_reach.choice.trip;
+        let shown = match trip {
+            Trip::There => "there",
+            Trip::ThereAndBack => "there and back",
+        };
         out.push(format!(
             "safe reach, {shown}: {}",
-            crate::panels::analysis::safe_reach::describe(maps, state.analysis.safe_reach.choice.round_trip).join(", ")
+            crate::panels::analysis::safe_reach::describe(maps, trip).join(", ")
         ));
     }
     if let Some(error) = &state.live.snapshot.error {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use cable_core::Scene;
 
-use crate::jobs::safe_reach::ReachQuery;
+use crate::jobs::safe_reach::SafeReachQuery;
 use crate::state::AppState;
 use crate::worker::request::{Edit, EditStart, Request};
 
@@ -21,7 +21,7 @@ pub struct Effects {
     /// Start the solver thread anew.
     pub restart_worker: bool,
     /// Begin or end the search for safe places.
-    pub reach: Option<Option<Box<ReachQuery>>>,
+    pub reach: Option<Option<Box<SafeReachQuery>>>,
     /// Ask every model about a scene, or end that.
     pub models: Option<Option<Box<Scene>>>,
     /// Compare every model and mesh about a scene, or end that.

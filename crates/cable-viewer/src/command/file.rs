@@ -14,11 +14,11 @@ use crate::command::scene::{self, SceneCommand};
 use crate::io::feedback::{self, Answers};
 use crate::io::graph_file;
 use crate::io::graph_in_view::GraphInView;
-use crate::io::saved_run::{SavedRun, read_run};
+use crate::io::saved_run::{OpenedRun, read_run};
 use crate::io::scene_file;
 use crate::record::kept_run::KeptRun;
 use crate::record::sample::Sample;
-use crate::state::dialog::{Dialog, Replacement};
+use crate::state::dialog::{Dialog, SceneReplacement};
 use crate::state::live::ReopenedRun;
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Document, Reference};
@@ -44,7 +44,7 @@ pub enum FileCommand {
     /// Saves to the file of the scene; asks for one if there is none.
     Save,
     /// Saves, asking for a file if need be, and then does the pending action.
-    SaveThen(Replacement),
+    SaveThen(SceneReplacement),
     /// Asks where to save.
     AskSaveAs,
     /// Saves to a file.
@@ -81,7 +81,7 @@ pub enum FileCommand {
     /// Removes the recovery file.
     ForgetRecovery,
     /// Goes on without saving.
-    Discard(Replacement),
+    Discard(SceneReplacement),
     /// Starts the solver thread anew after it died.
     RestartWorker,
     /// Closes the window.
@@ -241,28 +241,28 @@ fn set_dialog(state: &mut AppState, dialog: Option<Dialog>) {
 
 impl FileCommand {
     /// Returns the replacement of the present scene; None: the scene stays.
-    fn replacement(&self) -> Option<Replacement> {
+    fn replacement(&self) -> Option<SceneReplacement> {
         Some(match self {
-            Self::New => Replacement::New,
-            Self::Open(path) => Replacement::Open(path.clone()),
-            Self::OpenRun(path) => Replacement::OpenRun(path.clone()),
-            Self::OpenCatalogue(id) => Replacement::OpenCatalogue(id.clone()),
-            &Self::OpenTutorial { tutorial, scene } => Replacement::OpenTutorial { tutorial, scene },
-            Self::Quit => Replacement::Quit,
+            Self::New => SceneReplacement::New,
+            Self::Open(path) => SceneReplacement::Open(path.clone()),
+            Self::OpenRun(path) => SceneReplacement::OpenRun(path.clone()),
+            Self::OpenCatalogue(id) => SceneReplacement::OpenCatalogue(id.clone()),
+            &Self::OpenTutorial { tutorial, scene } => SceneReplacement::OpenTutorial { tutorial, scene },
+            Self::Quit => SceneReplacement::Quit,
             _ => return None,
         })
     }
 }
 
-impl From<Replacement> for FileCommand {
-    fn from(action: Replacement) -> Self {
+impl From<SceneReplacement> for FileCommand {
+    fn from(action: SceneReplacement) -> Self {
         match action {
-            Replacement::New => Self::New,
-            Replacement::Open(path) => Self::Open(path),
-            Replacement::OpenRun(path) => Self::OpenRun(path),
-            Replacement::OpenCatalogue(id) => Self::OpenCatalogue(id),
-            Replacement::OpenTutorial { tutorial, scene } => Self::OpenTutorial { tutorial, scene },
-            Replacement::Quit => Self::Quit,
+            SceneReplacement::New => Self::New,
+            SceneReplacement::Open(path) => Self::Open(path),
+            SceneReplacement::OpenRun(path) => Self::OpenRun(path),
+            SceneReplacement::OpenCatalogue(id) => Self::OpenCatalogue(id),
+            SceneReplacement::OpenTutorial { tutorial, scene } => Self::OpenTutorial { tutorial, scene },
+            SceneReplacement::Quit => Self::Quit,
         }
     }
 }
@@ -316,7 +316,7 @@ fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     }
 }
 
-fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
+fn hold(state: &mut AppState, path: &Path, opened: OpenedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = KeptRun::of(samples.iter(), &opened.answers, events).map(Arc::new);

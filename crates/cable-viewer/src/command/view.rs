@@ -6,7 +6,7 @@ use std::time::Instant;
 use cable_core::math::Point;
 
 use crate::command::effects::Effects;
-use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
+use crate::jobs::safe_reach::{self, Progress, ReachSubject, SafeReachQuery};
 use crate::jobs::{model_comparison, neglected_bending, work_precision};
 use crate::record::kept_run::KeptRun;
 use crate::render::colour::ColourScale;
@@ -254,7 +254,7 @@ fn search_safe_reach(state: &mut AppState, effects: &mut Effects) {
     // Once time has run, the search begins from the cable on screen: a hand or the robot may have
     // moved it.
     let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
-    effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
+    effects.reach = Some(Some(Box::new(SafeReachQuery { scene, now, settings, moved, corners_m, across })));
 }
 
 /// Pins the present answer with the run that was recorded.

@@ -84,7 +84,7 @@ type StrokeStyle = ([u8; 3], f64, Option<[f64; 2]>);
 
 /// One mark of a drawing, in points from the left and from above.
 #[derive(Debug)]
-enum Mark {
+enum GraphMark {
     /// Straight from one place to another.
     Line([[f64; 2]; 2], StrokeStyle),
     /// From place to place, as far as it lies in the frame.
@@ -129,7 +129,7 @@ struct Drawing {
     size: [f64; 2],
     /// Left, top, right and bottom of what is plotted.
     frame: [f64; 4],
-    marks: Vec<Mark>,
+    marks: Vec<GraphMark>,
 }
 
 impl Drawing {
@@ -166,8 +166,8 @@ impl Drawing {
     /// The name of a line above the graph, beside a sample of it.
     fn legend_entry(&mut self, LegendEntry { name, at, row }: &LegendEntry, pen: StrokeStyle) {
         let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
-        self.marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen));
-        self.marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
+        self.marks.push(GraphMark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen));
+        self.marks.push(GraphMark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
     }
 
     fn ribbon(&mut self, graph: &GraphInView, entry: Option<&LegendEntry>) {
@@ -178,7 +178,7 @@ impl Drawing {
         let [r, g, b, _] = LINES[0].to_array();
         let colour = [r, g, b].map(|c| 255 - ((255 - u16::from(c)) * RIBBON_PERCENT / 100) as u8);
         let area = ribbon.iter().map(|r| [self.x(graph, r[0]), self.y(graph, r[2]), self.y(graph, r[1])]).collect();
-        self.marks.push(Mark::Area(area, colour));
+        self.marks.push(GraphMark::Area(area, colour));
         if let Some(entry) = entry {
             self.legend_entry(entry, (colour, 8.0, None));
         }
@@ -188,15 +188,15 @@ impl Drawing {
         let ([left, bottom, right, top], frame) = (graph.bounds, self.frame);
         for v in ticks(left, right) {
             let x = self.x(graph, v);
-            self.marks.push(Mark::Line([[x, frame[1]], [x, frame[3]]], (GRID, 1.0, None)));
+            self.marks.push(GraphMark::Line([[x, frame[1]], [x, frame[3]]], (GRID, 1.0, None)));
             let at = [x, frame[3] + 16.0];
-            self.marks.push(Mark::Text(TextLabel::new(at, TextAnchor::Middle, tick_text(v, [left, right]))));
+            self.marks.push(GraphMark::Text(TextLabel::new(at, TextAnchor::Middle, tick_text(v, [left, right]))));
         }
         for v in ticks(bottom, top) {
             let y = self.y(graph, v);
-            self.marks.push(Mark::Line([[frame[0], y], [frame[2], y]], (GRID, 1.0, None)));
+            self.marks.push(GraphMark::Line([[frame[0], y], [frame[2], y]], (GRID, 1.0, None)));
             let text = tick_text(v, [bottom, top]);
-            self.marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y + 4.0], TextAnchor::End, text)));
+            self.marks.push(GraphMark::Text(TextLabel::new([frame[0] - 6.0, y + 4.0], TextAnchor::End, text)));
         }
     }
 
@@ -206,7 +206,7 @@ impl Drawing {
         let pen = |width: f64| ([r, g, b], width, line.reference.map(|_| [6.0, 4.0]));
         let points = visible(line, graph).iter().filter(|p| p[1].is_finite());
         let path = points.map(|p| [self.x(graph, p[0] / graph.si[0]), self.y(graph, p[1] / graph.si[1])]).collect();
-        self.marks.push(Mark::Path(path, pen(1.8)));
+        self.marks.push(GraphMark::Path(path, pen(1.8)));
         if let Some(entry) = entry {
             self.legend_entry(entry, pen(2.5));
         }
@@ -216,14 +216,14 @@ impl Drawing {
         let [left, under, right, _] = self.frame;
         for (limit, name, colour) in limits(graph) {
             let at = self.y(graph, limit);
-            self.marks.push(Mark::Line([[left, at], [right, at]], (colour, 1.0, Some([8.0, 4.0]))));
+            self.marks.push(GraphMark::Line([[left, at], [right, at]], (colour, 1.0, Some([8.0, 4.0]))));
             // A limit at the top has its name below it: beside the names above the graph it would
             // be taken for one.
             let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
             let unit = graph.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
             let text = format!("{name} {} {unit}", significant(limit, 4));
             let words = TextLabel::new([right - 6.0, low], TextAnchor::End, text.trim_end());
-            self.marks.push(Mark::Text(TextLabel { colour, ..words }));
+            self.marks.push(GraphMark::Text(TextLabel { colour, ..words }));
         }
     }
 
@@ -234,9 +234,9 @@ impl Drawing {
         let across = TextLabel::new([middle[0], height - 14.0], TextAnchor::Middle, &graph.across[0]);
         let up = TextLabel::new([16.0, middle[1]], TextAnchor::Middle, &graph.up[0]);
         let title = TextLabel::new([MARGINS[0], 18.0], TextAnchor::Start, &graph.title);
-        self.marks.push(Mark::Text(across));
-        self.marks.push(Mark::Text(TextLabel { upwards: true, ..up }));
-        self.marks.push(Mark::Text(TextLabel { title: true, ..title }));
+        self.marks.push(GraphMark::Text(across));
+        self.marks.push(GraphMark::Text(TextLabel { upwards: true, ..up }));
+        self.marks.push(GraphMark::Text(TextLabel { title: true, ..title }));
     }
 }
 
@@ -262,22 +262,22 @@ pub fn svg(graph: &GraphInView) -> String {
     );
     for mark in &marks {
         let _ = match mark {
-            Mark::Line([[x1, y1], [x2, y2]], pen) => {
+            GraphMark::Line([[x1, y1], [x2, y2]], pen) => {
                 let stroke = stroke(pen);
                 writeln!(out, "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" {stroke}/>")
             }
-            Mark::Path(points, pen) => {
+            GraphMark::Path(points, pen) => {
                 let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
                 let (points, stroke) = (points.join(" "), stroke(pen));
                 writeln!(out, "<polyline clip-path=\"url(#c)\" fill=\"none\" {stroke} points=\"{points}\"/>")
             }
-            Mark::Area(places, colour) => {
+            GraphMark::Area(places, colour) => {
                 let upper = places.iter().map(|[x, y, _]| format!("{x:.2},{y:.2}"));
                 let lower = places.iter().rev().map(|[x, _, y]| format!("{x:.2},{y:.2}"));
                 let (points, fill) = (upper.chain(lower).collect::<Vec<_>>().join(" "), hex(*colour));
                 writeln!(out, "<polygon clip-path=\"url(#c)\" fill=\"{fill}\" points=\"{points}\"/>")
             }
-            Mark::Text(words) => {
+            GraphMark::Text(words) => {
                 let [x, y] = words.at;
                 let anchor = match words.anchor {
                     TextAnchor::Start => "start",
@@ -333,9 +333,9 @@ fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
     let mut words = Vec::new();
     for mark in &drawing.marks {
         match mark {
-            Mark::Line(ends, pen) => line(&paper, ends.map(place).to_vec(), pen),
-            Mark::Path(points, pen) => line(&plot, points.iter().copied().map(place).collect(), pen),
-            Mark::Area(places, ink) => {
+            GraphMark::Line(ends, pen) => line(&paper, ends.map(place).to_vec(), pen),
+            GraphMark::Path(points, pen) => line(&plot, points.iter().copied().map(place).collect(), pen),
+            GraphMark::Area(places, ink) => {
                 let mut mesh = Mesh::default();
                 for [x, upper, lower] in places {
                     let next = mesh.vertices.len() as u32;
@@ -348,7 +348,7 @@ fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
                 }
                 plot.add(mesh);
             }
-            Mark::Text(text) => words.push(write(&paper, text)),
+            GraphMark::Text(text) => words.push(write(&paper, text)),
         }
     }
     paper.rect_stroke(frame, 0.0, Stroke::new(1.0, colour(FRAME)), egui::StrokeKind::Middle);

@@ -18,7 +18,7 @@ const MAX_BYTES: u64 = 512 << 20;
 
 /// A run as it lies in a folder.
 #[derive(Clone, Debug)]
-pub struct SavedRun {
+pub struct OpenedRun {
     /// Its scene.
     pub scene: Scene,
     /// Its instants, oldest first.
@@ -33,7 +33,7 @@ pub struct SavedRun {
 ///
 /// # Errors
 /// In words: what is missing or broken, and where.
-pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
+pub fn read_run(folder: &Path) -> Result<OpenedRun, String> {
     let run = files::load_run(folder, MAX_BYTES).map_err(|e| e.to_string())?;
     let mut remarks: Vec<String> = run.remarks().iter().map(|r| format!("{}.", sentence(r))).collect();
     let RunTables { history, mut nodes, events, .. } = run.tables;
@@ -57,7 +57,7 @@ pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     if answers.len() < count {
         remarks.push(format!("Nodes were written at {} of its {count} instants, and those are shown.", answers.len()));
     }
-    Ok(SavedRun { scene: run.scene, answers, wall_time_s, remarks })
+    Ok(OpenedRun { scene: run.scene, answers, wall_time_s, remarks })
 }
 
 /// Figures of nodes that the run left out become 0; a sentence about which. Places cannot be left

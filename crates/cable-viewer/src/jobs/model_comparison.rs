@@ -11,7 +11,7 @@ use crate::jobs::background;
 
 /// The result of a model.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub struct ModelAnswer {
     /// The model.
     pub model: Model,
     /// Its answer and the wall time it took (s), or why there is none.
@@ -24,7 +24,7 @@ pub struct Outcome {
     /// The scene.
     pub scene: Arc<Scene>,
     /// The models so far, in the order they are listed everywhere.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<ModelAnswer>,
 }
 
 /// Its progress.
@@ -43,7 +43,7 @@ pub fn start(scene: Scene, settings: Settings, shown: impl Fn() + Send + 'static
                 return Err("it was ended".to_owned());
             }
             let result = at_rest(&found.scene, model, settings);
-            found.answers.push(Answer { model, result });
+            found.answers.push(ModelAnswer { model, result });
         }
         Ok(found)
     };

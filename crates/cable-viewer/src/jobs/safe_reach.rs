@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use cable_core::analysis::safe_reach::area::{self, Area};
-use cable_core::analysis::safe_reach::line::{self, ReachMap};
+use cable_core::analysis::safe_reach::line::{self, ReachMap, Trip};
 use cable_core::math::Point;
 use cable_core::scene::SupportKind;
 use cable_core::{Scene, Settings, Solution};
@@ -48,15 +48,15 @@ pub struct SafeReachOptions {
     /// The item that is moved; None: the robot, else the selection, else a support that moves, else
     /// an end.
     pub moved: Option<ReachSubject>,
-    /// Shows the way there and back instead of the place itself.
-    pub round_trip: bool,
+    /// The trip whose tensions are shown.
+    pub trip: Trip,
     /// Places of an end side by side.
     pub across: usize,
 }
 
 impl Default for SafeReachOptions {
     fn default() -> Self {
-        Self { moved: None, round_trip: false, across: 24 }
+        Self { moved: None, trip: Trip::There, across: 24 }
     }
 }
 
@@ -86,7 +86,7 @@ pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
 
 /// The question of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ReachQuery {
+pub struct SafeReachQuery {
     /// The scene.
     pub scene: Scene,
     /// The present state of the cables, if time has run.
@@ -158,11 +158,11 @@ impl SafeReachState {
 
 /// Starts a job; `shown` is called whenever there is a new result to show.
 #[must_use]
-pub fn start(query: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
+pub fn start(query: SafeReachQuery, shown: impl Fn() + Send + 'static) -> Job {
     Job::start("safe reach", move |listen| find(query, listen), shown)
 }
 
-fn find(query: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
+fn find(query: SafeReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
     let scene = Arc::new(query.scene);
     let mut told = -MIN_PROGRESS_STEP;
     let mut tell = |share: f64, maps: &dyn Fn() -> ReachMaps| {

@@ -8,12 +8,12 @@ use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::property::{PropertyQuantity, Provenance, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// A number of the environment that the panel edits.
 struct EnvironmentRow {
-    quantity: Quantity,
+    quantity: PropertyQuantity,
     /// Its path in the scene.
     path: &'static str,
     /// True for a component of the wind, which gives way to a table where the wind changes with
@@ -24,7 +24,7 @@ struct EnvironmentRow {
 }
 
 const GRAVITY: EnvironmentRow = EnvironmentRow {
-    quantity: Quantity {
+    quantity: PropertyQuantity {
         name: "Gravity",
         unit: Unit::M_PER_S2,
         usual: [0.0, 25.0],
@@ -37,7 +37,7 @@ const GRAVITY: EnvironmentRow = EnvironmentRow {
     set: |e, v| e.gravity_m_per_s2 = v,
 };
 const WIND_X: EnvironmentRow = EnvironmentRow {
-    quantity: Quantity {
+    quantity: PropertyQuantity {
         name: "Wind to the right",
         unit: Unit::N_PER_M,
         usual: [-50.0, 50.0],
@@ -50,7 +50,7 @@ const WIND_X: EnvironmentRow = EnvironmentRow {
     set: |e, v| e.wind_n_per_m[0] = v,
 };
 const WIND_Y: EnvironmentRow = EnvironmentRow {
-    quantity: Quantity {
+    quantity: PropertyQuantity {
         name: "Wind upwards",
         unit: Unit::N_PER_M,
         usual: [-50.0, 50.0],
@@ -63,7 +63,7 @@ const WIND_Y: EnvironmentRow = EnvironmentRow {
     set: |e, v| e.wind_n_per_m[1] = v,
 };
 const TEMPERATURE: EnvironmentRow = EnvironmentRow {
-    quantity: Quantity {
+    quantity: PropertyQuantity {
         name: "Temperature rise",
         unit: Unit::K,
         usual: [-60.0, 120.0],

@@ -14,17 +14,17 @@ use crate::units::labels;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::checkbox_and_radio::checkbox;
-use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::property::{PropertyQuantity, Provenance, row};
 use crate::worker;
 
-const TOLERANCE: Quantity = Quantity {
+const TOLERANCE: PropertyQuantity = PropertyQuantity {
     name: "Tolerance",
     unit: Unit::PERCENT,
     usual: [1e-6, 1e-1],
     logarithmic: true,
     help: "Relative accuracy asked of the tension. Models choose their mesh by it where nothing else says how many segments.",
 };
-const SEGMENTS: Quantity = Quantity {
+const SEGMENTS: PropertyQuantity = PropertyQuantity {
     name: "Segments per cable",
     unit: Unit::COUNT,
     usual: [4.0, 1000.0],
@@ -32,7 +32,7 @@ const SEGMENTS: Quantity = Quantity {
     help: "Elements every cable is cut into; overrides the cables' own numbers. More: finer and slower.",
 };
 
-const HAND: Quantity = Quantity {
+const HAND: PropertyQuantity = PropertyQuantity {
     name: "Fastest hand",
     unit: Unit::M_PER_S,
     usual: [0.1, 20.0],
@@ -40,7 +40,7 @@ const HAND: Quantity = Quantity {
     help: "How fast the hand follows the pointer that drags a support while time runs. It holds the support by a spring, which is drawn; where it lags is said as a warning. 2 m/s is an arm's; a faster one may break the cable by a flick of the mouse.",
 };
 
-const HAND_STIFFNESS: Quantity = Quantity {
+const HAND_STIFFNESS: PropertyQuantity = PropertyQuantity {
     name: "Stiffness of the hand",
     unit: Unit::N_PER_M,
     usual: [1.0, 1e6],

@@ -18,7 +18,7 @@ const MAX_EVENTS: usize = 5000;
 
 /// A warning that began, or a break.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Event {
+pub struct TimelineEvent {
     /// Time, s.
     pub time_s: f64,
     /// The warning.
@@ -29,7 +29,7 @@ pub struct Event {
 #[derive(Clone, Debug)]
 pub struct Recording {
     frames: History,
-    events: Vec<Event>,
+    events: Vec<TimelineEvent>,
     active: Vec<(WarningKind, String)>,
     /// Time shown, s; None = the present.
     pub shown_s: Option<f64>,
@@ -69,7 +69,7 @@ impl Recording {
                 _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
             };
             if !known && is_event(w.kind) && self.events.len() < MAX_EVENTS {
-                self.events.push(Event { time_s: began(w, solution.time_s), warning: w.clone() });
+                self.events.push(TimelineEvent { time_s: began(w, solution.time_s), warning: w.clone() });
             }
         }
         self.active = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
@@ -109,7 +109,7 @@ impl Recording {
 
     /// Returns what began when, oldest first.
     #[must_use]
-    pub fn events(&self) -> &[Event] {
+    pub fn events(&self) -> &[TimelineEvent] {
         &self.events
     }
 

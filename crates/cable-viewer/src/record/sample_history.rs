@@ -8,7 +8,7 @@ use crate::record::sample::Sample;
 
 /// The samples since the last start, oldest first.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct History {
+pub struct SampleHistory {
     /// Times increase.
     pub samples: VecDeque<Sample>,
     /// Memory of the samples, bytes.
@@ -25,7 +25,7 @@ pub struct History {
 /// full history took 30 ms a frame.
 const BLOCKS: [usize; 2] = [16, 256];
 
-impl History {
+impl SampleHistory {
     /// Memory for samples, bytes: 32 MiB hold 15 minutes of a cable with two supports at 240
     /// samples a second, and 10 minutes with eight. Once full, each four samples of the older half
     /// become two that keep the least and the greatest of every line, again and again: no peak is
@@ -162,10 +162,10 @@ mod tests {
     #[test]
     fn ten_minutes_at_240_hz_stay_within_the_budget_and_keep_every_peak() {
         let count = 240 * 60 * 20;
-        let mut history = History::default();
+        let mut history = SampleHistory::default();
         for k in 0..count {
             history.push(at(k));
-            assert!(history.bytes() <= History::BUDGET_BYTES);
+            assert!(history.bytes() <= SampleHistory::BUDGET_BYTES);
         }
         let samples = &history.samples;
         assert!(samples.len() > 100_000, "{}", samples.len());
@@ -209,7 +209,7 @@ mod tests {
     fn the_greatest_is_found_with_its_time_wherever_it_is() {
         let leads: [fn(&Sample) -> f64; 2] = [|s| s.max_tension_n, |s| s.robot.map_or(f64::NAN, |r| r[0])];
         for count in [0, 1, 200, 256, 600, 9000, 40_000] {
-            let mut history = History::default();
+            let mut history = SampleHistory::default();
             (0..count).for_each(|k| history.push(at(k)));
             for of in leads {
                 let all = history.samples.iter().map(|s| [s.time_s, of(s)]);
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn means_of_blocks_are_those_of_their_samples() {
-        let mut history = History::default();
+        let mut history = SampleHistory::default();
         (0..2600).for_each(|k| history.push(at(k)));
         for (columns, size) in [(150, 16), (10, 256)] {
             let means = history.means([0.0, 1e9], Some(columns));
@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn what_is_wound_back_over_is_forgotten() {
-        let mut history = History::default();
+        let mut history = SampleHistory::default();
         (0..10).for_each(|k| history.push(at(k)));
         let bytes = history.bytes();
         history.push(at(4));
@@ -246,6 +246,6 @@ mod tests {
         assert_eq!(history.samples.len(), 5);
         assert_eq!(history.bytes(), bytes / 2);
         history.clear();
-        assert_eq!(history, History::default());
+        assert_eq!(history, SampleHistory::default());
     }
 }

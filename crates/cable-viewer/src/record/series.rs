@@ -62,13 +62,13 @@ pub fn envelope(
 ) -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
     /// The bounds and sums of a column.
     #[derive(Clone, Copy)]
-    struct Column {
+    struct ColumnSums {
         low: f64,
         high: f64,
         sum: [f64; 2],
         count: f64,
     }
-    let empty = Column { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: [0.0; 2], count: 0.0 };
+    let empty = ColumnSums { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: [0.0; 2], count: 0.0 };
     let mut all = vec![empty; columns.max(1) + 1];
     let width = (right - left) / columns.max(1) as f64;
     let last = all.len() - 1;

@@ -9,7 +9,7 @@ use crate::io::graph_in_view::GraphInView;
 
 /// An action that takes the place of the present scene, and so asks first if it is not saved.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Replacement {
+pub enum SceneReplacement {
     /// A new scene.
     New,
     /// Opens a scene file.
@@ -106,7 +106,7 @@ pub enum Dialog {
     /// The scene has unsaved changes and something is about to replace it.
     Unsaved {
         /// The action that goes on once the user agrees.
-        then: Replacement,
+        then: SceneReplacement,
     },
     /// Keys and pointer.
     Help,

@@ -9,7 +9,7 @@ use cable_core::{Error, Scene, Solution, UnitSystem};
 
 use crate::record::recording::Recording;
 use crate::record::sample::Sample;
-use crate::record::sample_history::History;
+use crate::record::sample_history::SampleHistory;
 use crate::state::selection::Item;
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding
@@ -28,7 +28,7 @@ pub struct Live {
     /// Every answer since the last start, and which of them is on screen.
     pub recording: Recording,
     /// Tension and reactions against time since the last start.
-    pub history: History,
+    pub history: SampleHistory,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Option<ReopenedRun>,
     /// The run that the last restart ended, until the next one or another scene; or the run since,
@@ -77,7 +77,7 @@ impl Live {
     }
 
     /// Begins recording anew; returns what was recorded.
-    fn forget_run(&mut self) -> (Recording, History) {
+    fn forget_run(&mut self) -> (Recording, SampleHistory) {
         let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
         self.recording.looped = recording.looped;
         (recording, history)
@@ -159,7 +159,7 @@ pub struct ReopenedRun {
 #[derive(Debug)]
 pub struct EarlierRun {
     recording: Recording,
-    history: History,
+    history: SampleHistory,
     /// The command that ended it.
     pub cause: RestartCause,
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::record::plotted_quantity::Measure;
-use crate::state::dialog::{Dialog, Replacement};
+use crate::state::dialog::{Dialog, SceneReplacement};
 use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
 
@@ -60,7 +60,7 @@ pub struct Ui {
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
     /// The action that goes on once the scene is saved.
-    pub after_save: Option<Replacement>,
+    pub after_save: Option<SceneReplacement>,
     /// The dialog that comes back once the message over it is closed.
     pub after_message: Option<Dialog>,
     /// Files opened and saved last, the latest first.

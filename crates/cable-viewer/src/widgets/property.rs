@@ -9,7 +9,7 @@ use crate::widgets::slider::{self, SliderRange};
 
 /// The name, unit and usual values of a quantity.
 #[derive(Clone, Copy, Debug)]
-pub struct Quantity {
+pub struct PropertyQuantity {
     /// Its name on screen, found by tests.
     pub name: &'static str,
     /// The unit it is shown and typed in.
@@ -54,7 +54,7 @@ const RESET_WIDTH: f32 = 18.0;
 pub const NAME_WIDTH: f32 = 122.0;
 
 /// Draws the row; faults stand below it.
-pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> PropertyEdit {
+pub fn row(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance) -> PropertyEdit {
     let mut change = PropertyEdit::default();
     let mut fault = None;
     let spent = NAME_WIDTH + FIELD_WIDTH + RESET_WIDTH + 3.0 * 4.0;
@@ -108,7 +108,7 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> PropertyEdit
     change
 }
 
-fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut PropertyEdit) {
+fn slide(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, change: &mut PropertyEdit) {
     let si = quantity.unit.display().si;
     let rail = SliderRange { ends: quantity.usual.map(|v| v / si), logarithmic: quantity.logarithmic };
     let slid = slider::ui(ui, known.value / si, rail);
@@ -123,7 +123,7 @@ fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Prop
     });
 }
 
-fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool) -> bool {
+fn reset(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, typed_wrong: bool) -> bool {
     let differs = known.origin.as_ref().is_some_and(|(v, _)| *v != known.value) || typed_wrong;
     let response = icon::plain_button_if(differs, ui, Icon::Reset);
     field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
@@ -134,7 +134,7 @@ fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool
     response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
 }
 
-fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
+fn explanation(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance) {
     ui.set_max_width(300.0);
     ui.label(RichText::new(quantity.name).strong());
     ui.label(quantity.help);

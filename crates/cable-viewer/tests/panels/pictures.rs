@@ -129,7 +129,7 @@ fn compare_models() {
         let mut state = compared();
         let (model, feature) = (cable_core::Model::Catenary, Unsupported::Obstacle { arc_length_m: 4.894 });
         let why = SolveError::Unsupported { model, feature }.into();
-        let answers = vec![model_comparison::Answer { model, result: Err(why) }];
+        let answers = vec![model_comparison::ModelAnswer { model, result: Err(why) }];
         let scene = std::sync::Arc::new(state.document.scene.clone());
         state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
         state

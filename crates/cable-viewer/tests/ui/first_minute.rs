@@ -7,7 +7,7 @@ use cable_viewer::app::guidance::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, SceneCommand, ViewCommand};
 use cable_viewer::geometry::robot::robot_outline;
 use cable_viewer::state::Item;
-use cable_viewer::state::dialog::{Dialog, Replacement};
+use cable_viewer::state::dialog::{Dialog, SceneReplacement};
 use cable_viewer::state::tutorial_place::TutorialPlace;
 use cable_viewer::widgets::highlight;
 use egui::{Key, Vec2};
@@ -41,7 +41,7 @@ fn three_hints_stand_on_the_canvas_until_each_was_followed() {
     assert!(hints(&harness).is_empty());
     assert!(harness.query_by_label("Start here…").is_none(), "the whole line goes with the last hint");
     // Another scene does not bring them back.
-    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenCatalogue("tank".to_owned()))));
+    apply(&mut harness, Command::File(FileCommand::Discard(SceneReplacement::OpenCatalogue("tank".to_owned()))));
     assert!(harness.query_by_label("Scroll to zoom").is_none());
 }
 
@@ -95,7 +95,7 @@ fn guides_point_at_what_they_speak_of() {
     for (tutorial, guide) in TUTORIALS.iter().enumerate() {
         let mut harness = open_span();
         apply(&mut harness, Command::SetModel(cable_core::Model::Auto));
-        let begin = Replacement::OpenTutorial { tutorial, scene: guide.scene };
+        let begin = SceneReplacement::OpenTutorial { tutorial, scene: guide.scene };
         apply(&mut harness, Command::File(FileCommand::Discard(begin)));
         for (step, told) in guide.steps.iter().enumerate() {
             // The state that an earlier step would have made.

@@ -5,7 +5,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::app::guidance::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::state::dialog::Replacement;
+use cable_viewer::state::dialog::SceneReplacement;
 use cable_viewer::state::{AppState, Item};
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Order, Pos2};
@@ -181,7 +181,7 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
     // The first one, done.
     apply(
         &mut harness,
-        Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: 0, scene: TUTORIALS[0].scene })),
+        Command::File(FileCommand::Discard(SceneReplacement::OpenTutorial { tutorial: 0, scene: TUTORIALS[0].scene })),
     );
     let item = Item::Support { cable: 0, support: 1 };
     apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [9.0, 5.0] }));
@@ -214,7 +214,10 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
         apply(&mut harness, Command::SetModel(cable_core::Model::Auto));
         apply(
             &mut harness,
-            Command::File(FileCommand::Discard(Replacement::OpenTutorial { tutorial: k, scene: TUTORIALS[k].scene })),
+            Command::File(FileCommand::Discard(SceneReplacement::OpenTutorial {
+                tutorial: k,
+                scene: TUTORIALS[k].scene,
+            })),
         );
         harness.run_steps(3);
         assert_eq!(at(&harness), Some(0), "{}", TUTORIALS[k].title);

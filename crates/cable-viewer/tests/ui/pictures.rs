@@ -173,7 +173,7 @@ fn robot_light() {
 
 #[test]
 fn safe_reach_and_path_dark() {
-    use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
+    use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace, Trip};
     let mut state = solved(catalog::robot_drive());
     // By hand: what a search would find depends on the solver.
     let place = |k: u32| {
@@ -186,7 +186,7 @@ fn safe_reach_and_path_dark() {
     let scene = std::sync::Arc::new(state.document.scene.clone());
     let maps = cable_viewer::jobs::safe_reach::ReachMaps::Line(std::sync::Arc::new(map));
     state.analysis.safe_reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
-    state.analysis.safe_reach.choice.round_trip = true;
+    state.analysis.safe_reach.choice.trip = Trip::ThereAndBack;
     state.selection.selected = Some(Item::PathLeg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
 }

@@ -7,7 +7,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
 use cable_viewer::jobs::safe_reach::{
-    Outcome, Progress, ROBOT_PLACES, ReachMaps, ReachQuery, ReachSubject, SafeReachOptions, SafeReachState, start,
+    Outcome, Progress, ROBOT_PLACES, ReachMaps, ReachSubject, SafeReachOptions, SafeReachQuery, SafeReachState, start,
 };
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
@@ -57,7 +57,7 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     let settings = cable_core::Settings::default();
     let corners_m = [[9.9, 0.0], [10.1, 0.0]];
     let job = start(
-        ReachQuery { scene: scene.clone(), now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 },
+        SafeReachQuery { scene: scene.clone(), now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 },
         || {},
     );
     let mut found: Option<Outcome> = None;
@@ -86,7 +86,7 @@ fn a_search_that_is_dropped_ends() {
     let theirs = Arc::clone(&heard);
     let (scene, settings) = (catalog::robot_drive(), cable_core::Settings::default());
     let corners_m = [[0.0, 0.0], [20.0, 0.0]];
-    let order = ReachQuery { scene, now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 };
+    let order = SafeReachQuery { scene, now: None, settings, moved: ReachSubject::Robot, corners_m, across: 8 };
     let job = start(order, move || {
         theirs.fetch_add(1, Ordering::Relaxed);
         std::thread::sleep(Duration::from_millis(20));
@@ -143,7 +143,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     assert!(words().contains("safe reach, there: Below service"), "{}", words());
     harness.get_by_label_contains("Below breaking");
     click(&mut harness, "There and back");
-    assert!(reach(&harness).choice.round_trip);
+    assert_eq!(reach(&harness).choice.trip, Trip::ThereAndBack);
     click(&mut harness, "Clear");
     assert!(reach(&harness).found().is_none());
     assert!(harness.query_by_label("There and back").is_none(), "nothing to show");
@@ -244,7 +244,7 @@ fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank()
 /// counted by their length, and what was found so far read like the answer.
 #[test]
 fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_be() {
-    let ask = ReachQuery {
+    let ask = SafeReachQuery {
         scene: catalog::tank_robot(),
         now: None,
         settings: cable_core::Settings::default(),

@@ -7,7 +7,7 @@ use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
 use cable_viewer::render::colour::{CableQuantity, ColourMap};
-use cable_viewer::state::dialog::Replacement;
+use cable_viewer::state::dialog::SceneReplacement;
 use cable_viewer::state::{AppState, Item};
 use egui::Vec2;
 use egui_kittest::Harness;
@@ -184,7 +184,10 @@ fn s05_a_cable_that_crosses_itself_is_named_and_can_be_made_to_stop_on_itself() 
     assert_eq!(state(&harness).live.snapshot.error, None);
     assert!(warned(&harness, WarningKind::Loop), "{:?}", answer(&harness).warnings);
     harness.get_by_label_contains("Crosses itself");
-    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenCatalogue("hanging-span".to_owned()))));
+    apply(
+        &mut harness,
+        Command::File(FileCommand::Discard(SceneReplacement::OpenCatalogue("hanging-span".to_owned()))),
+    );
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
     crate::select(&mut harness, Item::Cable(0));

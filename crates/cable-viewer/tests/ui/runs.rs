@@ -12,7 +12,7 @@ use cable_viewer::record::kept_run::KeptRun;
 use cable_viewer::record::plotted_quantity::Measure;
 use cable_viewer::record::sample::Sample;
 use cable_viewer::state::AppState;
-use cable_viewer::state::dialog::Replacement;
+use cable_viewer::state::dialog::SceneReplacement;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -39,7 +39,7 @@ fn s11_a_run_is_opened_again_and_nothing_is_lost() {
     let scene = state(&harness).document.scene.clone();
 
     let mut harness = open_span();
-    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenRun(run))));
+    apply(&mut harness, Command::File(FileCommand::Discard(SceneReplacement::OpenRun(run))));
     harness.run_steps(3);
     assert_eq!(state(&harness).ui.dialog, None);
     assert_eq!(state(&harness).document.scene, scene);
@@ -78,7 +78,7 @@ fn s16_a_saved_run_is_compared_with_its_model_and_its_cost() {
     let [first, again] = ["first", "again"].map(|name| folder.path().join(name));
     apply(&mut harness, Command::File(FileCommand::SaveRun(first.clone())));
     // Opened, it is what it was, and saved again as well.
-    apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenRun(first))));
+    apply(&mut harness, Command::File(FileCommand::Discard(SceneReplacement::OpenRun(first))));
     harness.run_steps(3);
     assert_eq!(state(&harness).live.recording.solve_wall_s, Some(took_s));
     apply(&mut harness, Command::File(FileCommand::SaveRun(again.clone())));

@@ -348,7 +348,7 @@ fn a_picture_drawn_in_parts_looks_as_if_drawn_at_once() {
 fn speed_of_graphs() {
     use cable_viewer::record::kept_run::KeptRun;
     use cable_viewer::record::sample::Sample;
-    use cable_viewer::record::sample_history::History;
+    use cable_viewer::record::sample_history::SampleHistory;
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
         let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();
@@ -374,7 +374,7 @@ fn speed_of_graphs() {
     {
         let state = &mut harness.state_mut().state;
         let solution = state.live.snapshot.solution.clone().expect("an answer");
-        (state.analysis.references, state.live.history) = (Vec::new(), History::default());
+        (state.analysis.references, state.live.history) = (Vec::new(), SampleHistory::default());
         (0..live).for_each(|k| state.live.history.push(sample(k)));
         if held > 0 {
             let samples: Vec<Sample> = (0..held).map(sample).collect();

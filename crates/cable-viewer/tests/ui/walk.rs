@@ -9,7 +9,7 @@ use cable_core::Scene;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::state::dialog::{Dialog, Replacement};
+use cable_viewer::state::dialog::{Dialog, SceneReplacement};
 use cable_viewer::state::{Item, TensionMarker};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
@@ -122,7 +122,7 @@ fn walk_a_span() {
         Dialog::Feedback { answers: cable_viewer::io::feedback::Answers::default(), path: "feedback.csv".to_owned() },
         Dialog::SaveRun { path: "run".to_owned() },
         Dialog::Recover { scene: Box::new(catalog::tank()) },
-        Dialog::Unsaved { then: Replacement::Quit },
+        Dialog::Unsaved { then: SceneReplacement::Quit },
         Dialog::OpenRun { path: "run".to_owned(), hold: true },
     ]
     .into_iter()

@@ -1,6 +1,9 @@
 //! These tests are wishes and test cases of the users that no other file tells: each test is named
 //! after its row.
 
+#[path = "../../../cable-core/tests/dice/mod.rs"]
+mod dice;
+
 use cable_core::Model;
 use cable_core::scene::catalog;
 use cable_core::scene::preset::cable_presets;
@@ -8,6 +11,7 @@ use cable_core::solution::WarningKind;
 use cable_viewer::canvas::layers::grid;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::Item;
+use dice::MmixDice;
 use egui::Vec2;
 use egui_kittest::kittest::{NodeT, Queryable};
 
@@ -130,20 +134,14 @@ fn u15_density_is_per_metre_and_presets_say_where_theirs_is_from() {
     }
 }
 
-/// A generator of its own: the same edits on every run.
-fn next(seed: &mut u64) -> f64 {
-    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*seed >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 #[test]
 fn u16_whatever_is_edited_the_window_answers_or_says_why() {
     let mut harness = open(catalog::over_beam());
-    let mut seed = 7;
+    let mut dice = MmixDice(7);
     for k in 0..60 {
         let sizes = [1e-6, 0.3, 1.0, 3.0, 1e6, 0.0, -1.0, f64::NAN];
-        let factor = sizes[(next(&mut seed) * 8.0) as usize];
-        let which = (next(&mut seed) * 11.0) as usize;
+        let factor = sizes[(dice.unit() * 8.0) as usize];
+        let which = (dice.unit() * 11.0) as usize;
         let property = &cable_viewer::panels::cable::property::PROPERTIES[which];
         set_cable(&mut harness, |c| (property.set)(c, (property.get)(c) * factor));
         if k % 4 == 0 {
@@ -227,10 +225,10 @@ fn t03_a_force_diagram_follows_the_load() {
 fn t04_fast_moves_of_the_camera_neither_lose_it_nor_touch_the_scene() {
     let mut harness = open(catalog::tank());
     let scene = state(&harness).document.scene.clone();
-    let mut seed = 3;
+    let mut dice = MmixDice(3);
     for _ in 0..200 {
-        let by = Vec2::new(next(&mut seed) as f32 - 0.5, next(&mut seed) as f32 - 0.5) * 400.0;
-        let factor = (4.0 * (next(&mut seed) - 0.5)).exp();
+        let by = Vec2::new(dice.unit() as f32 - 0.5, dice.unit() as f32 - 0.5) * 400.0;
+        let factor = (4.0 * (dice.unit() - 0.5)).exp();
         let ctx = harness.ctx.clone();
         let about_m = state(&harness).view.camera.centre_m;
         let commands = vec![Command::View(ViewCommand::Pan(by)), Command::View(ViewCommand::Zoom { about_m, factor })];

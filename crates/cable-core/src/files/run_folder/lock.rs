@@ -5,8 +5,8 @@ use std::io;
 use std::path::Path;
 
 use super::super::{FileError, RunFolderFault};
-use super::disk::is_plain_file;
-use super::names::LOCK_NAME;
+use super::atomic_write::is_plain_file;
+use super::file_names::LOCK_NAME;
 
 /// Locks a folder for one run; the file is unlocked when it is closed. None where the file system
 /// knows no locks.

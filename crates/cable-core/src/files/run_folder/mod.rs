@@ -2,16 +2,16 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `names.rs` | file names of a run: manifest, scene, tables, lock |
+//! | `file_names.rs` | file names of a run: manifest, scene, tables, lock |
 //! | `table_file.rs` | one table on the disk: header, appended rows, rewind when rows do not fit |
-//! | `disk.rs` | writing a whole file atomically: temporary file, sync, rename |
+//! | `atomic_write.rs` | writing a whole file atomically: temporary file, sync, rename |
 //! | `lock.rs` | file lock that lets one run at a time write into a folder |
 //! | `ownership.rs` | manifest and file hashes checked: foreign or changed files are not touched |
 //! | `replacement.rs` | a complete run put in the place of an earlier one, resumable after a stop |
 
-mod disk;
+mod atomic_write;
+mod file_names;
 mod lock;
-mod names;
 mod ownership;
 mod replacement;
 mod table_file;
@@ -20,9 +20,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use self::disk::{put, remove_files};
+use self::atomic_write::{put, remove_files};
+use self::file_names::RUN_FILES;
 use self::lock::lock;
-use self::names::RUN_FILES;
 use self::ownership::{check_own, has_instant, look};
 use self::replacement::{new_unfinished, remove_unfinished, replace_if_begun};
 use self::table_file::TableFile;
@@ -33,8 +33,8 @@ use crate::record::{
 use crate::scene::Scene;
 use crate::solution::Solution;
 
-pub(super) use self::disk::is_plain_file;
-pub(super) use self::names::{MANIFEST_NAME, SCENE_NAME, TABLE_NAMES};
+pub(super) use self::atomic_write::is_plain_file;
+pub(super) use self::file_names::{MANIFEST_NAME, SCENE_NAME, TABLE_NAMES};
 pub(super) use self::ownership::read_manifest;
 pub(super) use self::replacement::successor;
 

@@ -5,8 +5,8 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::super::{FileError, RunFolderFault, read_limited};
-use super::disk::{exists, is_plain_file, temporary};
-use super::names::{LOCK_NAME, MANIFEST_NAME, RUN_FILES, TABLE_NAMES};
+use super::atomic_write::{exists, is_plain_file, temporary};
+use super::file_names::{LOCK_NAME, MANIFEST_NAME, RUN_FILES, TABLE_NAMES};
 use crate::record::{FileRecord, Fingerprint, MANIFEST_HEAD, Manifest, has_rows};
 
 /// Largest manifest read, bytes: one has below 2 kB. More would only cost memory.

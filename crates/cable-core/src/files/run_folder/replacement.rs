@@ -6,9 +6,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::super::{FileError, RunFolderFault};
-use super::disk::{is_plain_file, remove_files, sync_folder, temporary};
+use super::atomic_write::{is_plain_file, remove_files, sync_folder, temporary};
+use super::file_names::{LOCK_NAME, MANIFEST_NAME, RUN_FILES};
 use super::lock::lock;
-use super::names::{LOCK_NAME, MANIFEST_NAME, RUN_FILES};
 use super::ownership::{check_file, check_own, look, read_manifest};
 
 use crate::record::{Manifest, RunStatus};

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::disk::{remove_if_present, write_new};
+use super::atomic_write::{remove_if_present, write_new};
 use crate::record::{Fingerprint, Pages};
 
 /// A table of a run on the disk.
@@ -20,7 +20,7 @@ pub(super) struct TableFile {
 
 /// The content of a [`TableFile`] at some moment.
 #[derive(Clone)]
-pub(super) struct Mark {
+pub(super) struct ContentMark {
     bytes: u64,
     hash: Fingerprint,
     pages: Pages,
@@ -53,13 +53,13 @@ impl TableFile {
         }
     }
 
-    pub(super) fn mark(&self) -> Mark {
-        Mark { bytes: self.bytes, hash: self.hash, pages: self.pages }
+    pub(super) fn mark(&self) -> ContentMark {
+        ContentMark { bytes: self.bytes, hash: self.hash, pages: self.pages }
     }
 
     /// Takes back what was written since.
-    pub(super) fn rewind(&mut self, mark: Mark) {
-        let Mark { bytes, hash, pages } = mark;
+    pub(super) fn rewind(&mut self, mark: ContentMark) {
+        let ContentMark { bytes, hash, pages } = mark;
         // If even that fails, the table ends within a line, and readers ignore that line.
         let _ = match &self.file {
             Some(file) if bytes > 0 => file.set_len(bytes),

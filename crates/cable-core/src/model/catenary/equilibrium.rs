@@ -1,8 +1,8 @@
 //! This module solves for the equilibrium: the slipping pulleys, the material at pulleys, and the
 //! tangent points on wheels.
 
-use super::layout::SupportLayout;
 use super::sliding_problem::{BalanceForm, PulleyMode, SlidingProblem, SpanSolutions, WheelArc};
+use super::supports_and_loads::SupportLayout;
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::linalg::{TridiagonalRow as Row, solve_tridiagonal};
 use crate::math::larger;

@@ -1,8 +1,8 @@
 //! This module makes the first guess: straight lines from wheel to wheel, with the material spread
 //! evenly along them.
 
-use super::layout::{SupportLayout, SupportNode, angle_of};
 use super::sliding_problem::WheelArc;
+use super::supports_and_loads::{SupportLayout, SupportNode, angle_of};
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};

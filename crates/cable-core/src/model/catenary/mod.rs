@@ -3,7 +3,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `layout.rs` | supports, wheels and loads at an instant |
+//! | `supports_and_loads.rs` | supports, wheels and loads at an instant |
 //! | `first_guess.rs` | straight ways from wheel to wheel, material spread evenly along them |
 //! | `sliding_problem.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
 //! | `wheel.rs` | tension and material round a wheel, with weight and friction on the arc |
@@ -19,11 +19,11 @@
 
 mod equilibrium;
 mod first_guess;
-mod layout;
 mod multiple_equilibria;
 pub(super) mod results;
 mod settings;
 mod sliding_problem;
+mod supports_and_loads;
 mod wheel;
 
 use crate::numerics::{HalvedSteps, MAX_HALVINGS};
@@ -31,11 +31,11 @@ use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, SlidingStart, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
-use self::layout::{SupportLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::results::{report, straight};
 pub use self::settings::CatenarySettings;
 use self::sliding_problem::PulleyMode;
+use self::supports_and_loads::{SupportLayout, unsupported};
 use super::tension_gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};

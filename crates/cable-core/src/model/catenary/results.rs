@@ -2,8 +2,8 @@
 //! support reactions.
 
 use super::equilibrium::{Equilibrium, required_friction};
-use super::layout::SupportLayout;
 use super::sliding_problem::SlidingProblem;
+use super::supports_and_loads::SupportLayout;
 use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
@@ -33,7 +33,7 @@ const MOST_DEPTH: u32 = 12;
 
 /// A point of the answer.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model) struct Point {
+pub(in crate::model) struct ShapePoint {
     pub arc_length: f64,
     pub at: Vec2,
     /// Internal force, N.
@@ -60,7 +60,7 @@ impl<'a> Nodes<'a> {
     }
 
     /// Adds a point.
-    pub fn push(&mut self, p: Point) {
+    pub fn push(&mut self, p: ShapePoint) {
         let tension = p.force.norm();
         let strain = tension / self.problem.axial_stiffness;
         // At the point where a span meets a wheel, both have rounded the same arc length
@@ -100,7 +100,7 @@ impl<'a> Nodes<'a> {
             // A fold is a point without tension: its direction turns at once, and no number says
             // how sharply.
             let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
-            Point { arc_length: s0 + s, at: at + c.position_at(s), force, curvature }
+            ShapePoint { arc_length: s0 + s, at: at + c.position_at(s), force, curvature }
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
@@ -108,7 +108,7 @@ impl<'a> Nodes<'a> {
         self.push(b);
     }
 
-    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: [Point; 2], s0: f64, s1: f64, depth: u32) {
+    fn refine(&mut self, point: &impl Fn(f64) -> ShapePoint, ends: [ShapePoint; 2], s0: f64, s1: f64, depth: u32) {
         let s = 0.5 * (s0 + s1);
         let middle = point(s);
         let off = ((ends[0].at + ends[1].at) * 0.5 - middle.at).norm();
@@ -174,7 +174,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibriu
         let psi = arc.turn * i as f64 / parts as f64;
         let passed = traverse_wheel(&chain, a, before.norm(), arc.arrive, psi, m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
-        nodes.push(Point {
+        nodes.push(ShapePoint {
             arc_length: from + passed.material,
             at: a.touch(arc.arrive - a.facing * psi),
             force: perp(a.touch(arc.arrive - a.facing * psi) - a.at) * (-a.facing / a.radius * passed.tension),

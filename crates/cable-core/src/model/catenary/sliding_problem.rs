@@ -15,7 +15,7 @@
 //! Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
-use super::layout::{SupportLayout, SupportNode, angle_of};
+use super::supports_and_loads::{SupportLayout, SupportNode, angle_of};
 use super::wheel::traverse_wheel;
 use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};

@@ -14,7 +14,7 @@
 //! for points; in between it misplaces material by at most (ΔT/EA)·(arc length), because the
 //! distribution of friction along an arc that has not slid is unknown.
 
-use super::layout::{SupportNode, direction};
+use super::supports_and_loads::{SupportNode, direction};
 use crate::catenary::Chain;
 use crate::math::perp;
 

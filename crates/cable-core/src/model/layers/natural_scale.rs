@@ -13,7 +13,7 @@ use crate::math::Vec2;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{BreakPlace, Inertia, Mechanics, StepReport};
 use crate::problem::Problem;
-use crate::scene::similarity::Similarity;
+use crate::scene::froude_scaling::Similarity;
 use crate::solution::{CableSolution, Energy, ModelReason, Warning};
 use crate::state::State;
 

@@ -18,7 +18,7 @@ use crate::model::mass_spring::preview_choice::is_preview;
 use crate::model::mass_spring::results;
 use crate::model::mass_spring::settings::Tuning;
 use crate::model::mass_spring::xpbd::preview;
-use crate::model::tension_gauge::TensionGauge;
+use crate::model::tension_gauge::{TensionBefore, TensionGauge};
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -231,8 +231,8 @@ impl ChainModel {
         let end_s = self.chain.clock.time_s + dt_s;
         self.chain.clock.due_s = end_s;
         if inertia == Inertia::Dynamic && gauge.asks(self.chain.clock.time_s) {
-            let at_rest = self.chain.mesh.velocity.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.chain.clock.time_s, at_rest, &self.chain.mesh.arc_length, |i| {
+            let before = TensionBefore::of_motion(&self.chain.mesh.velocity);
+            gauge.begin(self.chain.clock.time_s, before, &self.chain.mesh.arc_length, |i| {
                 tension::at_node(&self.chain.mesh, i)
             });
         }

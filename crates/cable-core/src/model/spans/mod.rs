@@ -50,7 +50,7 @@ use crate::model::auxiliary_weight::slack_without_weight;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::results::Report;
+use crate::model::spans::results::SpansAnswer;
 use crate::model::spans::reversal::Reversal;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, Failure, tension_loss};
 use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
@@ -91,7 +91,7 @@ pub struct SpansModel {
     /// The start and the goal of a step, and an instant between them.
     instants: [BoundaryConditions; 3],
     /// The report while there is no cable equilibrium.
-    shown: Report,
+    shown: SpansAnswer,
 }
 
 impl SpansModel {
@@ -130,7 +130,7 @@ impl SpansModel {
             ..Node::default()
         };
         let nodes = points.iter().enumerate().map(node).collect();
-        let shown = Report { nodes, ..Report::default() };
+        let shown = SpansAnswer { nodes, ..SpansAnswer::default() };
         let (workspace, instants) = (Workspace::default(), <[BoundaryConditions; 3]>::default());
         let (histories, dragged) = (settings.histories, vec![None; n]);
         Ok(Self {
@@ -243,7 +243,7 @@ impl SpansModel {
     }
 
     /// The report of the present state.
-    fn present_report(&self) -> Report {
+    fn present_report(&self) -> SpansAnswer {
         match &self.cable_equilibrium {
             Some(cable_equilibrium) => {
                 let report = results::report(&self.layout, cable_equilibrium);
@@ -627,7 +627,7 @@ impl Mechanics for SpansModel {
     }
 
     fn solution(&self) -> CableSolution {
-        let Report { nodes, supports, contacts } = self.present_report();
+        let SpansAnswer { nodes, supports, contacts } = self.present_report();
         let name = self.problem.cable.name.clone();
         let answer = CableSolution { name, nodes, supports, contacts, ..CableSolution::default() };
         answer.rounded(&self.problem)

@@ -4,7 +4,7 @@ use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::auxiliary_weight::remove_auxiliary_weight;
-use crate::model::catenary::results::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, ShapePoint};
 use crate::model::spans::boundary::{BoundaryPoint, CachedPiece, ContactPath, Mode, SegmentCursor, TensionProfile};
 use crate::model::spans::contact::{load_balance, slack_pocket};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, Contact, EndCondition, SolveContext};
@@ -22,14 +22,14 @@ const THREE_POINT_ARC: f64 = 0.1;
 
 /// All data of an answer.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct Report {
+pub(in crate::model::spans) struct SpansAnswer {
     pub nodes: SharedNodes,
     pub supports: Vec<SupportReaction>,
     pub contacts: Vec<ContactReport>,
 }
 
 /// Makes the report of a cable equilibrium.
-pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> Report {
+pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> SpansAnswer {
     let context = &cable_equilibrium.context;
     let mut nodes = Nodes::new(&layout.problem, greatest_tension(cable_equilibrium));
     nodes.turned = layout.is_reversed();
@@ -44,7 +44,7 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
         remove_auxiliary_weight(&mut nodes, &mut supports, hint);
         contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
     }
-    Report { nodes: nodes.into(), supports, contacts }
+    SpansAnswer { nodes: nodes.into(), supports, contacts }
 }
 
 /// The greatest tension at an end of a span, a contact or a loose section, N.
@@ -199,7 +199,7 @@ fn contact_nodes(nodes: &mut Nodes<'_>, contact_path: &ContactPath<'_>, c: &Cont
     let mut push = |place: &BoundaryPoint, (tension, s): (f64, f64)| {
         let curvature =
             if place.stretch > 0.0 { place.turn * contact_path.law.stretch(tension) / place.stretch } else { 0.0 };
-        nodes.push(Point { arc_length: s, at: place.at, force: place.tangent * tension, curvature });
+        nodes.push(ShapePoint { arc_length: s, at: place.at, force: place.tangent * tension, curvature });
     };
     push(&contact_path.place(c.ends.place[0]), (c.ends.tension[0], c.ends.material[0]));
     for stretch in stretches {
@@ -231,7 +231,7 @@ fn load_nodes(
         let ends = (j + side == 0 || j + side == section.contacts.len()) && !section.has_span(j + side);
         let along = || place.tangent * c.ends.tension[side];
         let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
-        nodes.push(Point { arc_length: c.ends.material[side], at: place.at, force, curvature: 0.0 });
+        nodes.push(ShapePoint { arc_length: c.ends.material[side], at: place.at, force, curvature: 0.0 });
     }
 }
 

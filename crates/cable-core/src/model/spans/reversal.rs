@@ -5,7 +5,7 @@
 //! *upper* end, and the solution is reversed afterwards.
 
 use crate::math::Vec2;
-use crate::model::spans::results::Report;
+use crate::model::spans::results::SpansAnswer;
 use crate::model::spans::section::Failure;
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
@@ -85,14 +85,14 @@ impl Reversal<'_> {
     }
 
     /// Reverses a report.
-    pub fn report(&self, report: &Report) -> Report {
+    pub fn report(&self, report: &SpansAnswer) -> SpansAnswer {
         let support = |r: &SupportReaction| SupportReaction {
             arc_length_m: self.s(r.arc_length_m),
             tension_before_n: r.tension_after_n,
             tension_after_n: r.tension_before_n,
             ..r.clone()
         };
-        Report {
+        SpansAnswer {
             nodes: self.nodes(&report.nodes),
             supports: report.supports.iter().rev().map(support).collect(),
             contacts: report.contacts.iter().rev().map(|c| self.contact(c)).collect(),

@@ -4,10 +4,29 @@
 //! 1/τ ∫ T(s, t') dt' over t − τ … t
 //! ```
 
+use crate::math::Vec2;
+
 /// Number of evaluations of the mean in its averaging time. For a triangular jerk of that duration
 /// the greatest mean is missed by at most 1/(4·4²) of its height, 1.6 %; with 8 evaluations by 0.4
 /// %, and a step of `fem`, which is as long as that time, costs 3 % more.
 const LOOKS_PER_MEAN: usize = 4;
+
+/// The tension of a cable before the time at which a gauge begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TensionBefore {
+    /// That of the time itself: the cable was at rest.
+    Same,
+    /// None, because it is not known.
+    Zero,
+}
+
+impl TensionBefore {
+    /// The tension before an instant at which the nodes have these velocities (m/s).
+    #[must_use]
+    pub fn of_motion(velocities: &[Vec2]) -> Self {
+        if velocities.iter().all(|v| *v == Vec2::zeros()) { Self::Same } else { Self::Zero }
+    }
+}
 
 /// The running mean of the tension at the points of a gauge.
 #[derive(Clone, Debug, Default)]
@@ -37,12 +56,14 @@ impl IncubationMean {
         &self.mean
     }
 
-    /// Begins at a time (s) with tensions (N): with the same tensions before if the cable was
-    /// `at_rest`, else with none before.
-    pub fn begin(&mut self, time_s: f64, now: &[f64], at_rest: bool) {
+    /// Begins at a time (s) with tensions (N) that followed those `before`.
+    pub fn begin(&mut self, time_s: f64, now: &[f64], before: TensionBefore) {
         let part_s = self.over_s / LOOKS_PER_MEAN as f64;
         self.look = if self.over_s > 0.0 { (time_s / part_s).floor() } else { 0.0 };
-        let mean = if at_rest { 1.0 } else { 0.0 };
+        let mean = match before {
+            TensionBefore::Same => 1.0,
+            TensionBefore::Zero => 0.0,
+        };
         self.mean.clear();
         self.mean.extend(now.iter().map(|t| t * mean));
         self.sums.clear();

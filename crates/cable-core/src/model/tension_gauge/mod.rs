@@ -20,6 +20,7 @@
 mod incubation_mean;
 mod peaks;
 
+pub use incubation_mean::TensionBefore;
 pub use peaks::Limit;
 
 use crate::solution::{TensionPeak, TensionPeaks};
@@ -135,9 +136,9 @@ impl TensionGauge {
         self.on && !((self.time_s - time_s * self.scale[1]).abs() <= SAME_TIME_S)
     }
 
-    /// Begins a history at a time (s): with the present tension before if the cable was `at_rest`,
-    /// else with none before. Arc lengths of nodes in m, tensions in N.
-    pub fn begin(&mut self, time_s: f64, at_rest: bool, arcs: &[f64], tension: impl Fn(usize) -> f64) {
+    /// Begins a history at a time (s), after the tension `before`. Arc lengths of nodes in m,
+    /// tensions in N.
+    pub fn begin(&mut self, time_s: f64, before: TensionBefore, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
         }
@@ -149,7 +150,7 @@ impl TensionGauge {
         self.note(time_s, arcs, tension);
         self.time_s = self.next_s;
         std::mem::swap(&mut self.now, &mut self.next);
-        self.mean.begin(self.time_s, &self.now, at_rest);
+        self.mean.begin(self.time_s, &self.now, before);
         self.next.resize(self.now.len(), 0.0);
     }
 

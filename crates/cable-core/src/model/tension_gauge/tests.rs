@@ -8,7 +8,7 @@ const OVER_S: f64 = 4e-3;
 fn told(over_s: f64, limit: Limit, h: f64, end_s: f64, tension: impl Fn(f64) -> f64) -> TensionGauge {
     let mut gauge = TensionGauge::over(over_s);
     let arcs = [0.0, 0.5, 1.0];
-    gauge.begin(0.0, true, &arcs, |_| tension(0.0));
+    gauge.begin(0.0, TensionBefore::Same, &arcs, |_| tension(0.0));
     gauge.watch([limit]);
     for k in 1..=(end_s / h).round() as u32 {
         let t = h * f64::from(k);
@@ -60,7 +60,7 @@ fn means_are_of_material_points() {
     let mut gauge = TensionGauge::over(OVER_S);
     let along = |s: f64| 100.0 + 50.0 * s;
     let first = [0.0, 1.0, 2.0, 4.0];
-    gauge.begin(0.0, false, &first, |k| along(first[k]));
+    gauge.begin(0.0, TensionBefore::Zero, &first, |k| along(first[k]));
     gauge.watch([Limit::default()]);
     for k in 1..200 {
         let s = 1.0 + 0.004 * f64::from(k);
@@ -74,7 +74,7 @@ fn means_are_of_material_points() {
     }
     // Not at rest before: what was not seen does not count.
     let mut young = TensionGauge::over(OVER_S);
-    young.begin(0.0, false, &[0.0, 1.0], |_| 100.0);
+    young.begin(0.0, TensionBefore::Zero, &[0.0, 1.0], |_| 100.0);
     young.watch([Limit::default()]);
     young.note(0.5 * OVER_S, &[0.0, 1.0], |_| 100.0);
     young.keep();
@@ -84,7 +84,7 @@ fn means_are_of_material_points() {
 #[test]
 fn a_step_that_is_discarded_does_not_count() {
     let mut gauge = TensionGauge::over(OVER_S);
-    gauge.begin(1.0, true, &[0.0, 1.0], |_| 10.0);
+    gauge.begin(1.0, TensionBefore::Same, &[0.0, 1.0], |_| 10.0);
     gauge.watch([Limit::default()]);
     gauge.note(1.001, &[0.0, 1.0], |_| 1e6);
     gauge.note(1.0005, &[0.0, 1.0], |_| 11.0);
@@ -98,7 +98,7 @@ fn a_step_that_is_discarded_does_not_count() {
 fn a_copy_is_gauged_in_the_lengths_and_times_of_the_cable() {
     let mut gauge = TensionGauge::over(OVER_S);
     gauge.of_copy([4.0, 2.0]);
-    gauge.begin(0.0, true, &[0.0, 4.0], |_| 0.0);
+    gauge.begin(0.0, TensionBefore::Same, &[0.0, 4.0], |_| 0.0);
     gauge.watch([breaks_at(100.0)]);
     for k in 1..=100 {
         let t = 0.02 * f64::from(k);

@@ -123,9 +123,9 @@ fn plain(expected: &dyn Expected) -> String {
 }
 
 /// A deserialiser over a whole document.
-pub(super) struct Document<'a>(pub(super) &'a DeTable<'a>, pub(super) Range<usize>);
+pub(super) struct DocumentDeserializer<'a>(pub(super) &'a DeTable<'a>, pub(super) Range<usize>);
 
-impl<'de> Deserializer<'de> for Document<'de> {
+impl<'de> Deserializer<'de> for DocumentDeserializer<'de> {
     type Error = DeserializeError;
 
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, DeserializeError> {

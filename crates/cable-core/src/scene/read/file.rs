@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::deserialize::{DeserializeError, Document};
+use super::deserialize::{DeserializeError, DocumentDeserializer};
 use super::key_path::Path;
 use super::text_position::{placed, position};
 use crate::error::{DocumentFault, SceneError, SceneFault};
@@ -40,7 +40,7 @@ impl Scene {
         };
         let table = document.get_ref();
         check_version(table).map_err(|e| placed(e, text, table))?;
-        let scene = Self::deserialize(Document(table, document.span())).map_err(refused)?;
+        let scene = Self::deserialize(DocumentDeserializer(table, document.span())).map_err(refused)?;
         scene.validate().map_err(|e| placed(e, text, table))?;
         Ok(scene)
     }

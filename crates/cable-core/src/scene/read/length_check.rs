@@ -1,7 +1,7 @@
 //! A cable is refused if it is too short for the straight way through its supports.
 
-use super::checks::CheckResult;
 use super::key_path::Path;
+use super::number_and_name_checks::CheckResult;
 use crate::error::SceneFault;
 use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Scene, Support, SupportKind};

@@ -1,8 +1,8 @@
 //! The rules of supports say which keys belong to which kind, and where along the cable each kind
 //! may sit.
 
-use super::checks::{CheckResult, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
 use super::key_path::Path;
+use super::number_and_name_checks::{CheckResult, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
 use super::range;
 use crate::error::{DocumentFault, SceneFault};
 use crate::scene::{Cable, Scene, Support, SupportKind};

@@ -4,10 +4,10 @@
 //! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is
 //! unusual.
 
-use super::checks::{
+use super::key_path::Path;
+use super::number_and_name_checks::{
     CheckResult, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
 };
-use super::key_path::Path;
 use super::range;
 use super::self_touch::{LineSelfTouch, first_self_touch};
 use super::{length_check, support_rules};

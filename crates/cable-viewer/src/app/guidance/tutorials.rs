@@ -13,11 +13,11 @@ pub struct Tutorial {
     /// Short id of its scene in the catalogue.
     pub scene: &'static str,
     /// The things to do, one after the other.
-    pub steps: &'static [Step],
+    pub steps: &'static [TutorialStep],
 }
 
 /// A thing to do.
-pub struct Step {
+pub struct TutorialStep {
     /// In words.
     pub text: &'static str,
     /// True once the step is done; None: the step is only read.
@@ -28,7 +28,7 @@ pub struct Step {
 
 /// Returns the step at a place.
 #[must_use]
-pub fn step(place: TutorialPlace) -> Option<&'static Step> {
+pub fn step(place: TutorialPlace) -> Option<&'static TutorialStep> {
     TUTORIALS.get(place.tutorial)?.steps.get(place.step)
 }
 
@@ -38,12 +38,12 @@ pub fn open(tutorial: usize) -> FileCommand {
     FileCommand::OpenTutorial { tutorial, scene: TUTORIALS.get(tutorial).map_or("", |t| t.scene) }
 }
 
-const fn act(points_at: &'static str, text: &'static str, done: fn(&AppState) -> bool) -> Step {
-    Step { text, done: Some(done), points_at }
+const fn act(points_at: &'static str, text: &'static str, done: fn(&AppState) -> bool) -> TutorialStep {
+    TutorialStep { text, done: Some(done), points_at }
 }
 
-const fn read(points_at: &'static str, text: &'static str) -> Step {
-    Step { text, done: None, points_at }
+const fn read(points_at: &'static str, text: &'static str) -> TutorialStep {
+    TutorialStep { text, done: None, points_at }
 }
 
 fn changed(state: &AppState) -> bool {

@@ -113,12 +113,15 @@ pub fn at(answer: &CableSolution, s: f64) -> Option<Node> {
 }
 
 /// A piece of band for the legend.
-pub fn sample(painter: &Painter, palette: &Palette, rect: Rect, holds: bool) {
-    if holds {
-        painter.rect_filled(rect, 0.0, palette.normal);
-    } else {
-        let line = Stroke::new(EDGE / 2.0, palette.friction);
-        painter.rect(rect, 0.0, palette.background, line, StrokeKind::Inside);
+pub fn sample(painter: &Painter, palette: &Palette, rect: Rect, state: ContactState) {
+    match state {
+        ContactState::Stick => {
+            painter.rect_filled(rect, 0.0, palette.normal);
+        }
+        ContactState::Slip => {
+            let line = Stroke::new(EDGE / 2.0, palette.friction);
+            painter.rect(rect, 0.0, palette.background, line, StrokeKind::Inside);
+        }
     }
     painter.rect_filled(Rect::from_center_size(rect.center(), vec2(rect.width(), 3.0)), 0.0, palette.casing);
 }

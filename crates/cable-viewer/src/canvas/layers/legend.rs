@@ -2,6 +2,7 @@
 
 use std::ops::RangeInclusive;
 
+use cable_core::solution::ContactState;
 use egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::canvas::layers::{cable, contact};
@@ -59,11 +60,11 @@ pub fn beside(ui: &mut Ui, state: &AppState) {
 /// where they begin.
 fn contact_samples(painter: &Painter, palette: &Palette, strip: Rect) -> f32 {
     let mut x = strip.right();
-    for (holds, text) in [(false, "slides"), (true, "holds")] {
+    for (state, text) in [(ContactState::Slip, "slides"), (ContactState::Stick, "holds")] {
         let small = FontId::proportional(10.0);
         let words = painter.text(pos2(x, strip.top() + 1.0), Align2::RIGHT_TOP, text, small, palette.text);
         let sample = Rect::from_center_size(pos2(words.left() - 12.0, words.center().y), vec2(16.0, 7.0));
-        contact::sample(painter, palette, sample, holds);
+        contact::sample(painter, palette, sample, state);
         x = sample.left() - 6.0;
     }
     x

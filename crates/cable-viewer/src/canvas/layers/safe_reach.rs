@@ -33,9 +33,11 @@ pub const KEY_HEIGHT: f32 = 56.0;
 /// Draws the map of an end.
 pub fn area(view: &CanvasView<'_>, state: &AppState) {
     let Some((ReachMaps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
-    let Some(area) = (if state.analysis.safe_reach.choice.round_trip { ways.as_ref() } else { Some(there) }) else {
-        return;
+    let shown = match state.analysis.safe_reach.choice.trip {
+        Trip::There => Some(there),
+        Trip::ThereAndBack => ways.as_ref(),
     };
+    let Some(area) = shown else { return };
     let mut mesh = Mesh::default();
     let mut lines = Vec::new();
     for k in 0..area.most_n.len() {
@@ -141,10 +143,10 @@ pub fn colour(share: f64) -> Color32 {
 /// Draws the map of a robot; its ends go to `figures` for the labels to place.
 pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some((ReachMaps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
-    let back = state.analysis.safe_reach.choice.round_trip;
+    let trip = state.analysis.safe_reach.choice.trip;
     let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
     let height = view.points(preset.map_or(HEIGHT_M, |p| p.height_m.value)).max(9.0);
-    let value = |p: &ReachPlace| if back { p.there_and_back_n } else { p.there_n };
+    let value = |p: &ReachPlace| p.tension_n(trip);
     let mut mesh = Mesh::default();
     for pair in map.places.windows(2) {
         let [a, b] = [0, 1].map(|k| (view.at(pair[k].at_m), value(&pair[k])));
@@ -166,7 +168,7 @@ pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, St
             hatch(view, [a.0, b.0], height);
         }
     }
-    ends(view, map, if back { Trip::ThereAndBack } else { Trip::There }, height, figures);
+    ends(view, map, trip, height, figures);
 }
 
 /// Strokes across what is above the service tension.
@@ -212,8 +214,10 @@ impl MapKey {
     fn of(state: &AppState) -> Option<Self> {
         let (maps, scene) = state.analysis.safe_reach.found()?;
         let [service_n, _] = maps.limits_n();
-        let title =
-            if state.analysis.safe_reach.choice.round_trip { "Safe reach, there and back" } else { "Safe reach" };
+        let title = match state.analysis.safe_reach.choice.trip {
+            Trip::There => "Safe reach",
+            Trip::ThereAndBack => "Safe reach, there and back",
+        };
         let out_of_date = if **scene == state.document.scene { "" } else { " (out of date)" };
         let over = match maps {
             ReachMaps::Line(_) => "Above service",

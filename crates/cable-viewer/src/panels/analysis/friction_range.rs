@@ -11,17 +11,17 @@ use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::checkbox_and_radio::checkbox;
-use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::property::{PropertyQuantity, Provenance, row};
 use crate::widgets::{field, progress};
 
-const MIN_FRICTION: Quantity = Quantity {
+const MIN_FRICTION: PropertyQuantity = PropertyQuantity {
     name: "Least friction",
     unit: Unit::PERCENT,
     usual: [0.0, 1.0],
     logarithmic: false,
     help: "Least friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
 };
-const GREATEST_FRICTION: Quantity = Quantity {
+const GREATEST_FRICTION: PropertyQuantity = PropertyQuantity {
     name: "Most friction",
     unit: Unit::PERCENT,
     usual: [1.0, 3.0],

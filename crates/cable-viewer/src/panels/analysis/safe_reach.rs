@@ -54,7 +54,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let text = format!("Incomplete: stopped at {:.0} %", 100.0 * share);
         ui.colored_label(ui.visuals().warn_fg_color, text).on_hover_text("Places not reached yet are not shown");
     }
-    for line in describe(maps, view.choice.round_trip) {
+    for line in describe(maps, view.choice.trip) {
         ui.label(if running.is_some() { so_far(&line) } else { line });
     }
 }
@@ -143,9 +143,9 @@ fn both_ways(ui: &mut Ui, choice: SafeReachOptions, commands: &mut Vec<Command>)
     ui.horizontal_wrapped(|ui| {
         let there = "The largest tension with the end at each place";
         let back = "The largest tension on the way there and back, snags included";
-        for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
-            if radio_button(ui, choice.round_trip == back, text).on_hover_text(help).clicked() {
-                commands.push(set(SafeReachOptions { round_trip: back, ..choice }));
+        for (trip, text, help) in [(Trip::There, "There", there), (Trip::ThereAndBack, "There and back", back)] {
+            if radio_button(ui, choice.trip == trip, text).on_hover_text(help).clicked() {
+                commands.push(set(SafeReachOptions { trip, ..choice }));
             }
         }
     });
@@ -182,14 +182,14 @@ impl ReachLimit {
 
 /// The map in words.
 #[must_use]
-pub fn describe(maps: &ReachMaps, back: bool) -> Vec<String> {
+pub fn describe(maps: &ReachMaps, trip: Trip) -> Vec<String> {
     let limits = [ReachLimit::Service, ReachLimit::Breaking].into_iter().zip(maps.limits_n());
     limits
         .map(|(limit, tension_n)| match maps {
-            ReachMaps::Line(map) => of_line(map, back, limit, tension_n),
-            ReachMaps::Area(there, None) if !back => of_area(there, limit, tension_n),
+            ReachMaps::Line(map) => of_line(map, trip, limit, tension_n),
+            ReachMaps::Area(there, _) if trip == Trip::There => of_area(there, limit, tension_n),
             ReachMaps::Area(_, None) => "The way back has not been computed yet".to_owned(),
-            ReachMaps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, limit, tension_n),
+            ReachMaps::Area(_, Some(ways)) => of_area(ways, limit, tension_n),
         })
         .collect()
 }
@@ -198,15 +198,15 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
-fn of_line(map: &ReachMap, back: bool, limit: ReachLimit, tension_n: f64) -> String {
+fn of_line(map: &ReachMap, trip: Trip, limit: ReachLimit, tension_n: f64) -> String {
     let name = limit.name();
-    let Some([left, right]) = map.safe_m(tension_n, if back { Trip::ThereAndBack } else { Trip::There }) else {
+    let Some([left, right]) = map.safe_m(tension_n, trip) else {
         return format!("Above {name} tension ({}) at its present position", format::force(tension_n));
     };
     let why = |x: f64, side: f64| {
         let next = map.places.iter().filter(|p| side * (p.at_m[0] - x) > 0.0);
         let next = next.min_by(|a, b| (a.at_m[0] - x).abs().total_cmp(&(b.at_m[0] - x).abs()));
-        match next.map(|p| (p.jammed, if back { p.there_and_back_n } else { p.there_n })) {
+        match next.map(|p| (p.jammed, p.tension_n(trip))) {
             None => "",
             Some((true, _)) => " (beyond, its cable is in the way)",
             Some((_, n)) if n.is_nan() => " (beyond, no solution found)",

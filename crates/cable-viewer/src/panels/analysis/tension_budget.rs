@@ -13,7 +13,7 @@ use crate::render::colour::LINES;
 use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
-use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::property::{PropertyQuantity, Provenance, row};
 use crate::widgets::readout;
 
 /// Height of each of the two rows of the bar, points.
@@ -79,7 +79,7 @@ pub fn at_the_largest(state: &AppState) -> Option<TensionMarker> {
 /// The place and the end the sum begins at, both to be set by keys as well.
 fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Command>) {
     let Some(cable) = scene.cables.get(probe.cable) else { return };
-    let quantity = Quantity {
+    let quantity = PropertyQuantity {
         name: "Place on the cable",
         unit: Unit::COORDINATE,
         usual: [0.0, cable.length_m],

@@ -3,14 +3,14 @@
 use cable_core::Cable;
 
 use crate::units::unit::Unit;
-use crate::widgets::property::Quantity;
+use crate::widgets::property::PropertyQuantity;
 
 /// A property of a cable.
 pub struct Property {
     /// Its key in a scene file.
     pub key: &'static str,
     /// Its form on screen.
-    pub quantity: Quantity,
+    pub quantity: PropertyQuantity,
     /// Reads it, SI.
     pub get: fn(&Cable) -> f64,
     /// Writes it, SI.
@@ -21,7 +21,7 @@ macro_rules! property {
     ($key:ident, $name:literal, $unit:expr, $usual:expr, $log:literal, $help:literal) => {
         Property {
             key: stringify!($key),
-            quantity: Quantity { name: $name, unit: $unit, usual: $usual, logarithmic: $log, help: $help },
+            quantity: PropertyQuantity { name: $name, unit: $unit, usual: $usual, logarithmic: $log, help: $help },
             get: |cable| cable.$key,
             set: |cable, value| cable.$key = value,
         }
@@ -129,7 +129,7 @@ pub const PROPERTIES: [Property; 12] = [
 ];
 
 /// The field of segments when the cable sets their number.
-pub const SEGMENTS: Quantity = Quantity {
+pub const SEGMENTS: PropertyQuantity = PropertyQuantity {
     name: "Segments",
     unit: Unit::COUNT,
     usual: [4.0, 1000.0],

@@ -1,14 +1,14 @@
 //! Peaks of the kinetic energy in spans of time, one after the other, show whether it grows.
 
 use crate::record::sample::Sample;
-use crate::record::sample_history::History;
+use crate::record::sample_history::SampleHistory;
 
 /// Time over which the kinetic energy is compared with that of as long before, s. Shorter: every
 /// swing is a growth; longer: a run that diverges has ended.
 pub const GROWTH_SPAN_S: f64 = 1.0;
 /// The greatest kinetic energy of the last N spans, oldest first, J; None where less was recorded.
 #[must_use]
-pub fn kinetic_peaks_j<const N: usize>(history: &History) -> Option<[f64; N]> {
+pub fn kinetic_peaks_j<const N: usize>(history: &SampleHistory) -> Option<[f64; N]> {
     let now_s = history.samples.back()?.time_s;
     let first_s = history.samples.front()?.time_s;
     let peak = |from_s: f64| {
@@ -27,7 +27,7 @@ mod tests {
     #[test]
     fn growth_is_told_from_decay() {
         let history = |of: fn(f64) -> f64| {
-            let mut history = History::default();
+            let mut history = SampleHistory::default();
             for time_s in (0..300).map(|k| f64::from(k) / 60.0) {
                 let energy_j = [of(time_s), 0.0, 0.0, 0.0];
                 history.push(Sample { time_s, max_tension_n: 0.0, energy_j, robot: None, reactions_n: Vec::new() });
@@ -38,7 +38,7 @@ mod tests {
         assert!(last > 2.0 * before);
         let [before, last] = kinetic_peaks_j(&history(|t| (-t).exp())).unwrap();
         assert!(last < before);
-        assert_eq!(kinetic_peaks_j::<2>(&History::default()), None);
+        assert_eq!(kinetic_peaks_j::<2>(&SampleHistory::default()), None);
         let four = kinetic_peaks_j::<4>(&history(|t| t.exp())).unwrap();
         assert!(four.windows(2).all(|w| w[1] > 2.0 * w[0]));
         assert_eq!(kinetic_peaks_j::<5>(&history(|t| t.exp())), None);

@@ -10,7 +10,7 @@ use crate::state::{AppState, Item};
 use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Provenance, Quantity, labelled, row};
+use crate::widgets::property::{PropertyQuantity, Provenance, labelled, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// Force of a new load, N.
@@ -19,7 +19,7 @@ const FIRST_LOAD_N: [f64; 2] = [0.0, -100.0];
 /// Time over which what begins to change with time does so at first, s.
 pub const FIRST_SPAN_S: f64 = 5.0;
 
-const STRENGTH: Quantity = Quantity {
+const STRENGTH: PropertyQuantity = PropertyQuantity {
     name: "Load force",
     unit: Unit::N,
     usual: [1.0, 5000.0],

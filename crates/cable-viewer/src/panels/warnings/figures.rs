@@ -21,7 +21,7 @@ pub fn short_title(kind: WarningKind, title: &'static str) -> &'static str {
 
 /// The figures of a warning, in words and as short as they can be: a line of the panel has room for
 /// a value, its limit and the place.
-pub struct Figures {
+pub struct WarningFigures {
     /// In words.
     pub words: String,
     /// Beside the title in a line.
@@ -31,7 +31,7 @@ pub struct Figures {
 /// Digits of a value in a line: four stand in its words.
 const SHORT_DIGITS: usize = 3;
 
-impl Figures {
+impl WarningFigures {
     fn bare(value: String) -> Self {
         Self { words: value.clone(), short: value }
     }
@@ -62,35 +62,39 @@ fn without_trailing_zeros(number: String) -> String {
 }
 
 /// The value and its limit, in the warning's own unit.
-pub fn figures(warning: &Warning) -> Option<Figures> {
+pub fn figures(warning: &Warning) -> Option<WarningFigures> {
     let Warning { value, limit, .. } = *warning;
     let both = [value, limit];
     Some(match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension => Figures::beside(Kind::Force, both, ">", "limit"),
-        WarningKind::MayBreak => Figures::beside(Kind::Force, both, "of", "limit"),
+        WarningKind::ServiceTension | WarningKind::BreakingTension => {
+            WarningFigures::beside(Kind::Force, both, ">", "limit")
+        }
+        WarningKind::MayBreak => WarningFigures::beside(Kind::Force, both, "of", "limit"),
         WarningKind::Broken => {
             let most = format::force(limit);
-            Figures { words: format!("breaking tension {most}"), short: format!("limit {most}") }
+            WarningFigures { words: format!("breaking tension {most}"), short: format!("limit {most}") }
         }
-        WarningKind::BendRadius | WarningKind::Kink => Figures::beside(Kind::Length, both, "<", "min"),
-        WarningKind::Slack => Figures::bare(format!("{} of cable", format::length(value))),
+        WarningKind::BendRadius | WarningKind::Kink => WarningFigures::beside(Kind::Length, both, "<", "min"),
+        WarningKind::Slack => WarningFigures::bare(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
             let per_metre = unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M };
             let [value, limit] = [value, limit].map(|v| per_metre.text(v));
             let bare = value.trim_end_matches(per_metre.display().symbol).trim_end();
-            Figures { words: format!("{value}, limit {limit}"), short: format!("{bare} > {limit}") }
+            WarningFigures { words: format!("{value}, limit {limit}"), short: format!("{bare} > {limit}") }
         }
-        WarningKind::Wrapped => Figures::bare(format!("{value:.2} turns")),
-        WarningKind::Curl => Figures::bare(format!("{value:.0}°")),
-        WarningKind::Snag => Figures { words: format!("tension ratio {value:.2}"), short: format!("ratio {value:.2}") },
+        WarningKind::Wrapped => WarningFigures::bare(format!("{value:.2} turns")),
+        WarningKind::Curl => WarningFigures::bare(format!("{value:.0}°")),
+        WarningKind::Snag => {
+            WarningFigures { words: format!("tension ratio {value:.2}"), short: format!("ratio {value:.2}") }
+        }
         WarningKind::EnergyGrows => {
             let energy = format::energy(value);
-            Figures { words: format!("{energy} too much"), short: energy }
+            WarningFigures { words: format!("{energy} too much"), short: energy }
         }
         WarningKind::Accuracy => {
             let [value, limit] = [value, limit].map(format::percent);
             let bare = value.trim_end_matches('%').trim_end().to_owned();
-            Figures { words: format!("{value} estimated, target {limit}"), short: format!("{bare} > {limit}") }
+            WarningFigures { words: format!("{value} estimated, target {limit}"), short: format!("{bare} > {limit}") }
         }
         // A loop, a second rest, a blocked support and the like have no figure.
         _ => return None,

@@ -5,6 +5,7 @@ use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, ContactSurface, Elastica, ElasticaPiece, End, Joint, LENGTH, MOMENT, Owner, STATES, force, place,
     tangent, tension,
 };
+use crate::numerics::bisect;
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
@@ -359,7 +360,7 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &ElasticaPiece) -> Vec<[
 
 /// The place of the greatest tension between two places of a piece, if it is at neither. The nodes
 /// alone would miss part of it, which grows with the square of their distance.
-fn peak(elastica: &Elastica, piece: &ElasticaPiece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
+fn peak(elastica: &Elastica, piece: &ElasticaPiece, [from, to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
         let u = elastica.state_in(piece, x);
         let (t, by) = (tangent(&u), elastica.slope(piece.contact, &u));
@@ -368,11 +369,7 @@ fn peak(elastica: &Elastica, piece: &ElasticaPiece, [mut from, mut to]: [f64; 2]
     if !rises(from) || rises(to) {
         return None;
     }
-    for _ in 0..PEAK_HALVINGS {
-        let middle = 0.5 * (from + to);
-        if rises(middle) { from = middle } else { to = middle }
-    }
-    Some(from)
+    Some(bisect([from, to], PEAK_HALVINGS, rises)[0])
 }
 
 /// Samples of the contact force along a piece that lies on its contact.

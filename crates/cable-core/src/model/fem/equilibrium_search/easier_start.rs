@@ -87,8 +87,7 @@ impl FemModel {
         easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
         easier.stepper.solver.work_left = *work;
-        let has_equilibrium = false;
-        let found = easier.settle_mesh(has_equilibrium);
+        let found = easier.settle_unknown();
         *work = easier.stepper.solver.work_left;
         if found.is_err() {
             return;

@@ -89,7 +89,7 @@ impl FemModel {
         let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
         let first = self.stepper.cable.state();
         let before = if has_equilibrium { None } else { Some(self.stepper.clone()) };
-        let found = self.settle_mesh(has_equilibrium);
+        let found = if has_equilibrium { self.stepper.settle(&self.dragged) } else { self.settle_unknown() };
         let found = match start {
             SpansStart::Accepted(warnings) => found.map(|mut report| {
                 report.warnings.extend(warnings);
@@ -112,11 +112,11 @@ impl FemModel {
         Ok(report)
     }
 
-    /// Settles the mesh. If no other model `has_equilibrium` for the cable, the unbalanced forces
-    /// of its nodes must not add up to a force that moves it.
-    pub(in crate::model::fem) fn settle_mesh(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
+    /// Settles the mesh of a cable for which no other model has an equilibrium: the unbalanced
+    /// forces of its nodes must not add up to a force that moves it.
+    pub(in crate::model::fem) fn settle_unknown(&mut self) -> Result<StepReport, SolveError> {
         let report = self.stepper.settle(&self.dragged)?;
-        match if has_equilibrium { None } else { slides_as_a_whole(&self.stepper.cable) } {
+        match slides_as_a_whole(&self.stepper.cable) {
             Some(why) => Err(SolveError::NoRestingPlace { why }),
             None => Ok(report),
         }

@@ -8,7 +8,7 @@ use crate::model::Settings;
 use crate::model::fem::first_shape::push_out::depenetrate;
 use crate::model::fem::first_shape::route::{place_nodes, route};
 use crate::model::fem::first_shape::threading::thread_pulleys;
-use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES, bar_count};
+use crate::model::fem::mesh::{MassMatrix, Mesh, PUSHED_OUT_REACHES, bar_count};
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
@@ -29,7 +29,7 @@ pub(in crate::model::fem) fn cable_along_route(
     let route = route(&problem);
     let segments = bar_count(&problem, settings, &start);
     let breaks = places_of_nodes(&problem, &route, start.route_node_bars * (problem.length / segments as f64));
-    let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
+    let mesh = Mesh::new(&problem, tuning, &breaks, segments, mass_matrix(&problem));
     let mut cable = cable_at_rest(problem, outline, mesh, segments, &route);
     if cable.problem.cable.self_contact {
         cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
@@ -141,9 +141,13 @@ fn motion_at_rest(problem: &Problem, mesh: &Mesh, positions: Vec<Vec2>) -> Nodal
     }
 }
 
-/// True if the mass is spread over the bars. If the cable can touch something, the mass is always
-/// lumped: a contact takes the momentum of one node, nodes come and go with corners and pulleys,
-/// and a mass matrix that changed when contact begins would change the energy.
-fn spreads_mass(problem: &Problem) -> bool {
-    touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
+/// The mass matrix of a cable. If it can touch something, the mass is always lumped: a contact
+/// takes the momentum of one node, nodes come and go with corners and pulleys, and a mass matrix
+/// that changed when contact begins would change the energy.
+fn mass_matrix(problem: &Problem) -> MassMatrix {
+    if touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley) {
+        MassMatrix::Spread
+    } else {
+        MassMatrix::Lumped
+    }
 }

@@ -16,13 +16,22 @@ const AUXILIARY_WEIGHT: f64 = 1e-12;
 /// where the tension falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, because the force
 /// had too few digits.
 const SMOOTHING: f64 = 1e-7;
-/// The values that the elements share, and true if a weightless cable was given an auxiliary
-/// weight.
-pub(super) fn material_at(problem: &Problem, time: f64, layout: &StationLayout) -> (Material, bool) {
+
+/// The origin of the force per length of cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum BodyForce {
+    /// The cable's weight and wind.
+    Own,
+    /// A weightless cable was given an auxiliary weight.
+    Auxiliary,
+}
+
+/// The values that the elements share, and the origin of their force per length.
+pub(super) fn material_at(problem: &Problem, time: f64, layout: &StationLayout) -> (Material, BodyForce) {
     let mut body = problem.body_force(time);
     let loads: f64 = layout.stations.iter().map(|s| s.load.norm()).sum();
-    let has_auxiliary_weight = !(body.norm() > 0.0);
-    if has_auxiliary_weight {
+    let kind = if body.norm() > 0.0 { BodyForce::Own } else { BodyForce::Auxiliary };
+    if kind == BodyForce::Auxiliary {
         let whole =
             if loads > 0.0 { AUXILIARY_WEIGHT * loads } else { UNLOADED_AUXILIARY_WEIGHT * problem.axial_stiffness };
         body = Vec2::new(0.0, -whole / problem.length);
@@ -33,5 +42,5 @@ pub(super) fn material_at(problem: &Problem, time: f64, layout: &StationLayout) 
         body,
         smoothing: SMOOTHING * (body.norm() * problem.length + loads),
     };
-    (material, has_auxiliary_weight)
+    (material, kind)
 }

@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
+use crate::model::fem::free::beam::equilibrium::{Beam, BeamOutcome, STEP_TOLERANCE};
 use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
-use crate::model::fem::free::element_material::material_at;
+use crate::model::fem::free::element_material::{BodyForce, material_at};
 use crate::model::fem::free::failure_report::solve_error;
 use crate::model::fem::free::pulley_balance::{PulleyFailure, PulleyNetwork};
 use crate::model::fem::free::results;
@@ -48,7 +48,7 @@ const JOINED_FRACTION: f64 = 0.5;
 
 /// Balances pulleys without friction. On wheels the strain of the material is first taken from a
 /// mean tension (accurate to 1e-7), and then integrated exactly.
-fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, PulleyFailure> {
+fn solve_smooth(network: &mut PulleyNetwork) -> Result<FrictionStart, PulleyFailure> {
     network.solve()?;
     if network.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0)) {
         let mut exact = network.clone();
@@ -57,7 +57,16 @@ fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, PulleyFailure> {
             *network = exact;
         }
     }
-    Ok(true)
+    Ok(FrictionStart::Route)
+}
+
+/// The friction state of pulleys from which a search begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FrictionStart {
+    /// None: the cable is laid along its route.
+    Route,
+    /// That of the answer before.
+    Memory,
 }
 
 /// A cable at rest on its supports.
@@ -174,7 +183,7 @@ impl Statics {
         if layout.stations.len() < 2 || layout.anchored().is_none() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
-        let (material, has_auxiliary_weight) = material_at(&self.problem, time, &layout);
+        let (material, body_force) = material_at(&self.problem, time, &layout);
         let (mut segments, mut iterations) = (self.segments, 0);
         layout.cut(segments);
         let mut network = PulleyNetwork::new(layout, material);
@@ -182,15 +191,15 @@ impl Statics {
             network.start_from(old);
         }
         let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
-        let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
-        let first = first.map_err(|f| solve_error(&self.problem, &network, self.time, f))?;
+        let start = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
+        let start = start.map_err(|f| solve_error(&self.problem, &network, self.time, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
                 let feature = Unsupported::BendingOverPulleys;
                 return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
-            return self.bend(network, time, has_auxiliary_weight);
+            return self.bend(network, time, body_force);
         }
         let mut estimate = dual_weighted_residual::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
@@ -206,10 +215,10 @@ impl Statics {
             estimate = dual_weighted_residual::relative_error(&mut network);
         }
         if rubs {
-            estimate += self.follow_finer(&network, time, dragged, first);
+            estimate += self.follow_finer(&network, time, dragged, start);
             network.commit_friction();
             // Friction carries the errors of the steps that it remembers.
-            let before = if first { None } else { self.estimate };
+            let before = if start == FrictionStart::Route { None } else { self.estimate };
             estimate = before.map_or(estimate, |e| larger(e, estimate));
         }
         self.time = time;
@@ -221,7 +230,7 @@ impl Statics {
         self.rested = Some((network.layout.clone(), network.forces.clone()));
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
-        Ok(StepReport { cost, warnings: self.warnings(has_auxiliary_weight) })
+        Ok(StepReport { cost, warnings: self.warnings(body_force) })
     }
 
     /// Remembers the material at the middle of each pulley, from which the next search begins.
@@ -235,13 +244,17 @@ impl Statics {
         }
     }
 
-    /// Balances pulleys with friction from their memory, or else from the route. Returns whether it
-    /// started from the route.
-    fn begin_rubbing(&self, network: &mut PulleyNetwork, dragged: &[Option<Vec2>]) -> Result<bool, PulleyFailure> {
+    /// Balances pulleys with friction from their memory, or else from the route; returns from
+    /// which.
+    fn begin_rubbing(
+        &self,
+        network: &mut PulleyNetwork,
+        dragged: &[Option<Vec2>],
+    ) -> Result<FrictionStart, PulleyFailure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
         {
-            return network.balance_with_friction().map(|()| false);
+            return network.balance_with_friction().map(|()| FrictionStart::Memory);
         }
         if self.time == 0.0
             && !self.adopted
@@ -250,19 +263,25 @@ impl Statics {
             let mut laid = network.clone();
             if laid.remember_answer(&lay.answer) && laid.balance_with_friction().is_ok() {
                 *network = laid;
-                return Ok(true);
+                return Ok(FrictionStart::Route);
             }
         }
         network.solve()?;
         network.remember();
-        network.balance_with_friction().map(|()| true)
+        network.balance_with_friction().map(|()| FrictionStart::Route)
     }
 
     /// Follows the same motion with bars and steps half as long and a friction memory of its own;
     /// returns the difference of the forces relative to the greatest. Errors of mesh and steps add
     /// up in the friction memory, and the present balance alone does not show them.
-    fn follow_finer(&mut self, network: &PulleyNetwork, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
-        let Some(finer) = self.finer(network, time, dragged, first) else {
+    fn follow_finer(
+        &mut self,
+        network: &PulleyNetwork,
+        time: f64,
+        dragged: &[Option<Vec2>],
+        start: FrictionStart,
+    ) -> f64 {
+        let Some(finer) = self.finer(network, time, dragged, start) else {
             // The finer cable begins anew from here.
             self.finer = None;
             return 0.0;
@@ -277,7 +296,7 @@ impl Statics {
         network: &PulleyNetwork,
         time: f64,
         dragged: &[Option<Vec2>],
-        first: bool,
+        start: FrictionStart,
     ) -> Option<PulleyNetwork> {
         let segments: usize = network.layout.stations.iter().map(|s| s.element_count).sum();
         let cut = |mut layout: StationLayout| {
@@ -285,7 +304,8 @@ impl Statics {
             layout
         };
         let mut half = None;
-        if let Some(old) = self.finer.as_ref().filter(|_| !first && time > self.time) {
+        let old = self.finer.as_ref().filter(|_| start == FrictionStart::Memory);
+        if let Some(old) = old.filter(|_| time > self.time) {
             let middle = 0.5 * (self.time + time);
             let halfway: Vec<Option<Vec2>> =
                 (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
@@ -301,7 +321,7 @@ impl Statics {
             half = Some(step);
         }
         let mut finer = PulleyNetwork::new(cut(network.layout.clone()), network.material);
-        match half.as_ref().or(self.finer.as_ref().filter(|_| !first)) {
+        match half.as_ref().or(old) {
             Some(old) => {
                 finer.start_from(old);
                 if !finer.remember_from(old) {
@@ -329,23 +349,21 @@ impl Statics {
     }
 
     /// Finds the equilibrium with bending stiffness, starting from the flexible cable.
-    fn bend(
-        &mut self,
-        network: PulleyNetwork,
-        time: f64,
-        has_auxiliary_weight: bool,
-    ) -> Result<StepReport, SolveError> {
+    fn bend(&mut self, network: PulleyNetwork, time: f64, force: BodyForce) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a definite shape without auxiliary weight.
-        let body = if has_auxiliary_weight { Vec2::zeros() } else { network.material.body };
+        let body = match force {
+            BodyForce::Auxiliary => Vec2::zeros(),
+            BodyForce::Own => network.material.body,
+        };
         let stiff = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
         let wanted = if given { None } else { Some(ESTIMATE_FRACTION * self.settings.tolerance) };
         let RefinedBeam { beam, outcome, steps, estimate, shape_error } = refine(stiff, wanted, MOST_SEGMENTS);
         let iterations = network.steps + steps;
         match outcome {
-            Outcome::Stable => {}
-            Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
-            Outcome::Failed => {
+            BeamOutcome::Stable => {}
+            BeamOutcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
+            BeamOutcome::Failed => {
                 return Err(solve_error(&self.problem, &network, self.time, PulleyFailure::Span(0, beam.residual)));
             }
         }
@@ -358,9 +376,7 @@ impl Statics {
         self.network = Some(network);
         // A stiff cable has a definite shape even without weight.
         self.beam = Some(beam);
-        let has_auxiliary_weight = false;
-        let warnings = self.warnings(has_auxiliary_weight);
-        Ok(StepReport { cost, warnings })
+        Ok(StepReport { cost, warnings: self.warnings(BodyForce::Own) })
     }
 
     /// The nodes of each equilibrium of a compressed stiff cable: the one that was found and those
@@ -372,7 +388,7 @@ impl Statics {
             .map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_buckled_shapes()).map(nodes).collect())
     }
 
-    fn warnings(&self, has_auxiliary_weight: bool) -> Vec<Warning> {
+    fn warnings(&self, body_force: BodyForce) -> Vec<Warning> {
         let problem = &self.problem;
         let mut out = Vec::new();
         let mut warn = |cause, value: f64, limit: f64| {
@@ -382,7 +398,7 @@ impl Statics {
             let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
             warn(WarningCause::ManyEquilibria { shown, histories }, 0.0, 0.0);
         }
-        if has_auxiliary_weight && problem.loads.is_empty() {
+        if body_force == BodyForce::Auxiliary && problem.loads.is_empty() {
             warn(WarningCause::Weightless, 0.0, 0.0);
         }
         if let Some(estimate) = self.estimate

@@ -178,6 +178,21 @@ impl StationLayout {
         let last = self.stations.iter().rposition(Station::anchors)?;
         Some((first, last))
     }
+
+    /// The vectors to a station from the anchor before it and on to the anchor after it, if there
+    /// are any.
+    #[must_use]
+    pub fn anchors_beside(&self, station: usize) -> [Option<Vec2>; 2] {
+        let near = |k: usize| match self.stations[k].restraint {
+            Restraint::Free => None,
+            Restraint::Fixed(p) => Some(p),
+            Restraint::Pulley(w) => Some(w.center),
+        };
+        let here = near(station).unwrap_or_default();
+        let before = (0..station).rev().find_map(near);
+        let after = (station + 1..self.stations.len()).find_map(near);
+        [before.map(|b| here - b), after.map(|a| a - here)]
+    }
 }
 
 fn point_load(arc_length: f64, load: Vec2) -> Station {

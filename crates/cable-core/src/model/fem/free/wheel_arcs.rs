@@ -64,22 +64,8 @@ impl PulleyNetwork {
     /// +1 if the cable runs clockwise round the wheel at a station, −1 otherwise, judged by the
     /// anchors before and after it.
     pub(in crate::model::fem) fn clockwise_at(&self, station: usize, wheel: &Wheel) -> f64 {
-        let [arrive, leave] = self.passing(station).map(Option::unwrap_or_default);
+        let [arrive, leave] = self.layout.anchors_beside(station).map(Option::unwrap_or_default);
         facing(wheel.side, arrive + leave)
-    }
-
-    /// The vectors to a station from the anchor before it and on to the anchor after it, if there
-    /// are any.
-    fn passing(&self, station: usize) -> [Option<Vec2>; 2] {
-        let near = |k: usize| match self.layout.stations[k].restraint {
-            Restraint::Free => None,
-            Restraint::Fixed(p) => Some(p),
-            Restraint::Pulley(w) => Some(w.center),
-        };
-        let here = near(station).unwrap_or_default();
-        let before = (0..station).rev().find_map(near);
-        let after = (station + 1..self.layout.stations.len()).find_map(near);
-        [before.map(|b| here - b), after.map(|a| a - here)]
     }
 
     /// Sets the first contact points, for straight cables.
@@ -127,7 +113,7 @@ impl PulleyNetwork {
             let clockwise = self.clockwise_at(k, &wheel);
             let mut contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
             // Without an anchor beyond it, the force gives the direction.
-            let [arrive, leave] = self.passing(k);
+            let [arrive, leave] = self.layout.anchors_beside(k);
             let through_centre = turn_through_centre(clockwise, arrive.unwrap_or(before), leave.unwrap_or(after));
             let mut turn = angle_near(arc(contact[0], contact[1], clockwise), through_centre);
             if turn < -TURN_ROUNDING {

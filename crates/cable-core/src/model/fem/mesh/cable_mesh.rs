@@ -6,7 +6,7 @@ use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
 use crate::model::fem::mesh::branch_forces::BranchForces;
-use crate::model::fem::mesh::mass_matrix::Spread;
+use crate::model::fem::mesh::mass_matrix::{MassMatrix, Spread};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, StraightPart, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;
@@ -52,10 +52,9 @@ pub struct Mesh {
 
 impl Mesh {
     /// Divides a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m,
-    /// increasing, with both ends) and even bars in between. All nodes are free. If `spreads`, its
-    /// mass is spread over the bars.
+    /// increasing, with both ends) and even bars in between. All nodes are free.
     #[must_use]
-    pub fn new(problem: &Problem, tuning: Arc<Tuning>, breaks: &[f64], segments: usize, spreads: bool) -> Self {
+    pub fn new(problem: &Problem, tuning: Arc<Tuning>, breaks: &[f64], segments: usize, mass: MassMatrix) -> Self {
         let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
         let mut stretches = Vec::with_capacity(breaks.len());
         for pair in breaks.windows(2) {
@@ -76,7 +75,10 @@ impl Mesh {
             clamps: Vec::new(),
             axial_stiffness: problem.axial_stiffness,
             bending_stiffness: problem.bending_stiffness,
-            spread: if spreads { Spread::of(&stretches) } else { Spread::default() },
+            spread: match mass {
+                MassMatrix::Spread => Spread::of(&stretches),
+                MassMatrix::Lumped => Spread::default(),
+            },
             branch_forces: BranchForces::default(),
         }
     }
@@ -94,10 +96,15 @@ impl Mesh {
         here.map(|(s, _)| s.mass).sum()
     }
 
-    /// Becomes a copy of `other`, reusing its memory where possible. `slides` is false if there can
-    /// be no sliding nodes to copy.
-    pub fn copy_from(&mut self, other: &Self, slides: bool) {
-        let Self { tuning, arc_length, rest_length, held, clamps, sliding, spread, branch_forces, .. } = other;
+    /// Becomes a copy of `other`, reusing its memory where possible.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.sliding.clone_from(&other.sliding);
+        self.copy_material_nodes_from(other);
+    }
+
+    /// As [`Self::copy_from`] where neither mesh can have sliding nodes.
+    pub fn copy_material_nodes_from(&mut self, other: &Self) {
+        let Self { tuning, arc_length, rest_length, held, clamps, spread, branch_forces, .. } = other;
         self.tuning.clone_from(tuning);
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
@@ -105,9 +112,6 @@ impl Mesh {
         self.clamps.clone_from(clamps);
         self.spread.copy_from(spread);
         self.branch_forces.copy_from(branch_forces);
-        if slides {
-            self.sliding.clone_from(sliding);
-        }
         self.thermal_stretch = other.thermal_stretch;
         self.axial_stiffness = other.axial_stiffness;
         self.bending_stiffness = other.bending_stiffness;

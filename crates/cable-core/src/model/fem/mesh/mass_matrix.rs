@@ -34,6 +34,15 @@ const END: f64 = -0.048_166_153_011_381_5;
 /// Fraction of a bar's mass that couples its nodes: 0 is lumped, 1/6 consistent.
 const MEAN: f64 = 1.0 / 12.0;
 
+/// The kind of mass matrix of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MassMatrix {
+    /// All mass in the nodes.
+    Lumped,
+    /// Mass spread over the bars.
+    Spread,
+}
+
 /// Difference of the mass matrix of a mesh from the lumped one; empty if there is none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spread {

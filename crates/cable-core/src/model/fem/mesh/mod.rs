@@ -19,6 +19,7 @@ pub(in crate::model::fem) mod tangent_path;
 
 pub(in crate::model::fem) use bar_count::bar_count;
 pub(in crate::model::fem) use cable_mesh::{Clamp, Mesh, bars_between};
+pub(in crate::model::fem) use mass_matrix::MassMatrix;
 #[cfg(test)]
 pub(in crate::model::fem) use mass_matrix::Spread;
 pub(in crate::model::fem) use sliding_node::{

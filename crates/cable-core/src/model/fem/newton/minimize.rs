@@ -9,6 +9,7 @@ use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::active_set::Equations;
 use crate::model::fem::newton::step_potential::{ENERGY_NOISE, Residual, Workspace};
 use crate::model::fem::system::{Converged, Failure, FailureCause, StepContext, StepInput, Unknowns, node_scale};
+use crate::numerics::backtrack;
 
 /// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
 /// cut, and the next steps are cut more; larger: it is kept too long, and iterations creep. A
@@ -252,9 +253,9 @@ impl Workspace {
         let Descent { value, slope, supports_move } = descent;
         let n = mesh.nodes();
         let whole = self.max_step_fraction(input);
-        let mut fraction = self.step_bound_from_assembly(step, unknowns, whole);
+        let longest = self.step_bound_from_assembly(step, unknowns, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
-        for _ in 0..mesh.tuning.newton.max_halvings {
+        backtrack(longest, mesh.tuning.newton.max_halvings, |fraction| {
             let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
                 let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
@@ -273,13 +274,12 @@ impl Workspace {
             let new_value = self.assemble(step, &trial, Curvature::Exact);
             self.trial = trial;
             let lower = new_value <= value + mesh.tuning.newton.decrease * fraction * slope + noise;
-            if new_value.is_finite() && (supports_move || lower) {
+            let accepted = new_value.is_finite() && (supports_move || lower);
+            accepted.then(|| {
                 std::mem::swap(unknowns, &mut self.trial);
-                return Some((new_value, fraction));
-            }
-            fraction *= 0.5;
-        }
-        None
+                (new_value, fraction)
+            })
+        })
     }
 }
 

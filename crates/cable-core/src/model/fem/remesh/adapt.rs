@@ -43,21 +43,21 @@ pub(in crate::model::fem) struct Remeshed {
 
 /// Adapts the mesh to the corners and rounds that the cable runs over, without inertia or with it.
 pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) -> Remeshed {
-    let rests = inertia == Inertia::QuasiStatic;
     if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
     }
-    let mut changed = remove_sliding_nodes(cable, &[], rests);
-    let taken = add_sliding_nodes(cable, rests);
+    let mut changed = remove_sliding_nodes(cable, &[], inertia);
+    let taken = add_sliding_nodes(cable, inertia);
     if !taken.is_empty() {
         // A new sliding node may lift its neighbour off. At rest it is not itself removed before
         // the next step: it took over weight of the nodes beside it, which under a corner pulls it
         // away until they have moved.
-        remove_sliding_nodes(cable, if rests { &taken } else { &[] }, rests);
+        let kept: &[SlideOver] = if inertia == Inertia::QuasiStatic { &taken } else { &[] };
+        remove_sliding_nodes(cable, kept, inertia);
         changed = true;
     }
-    let moved = move_marks(cable, rests);
-    let wound = wind(cable, rests);
+    let moved = move_marks(cable, inertia);
+    let wound = wind(cable, inertia);
     let evened = even_out(cable);
     let bars = changed || wound || evened;
     if bars || moved {
@@ -71,7 +71,8 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
 
 /// Removes the sliding nodes that press on nothing, except those on `kept`; returns whether there
 /// were any.
-fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool) -> bool {
+fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], inertia: Inertia) -> bool {
+    let rests = inertia == Inertia::QuasiStatic;
     let mut changed = false;
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
@@ -212,7 +213,7 @@ fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, from: Vec2
 }
 
 /// Puts sliding nodes where corners and circles press; returns what they slide over.
-fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
+fn add_sliding_nodes(cable: &mut CableState, inertia: Inertia) -> Vec<SlideOver> {
     let mut taken = Vec::new();
     if cable.problem.world.is_empty() || !cable.meshing.slides {
         return taken;
@@ -223,8 +224,7 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
         let criteria = Criteria::of(cable);
         let found = touches.iter().find_map(|t| {
             let pressed = t.pair.weight > 0.0 && t.load(&cable.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
-            let (bar, arc_length, sliding) =
-                if pressed { criteria.sliding_node_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
+            let (bar, arc_length, sliding) = if pressed { criteria.sliding_node_for(t)? } else { return None };
             let near = cable.mesh.tuning.remesh.removed_distance * cable.even();
             let node = [bar, bar + 1].into_iter().find(|&k| {
                 cable.meshing.removable(&cable.mesh, k) && (cable.mesh.arc_length[k] - arc_length).abs() < near
@@ -234,9 +234,9 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
                 return None;
             }
             let s = beside.map(|k| cable.mesh.arc_length[k]);
-            let arc_length = match rests {
-                true => arc_length,
-                false => s[0] + criteria.share_of_sliding(beside, &sliding)?.first * (s[1] - s[0]),
+            let arc_length = match inertia {
+                Inertia::QuasiStatic => arc_length,
+                Inertia::Dynamic => s[0] + criteria.share_of_sliding(beside, &sliding)?.first * (s[1] - s[0]),
             };
             Some((bar, node, arc_length, sliding))
         });

@@ -2,6 +2,7 @@
 //! sliding nodes is counted.
 
 use crate::math::smaller;
+use crate::model::Inertia;
 use crate::model::fem::mesh::{BarEnd, SlidingNode, rotate};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
@@ -18,7 +19,7 @@ const SERIES_LOG_RATIO: f64 = 1e-4;
 /// under evenly mobilised friction: its middle if there is no friction. In motion the material
 /// between the old and the new mark comes from the bar that the mark leaves, whose strain does not
 /// change.
-pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> bool {
+pub(in crate::model::fem) fn move_marks(cable: &mut CableState, inertia: Inertia) -> bool {
     let mut moved = false;
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
         let Some(node) = cable.mesh.sliding[k] else { continue };
@@ -34,7 +35,7 @@ pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> 
         if !(shift.abs() * node.end.radius > MARK_TOLERANCE) {
             continue;
         }
-        let bars = if rests {
+        let bars = if inertia == Inertia::QuasiStatic {
             k - 1..k + 1
         } else if shift > 0.0 {
             k..k + 1
@@ -71,7 +72,7 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
 }
 
 /// Gives long arcs more marks and removes those that the tangent has passed.
-pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
+pub(in crate::model::fem) fn wind(cable: &mut CableState, inertia: Inertia) -> bool {
     let even = cable.even();
     let mut changed = false;
     let mut k = 1;
@@ -86,7 +87,7 @@ pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
         let arcs = [cable.mesh.path(k - 1, x).arcs[1], cable.mesh.path(k, x).arcs[0]];
         // On a large round the marks of a cable at rest are as far apart as nodes elsewhere,
         // because friction is resolved only from mark to mark.
-        let spacing = if rests {
+        let spacing = if inertia == Inertia::QuasiStatic {
             smaller(0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
         } else {
             0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad

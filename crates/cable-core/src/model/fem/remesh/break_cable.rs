@@ -17,7 +17,7 @@ pub(in crate::model::fem) fn break_cable(cable: &mut CableState, place: &BreakPl
     if k == 0 || k + 1 == cable.mesh.nodes() {
         tear_off(cable, k);
     } else if cable.mesh.goes_on_through(k) {
-        divide(cable, k, place.gives_way_after);
+        divide(cable, k, place);
     } else {
         return false;
     }
@@ -42,8 +42,8 @@ fn tear_off(cable: &mut CableState, k: usize) {
 }
 
 /// Makes two nodes of node `k`; its supports and loads stay with the first piece if the second one
-/// `gives_way`.
-fn divide(cable: &mut CableState, k: usize, gives_way: bool) {
+/// gives way.
+fn divide(cable: &mut CableState, k: usize, place: &BreakPlace) {
     let m = &mut cable.motion;
     for values in [&mut m.positions, &mut m.velocities, &mut m.previous_positions, &mut m.previous_velocities] {
         values.insert(k + 1, values[k]);
@@ -53,7 +53,7 @@ fn divide(cable: &mut CableState, k: usize, gives_way: bool) {
     }
     cable.mesh.break_at(k);
     cable.answers.reaction.insert(k + 1, Vec2::zeros());
-    let last_kept = if gives_way { k } else { k - 1 };
+    let last_kept = if place.gives_way_after { k } else { k - 1 };
     cable.meshing.renumber(|node| Some(if node > last_kept { node + 1 } else { node }));
     for clamp in &mut cable.mesh.clamps {
         clamp.node += usize::from(clamp.node > last_kept);

@@ -1,11 +1,10 @@
 //! These criteria decide where sliding nodes are inserted and removed; they change nothing.
 
-use crate::contact::Gap;
 use crate::math::{bounded, perp};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, TangentPath, angle_between, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::state::{CableState, Meshing, NodalMotion};
-use crate::model::fem::system::{StepContext, load_scale};
+use crate::model::fem::system::{ContactPair, StepContext, load_scale};
 
 /// Least fraction of the material between two nodes on each side of a node inserted between them.
 const LEAST_PART: f64 = 1e-3;
@@ -170,12 +169,9 @@ impl<'a> Criteria<'a> {
 
     /// The sliding node that is needed where a corner or circle presses on a bar or node, with its
     /// bar and its arc length (m).
-    pub(super) fn sliding_node_for(
-        &self,
-        node: usize,
-        on_segment: bool,
-        gap: &Gap,
-    ) -> Option<(usize, f64, SlidingNode)> {
+    pub(super) fn sliding_node_for(&self, touch: &ContactPair) -> Option<(usize, f64, SlidingNode)> {
+        let ContactPair { node, on_segment, pair } = *touch;
+        let gap = &pair.gap;
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let last = mesh.nodes() - 1;
         let (center, radius) = round_of(

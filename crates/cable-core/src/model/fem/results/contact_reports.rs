@@ -150,7 +150,7 @@ fn round_force(load: &SlidingNodeLoad, momentum_flux: f64) -> Vec2 {
 }
 
 /// Neighbouring contacts with one obstacle, and the state that they are read from.
-struct ContactStretch<'a> {
+struct NeighbouringContacts<'a> {
     state: &'a CableState,
     positions: &'a [Vec2],
     lying_ends: &'a [Option<LyingEnd>; 2],
@@ -167,7 +167,7 @@ struct StretchFriction {
     sliding_n: f64,
 }
 
-impl ContactStretch<'_> {
+impl NeighbouringContacts<'_> {
     /// The part of a contact's force that is reported here: that on a sliding node or on a lying
     /// end is reported with that round or end.
     fn part(&self, t: &ContactPair) -> f64 {
@@ -239,7 +239,7 @@ fn report(
     let (Some(first), Some(last)) = (pairs.first(), pairs.last()) else {
         return ContactReport::default();
     };
-    let stretch = ContactStretch { state: d, positions: x, lying_ends, pairs, first, last };
+    let stretch = NeighbouringContacts { state: d, positions: x, lying_ends, pairs, first, last };
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(tension.len() - 1);
     let (mut normal, mut normal_n, mut limit_n) = (Vec2::zeros(), 0.0, 0.0);

@@ -47,7 +47,7 @@ fn solution_now(d: &CableState) -> CableSolution {
             self_contact: problem.cable.self_contact,
             inertia: d.motion.inertia_counts(),
         },
-        momentum: d.motion.account.report(d.motion.inertia_counts()),
+        momentum: d.motion.account.report().filter(|_| d.motion.inertia_counts()),
         energy_account: d.motion.energies.report(d.motion.time),
         breaks: d.mesh.breaks().map(|e| e + 1).collect(),
         ..CableSolution::default()

@@ -2,7 +2,7 @@
 
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::ContactPair;
-use crate::problem::Series;
+use crate::problem::TimeSeries;
 
 /// The division of the cable into bars, and the nodes of supports and loads.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub(in crate::model::fem) struct Meshing {
     /// Node of each support; None for one that slides.
     pub(in crate::model::fem) support_node: Vec<Option<usize>>,
     /// Node of each point load, and its force.
-    pub(in crate::model::fem) loads: Vec<(usize, Series)>,
+    pub(in crate::model::fem) loads: Vec<(usize, TimeSeries)>,
     /// True if the cable touched nothing but its supports in the last step.
     pub(in crate::model::fem) was_contact_free: bool,
     /// Working memory for the contacts that are searched for corners.

@@ -87,11 +87,11 @@ impl MomentumSums {
         self.last[kind_of(slide_over)] += impulse;
     }
 
-    /// The account of the caller's last step; None without inertia.
-    pub(in crate::model::fem) fn report(&self, inertia_counts: bool) -> Option<MomentumAccount> {
+    /// The account of the caller's last step; None before the first one.
+    pub(in crate::model::fem) fn report(&self) -> Option<MomentumAccount> {
         let over_s = self.to - self.from;
         let [weight, loads, supports, contacts] = [0, 1, 2, 3].map(|k| <[f64; 2]>::from(self.sum[k] - self.late[k]));
-        (over_s > 0.0 && inertia_counts).then(|| MomentumAccount {
+        (over_s > 0.0).then(|| MomentumAccount {
             over_s,
             before_kg_m_per_s: self.before.into(),
             after_kg_m_per_s: self.reached.into(),

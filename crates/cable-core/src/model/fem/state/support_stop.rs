@@ -4,6 +4,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, PUSHED_OUT_REACHES};
 use crate::model::fem::state::CableState;
+use crate::numerics::backtrack;
 use crate::problem::Problem;
 
 /// Round-off of a gap, m.
@@ -26,15 +27,12 @@ pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh
     // A support that the scene puts on a surface may stay there, but not come nearer.
     let least = gap(from) - GAP_ROUNDING;
     let free = problem.world.free_fraction([from, from], [to, to], mesh.tuning.step.kept_support_gap_fraction);
-    let mut part = if free >= 1.0 { 1.0 } else { free };
-    for _ in 0..mesh.tuning.step.stand_off_tries {
+    let place = |part: f64| {
         let at = if part >= 1.0 { to } else { from + (to - from) * part };
-        if gap(at) >= least {
-            return at;
-        }
-        part *= 0.5;
-    }
-    from
+        (gap(at) >= least).then_some(at)
+    };
+    let longest = if free >= 1.0 { 1.0 } else { free };
+    backtrack(longest, mesh.tuning.step.stand_off_tries, place).unwrap_or(from)
 }
 
 /// Places the nodes of supports that release the cable between two times (s) on the surfaces on

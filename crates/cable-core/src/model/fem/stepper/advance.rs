@@ -8,7 +8,7 @@ use crate::model::fem::results;
 use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds};
 use crate::model::fem::system::{Converged, WorkBudget};
 use crate::model::smoothed_target::held_warning;
-use crate::model::tension_gauge::TensionGauge;
+use crate::model::tension_gauge::{TensionBefore, TensionGauge};
 use crate::model::{Inertia, StepReport};
 use crate::solution::{Cost, Warning, WarningCause};
 
@@ -105,8 +105,8 @@ impl Stepper {
     fn begin_gauge(&mut self, gauge: &mut TensionGauge) {
         if gauge.asks(self.cable.motion.time) {
             results::gauge_tension(&mut self.cable);
-            let at_rest = self.cable.motion.velocities.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.cable.motion.time, at_rest, &self.cable.answers.gauged.arc_length, |k| {
+            let before = TensionBefore::of_motion(&self.cable.motion.velocities);
+            gauge.begin(self.cable.motion.time, before, &self.cable.answers.gauged.arc_length, |k| {
                 self.cable.answers.gauged.tension[k]
             });
         }

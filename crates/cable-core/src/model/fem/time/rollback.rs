@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::obstacle::place_outline;
-use crate::model::fem::state::{CableState, NodalMotion, renew_input};
+use crate::model::fem::state::{CableState, Meshing, NodalMotion, renew_input};
 use crate::model::fem::system::ContactSet;
 
 /// The stored state of a cable.
@@ -44,7 +44,7 @@ impl Rollback {
         match &mut self.saved {
             Some(s) => {
                 s.motion.copy_from(&cable.motion);
-                s.mesh.copy_from(&cable.mesh, !cable.meshing.never_slides);
+                copy_mesh(&mut s.mesh, &cable.mesh, &cable.meshing);
                 s.contacts.copy_from(&cable.contacts);
                 s.support_node.clone_from(&cable.meshing.support_node);
                 s.reaction.clone_from(&cable.answers.reaction);
@@ -69,7 +69,7 @@ impl Rollback {
     pub(in crate::model::fem) fn restore(&mut self, cable: &mut CableState) {
         if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
             cable.motion.copy_from(&s.motion);
-            cable.mesh.copy_from(&s.mesh, !cable.meshing.never_slides);
+            copy_mesh(&mut cable.mesh, &s.mesh, &cable.meshing);
             cable.contacts.copy_from(&s.contacts);
             cable.meshing.support_node.clone_from(&s.support_node);
             cable.answers.reaction.clone_from(&s.reaction);
@@ -81,4 +81,9 @@ impl Rollback {
             renew_input(cable);
         }
     }
+}
+
+/// Makes a mesh a copy of another; of sliding nodes, where there can be none, nothing is copied.
+fn copy_mesh(to: &mut Mesh, from: &Mesh, meshing: &Meshing) {
+    if meshing.never_slides { to.copy_material_nodes_from(from) } else { to.copy_from(from) }
 }

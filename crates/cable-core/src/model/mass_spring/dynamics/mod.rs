@@ -8,7 +8,7 @@
 //! | `sub_step.rs` | the explicit integrator: stable sub-steps, forces, contacts, gauge readings |
 //! | `supports.rs` | moving supports: velocities and positions of held nodes and pulley centres |
 //! | `hands.rs` | hands that drag supports by springs, implicit in the sub-step |
-//! | `sliding.rs` | material over pulleys: its rate, capstan friction, momentum carried along |
+//! | `pulley_sliding.rs` | material over pulleys: its rate, capstan friction, momentum carried along |
 //! | `impacts.rs` | inelastic normal and friction impulses at contacts in a sub-step |
 //! | `floor_friction.rs` | Coulomb friction of the floor in plan view, on each node |
 //! | `buried_nodes.rs` | refusal of a cable whose centre line is inside an obstacle |
@@ -22,9 +22,9 @@ pub(in crate::model::mass_spring) mod floor_friction;
 pub(in crate::model::mass_spring) mod hands;
 pub(in crate::model::mass_spring) mod impacts;
 pub(in crate::model::mass_spring) mod momentum;
+pub(in crate::model::mass_spring) mod pulley_sliding;
 pub(in crate::model::mass_spring) mod rollback;
 pub(in crate::model::mass_spring) mod runaway_guard;
-pub(in crate::model::mass_spring) mod sliding;
 pub(in crate::model::mass_spring) mod sub_step;
 pub(in crate::model::mass_spring) mod supports;
 

@@ -7,12 +7,12 @@
 
 use crate::energy::{Curvature, Energy};
 use crate::math::{Mat2, Vec2};
-use crate::model::mass_spring::equilibrium::system::System;
+use crate::model::mass_spring::equilibrium::system::EquilibriumSystem;
 use crate::model::mass_spring::forces::bending;
 use crate::model::mass_spring::mesh::Mesh;
 
 /// Adds the energy of weight, wind and loads; returns its value, J.
-pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut System, time_s: f64) -> f64 {
+pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut EquilibriumSystem, time_s: f64) -> f64 {
     let p = &mesh.problem;
     let body = p.body_force(time_s);
     let mut value = 0.0;
@@ -46,7 +46,7 @@ pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut System,
 }
 
 /// Adds the energy of the spring of element `e` and updates its tension; returns the value, J.
-pub(in crate::model::mass_spring) fn add_spring(mesh: &mut Mesh, system: &mut System, e: usize) -> f64 {
+pub(in crate::model::mass_spring) fn add_spring(mesh: &mut Mesh, system: &mut EquilibriumSystem, e: usize) -> f64 {
     let r = mesh.element(e);
     let (l0, ea, lambda) = (mesh.rest_length[e], mesh.problem.axial_stiffness, mesh.problem.thermal_stretch);
     let stretch = r.length - l0;
@@ -85,7 +85,11 @@ pub(in crate::model::mass_spring) fn add_spring(mesh: &mut Mesh, system: &mut Sy
 }
 
 /// Adds the energy of bending; returns its value, J.
-pub(in crate::model::mass_spring) fn add_bending(mesh: &Mesh, system: &mut System, curvature: Curvature) -> f64 {
+pub(in crate::model::mass_spring) fn add_bending(
+    mesh: &Mesh,
+    system: &mut EquilibriumSystem,
+    curvature: Curvature,
+) -> f64 {
     let mut value = 0.0;
     for n in 0..mesh.position.len() {
         if let Some(direction) = bending::clamp_at(mesh, n) {

@@ -11,13 +11,13 @@ use crate::contact::friction as friction_law;
 use crate::contact::obstacle_pairs::Pair;
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
-use crate::model::mass_spring::equilibrium::system::System;
+use crate::model::mass_spring::equilibrium::system::EquilibriumSystem;
 use crate::model::mass_spring::mesh::Mesh;
 use crate::model::mass_spring::settings::ContactTuning;
 
 /// Friction at one place, frozen for a step.
 #[derive(Clone, Copy, Debug)]
-struct FrictionContact {
+struct FrozenFriction {
     anchor: Anchor,
     /// Element and fraction of the anchored material.
     element: usize,
@@ -32,14 +32,14 @@ struct FrictionContact {
 
 /// A contact pair on element `e` (a node's pair has fraction 0 or 1).
 #[derive(Clone, Copy, Debug)]
-struct ContactPair {
+struct PenaltyPair {
     element: usize,
     fraction: f64,
     signed: Pair,
     inside: bool,
 }
 
-impl ContactPair {
+impl PenaltyPair {
     /// The anchor of the material here, where it is now.
     fn anchor(&self, mesh: &Mesh) -> Anchor {
         let (e, c) = (self.element, self.fraction);
@@ -66,8 +66,8 @@ pub(in crate::model::mass_spring) struct Contacts {
     tuning: ContactTuning,
     stiffness: f64,
     anchors: Vec<Anchor>,
-    friction: Vec<FrictionContact>,
-    pairs: Vec<ContactPair>,
+    friction: Vec<FrozenFriction>,
+    pairs: Vec<PenaltyPair>,
 }
 
 impl Contacts {
@@ -117,12 +117,12 @@ impl Contacts {
                 let before = n.checked_sub(1).map(|k| x[k]);
                 let (element, fraction) = if n < last { (n, 0.0) } else { (n - 1, 1.0) };
                 geometry.node_pairs(before, x[n], x.get(n + 1).copied(), reach, &mut |signed| {
-                    self.pairs.push(ContactPair { element, fraction, signed, inside: false });
+                    self.pairs.push(PenaltyPair { element, fraction, signed, inside: false });
                 });
             }
             if n < last && !mesh.wheels.is_on_wheel(n) {
                 geometry.segment_pairs(x[n], x[n + 1], reach, &mut |signed| {
-                    self.pairs.push(ContactPair { element: n, fraction: signed.gap.fraction, signed, inside: true });
+                    self.pairs.push(PenaltyPair { element: n, fraction: signed.gap.fraction, signed, inside: true });
                 });
             }
         }
@@ -142,7 +142,7 @@ impl Contacts {
             for n in 0..mesh.position.len() {
                 let limit = mesh.problem.max_floor_friction(mesh.half_straight_length(n), mesh.point_mass[n]);
                 let (element, fraction) = mesh.locate(mesh.arc_length[n]);
-                self.friction.push(FrictionContact {
+                self.friction.push(FrozenFriction {
                     anchor: self.anchors[n],
                     element,
                     fraction,
@@ -185,14 +185,14 @@ impl Contacts {
             let backwards = along.dot(&(mesh.position[e + 1] - mesh.position[e])) < 0.0;
             let direction = if backwards { -along } else { along };
             let limit = gap.friction * self.stiffness * (self.tuning.offset_m - gap.gap_m);
-            self.friction.push(FrictionContact { anchor, element, fraction, direction, limit, pair: k });
+            self.friction.push(FrozenFriction { anchor, element, fraction, direction, limit, pair: k });
         }
         !self.friction.is_empty() || !mesh.wheels.pulleys.is_empty()
     }
 
     /// Adds energy, gradient and Hessian of contacts (as they are here) and friction (as it was
     /// frozen).
-    pub(in crate::model::mass_spring) fn assemble(&mut self, mesh: &Mesh, system: &mut System) -> f64 {
+    pub(in crate::model::mass_spring) fn assemble(&mut self, mesh: &Mesh, system: &mut EquilibriumSystem) -> f64 {
         self.find_pairs(mesh, self.tuning.offset_m);
         let mut value = 0.0;
         for pair in &self.pairs {
@@ -231,7 +231,7 @@ impl Contacts {
         value + self.assemble_friction(mesh, system)
     }
 
-    fn assemble_friction(&self, mesh: &Mesh, system: &mut System) -> f64 {
+    fn assemble_friction(&self, mesh: &Mesh, system: &mut EquilibriumSystem) -> f64 {
         let mut value = 0.0;
         for contact in &self.friction {
             let shift = contact.shift(mesh);
@@ -313,12 +313,12 @@ fn with_floor(anchors: &[Anchor], mesh: &Mesh) -> Vec<Anchor> {
 }
 
 /// Curvature of the gap of a node that lies nearest to a corner or a circle, 1/m.
-fn curvature(pair: &ContactPair, away: f64) -> f64 {
+fn curvature(pair: &PenaltyPair, away: f64) -> f64 {
     // Features with odd numbers are corners and circles.
     if pair.signed.gap.feature % 2 == 1 && away > 0.0 { 1.0 / away } else { 0.0 }
 }
 
-impl FrictionContact {
+impl FrozenFriction {
     /// Displacement of the material from its anchor, m.
     fn shift(&self, mesh: &Mesh) -> Vec2 {
         let (a, b) = (mesh.position[self.element], mesh.position[self.element + 1]);

@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse};
 use crate::model::mass_spring::equilibrium::assembly;
 use crate::model::mass_spring::equilibrium::contact_energy::{Anchors, Contacts};
-use crate::model::mass_spring::equilibrium::system::System;
+use crate::model::mass_spring::equilibrium::system::EquilibriumSystem;
 use crate::model::mass_spring::forces::pulley;
 use crate::model::mass_spring::mesh::{Mesh, remesh};
 
@@ -48,7 +48,7 @@ pub(in crate::model::mass_spring) struct EquilibriumSolver<'a> {
     mesh: &'a mut Mesh,
     time_s: f64,
     contacts: Contacts,
-    system: System,
+    system: EquilibriumSystem,
 }
 
 impl<'a> EquilibriumSolver<'a> {
@@ -67,7 +67,7 @@ impl<'a> EquilibriumSolver<'a> {
                 p.anchor = mesh.arc_length[p.node];
             }
         }
-        let system = System::new(mesh)?;
+        let system = EquilibriumSystem::new(mesh)?;
         Ok(Self { mesh, time_s, contacts, system })
     }
 
@@ -148,7 +148,7 @@ impl<'a> EquilibriumSolver<'a> {
         let remeshed = !self.mesh.wheels.pulleys.is_empty() && remesh(self.mesh, self.time_s);
         if remeshed {
             self.contacts.follow_nodes(self.mesh);
-            self.system = System { fade: self.system.fade, ..System::new(self.mesh)? };
+            self.system = EquilibriumSystem { fade: self.system.fade, ..EquilibriumSystem::new(self.mesh)? };
         }
         Ok(remeshed)
     }

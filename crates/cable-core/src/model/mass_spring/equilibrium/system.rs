@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::model::mass_spring::mesh::Mesh;
 
 /// Gradient and Hessian of the energy, and the factor and step of Newton's method.
-pub(in crate::model::mass_spring) struct System {
+pub(in crate::model::mass_spring) struct EquilibriumSystem {
     /// Tension at the start of each element, N, which lends stiffness to slack elements.
     pub initial_tension: Vec<f64>,
     /// Part of it that still does.
@@ -24,7 +24,7 @@ pub(in crate::model::mass_spring) struct System {
     pub arc_length: Vec<f64>,
 }
 
-impl System {
+impl EquilibriumSystem {
     pub(in crate::model::mass_spring) fn new(mesh: &Mesh) -> Result<Self, SolveError> {
         let n = mesh.position.len();
         let band = if mesh.problem.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH };

@@ -16,8 +16,7 @@
 //! end, as constant as friction allows (m between −μ and μ on each edge).
 
 use crate::math::smaller;
-use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
-use crate::model::spans::boundary::segment_cursor::Sliding;
+use crate::model::spans::boundary::capstan::{ContactPath, SlideResult, Sliding};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
 /// Relative step of the friction coefficient for a difference quotient.

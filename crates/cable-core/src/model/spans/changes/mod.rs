@@ -6,29 +6,29 @@
 //! | `release` | a contact that would have to pull is removed, or one that has vanished |
 //! | `merge` | two neighbouring contacts of one chain become one |
 //! | `obstacle_search` | nothing: the point at which a free span runs deepest into an obstacle |
-//! | `landing` | a span that runs into an obstacle is laid down on it |
+//! | `span_landing` | a span that runs into an obstacle is laid down on it |
 //! | `load_landing` | where a load or a cable end runs into an obstacle |
-//! | `cycle` | nothing: contacts that come back to where they were |
+//! | `cycle_detection` | nothing: contacts that come back to where they were |
 //! | `edge_crossing` | ends of contacts go over edges, along which nothing turns |
 //!
 //! Loads, kinks, wheels and slack have their own changes, in `contact`.
 
-mod cycle;
+mod cycle_detection;
 mod edge_crossing;
-mod landing;
 pub(in crate::model::spans) mod load_landing;
 mod merge;
 mod obstacle_search;
 mod release;
+mod span_landing;
 
 use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
-use crate::model::spans::changes::cycle::CycleSearch;
+use crate::model::spans::changes::cycle_detection::CycleSearch;
 use crate::model::spans::changes::edge_crossing::follow_edges;
-use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
 use crate::model::spans::changes::release::{lifted_wheel, release_turned_contact, release_vanishing_contact};
+use crate::model::spans::changes::span_landing::{SolvePurpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::contact::{kink_load, point_load, release_below, slack_pocket};
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Converged, Workspace};
@@ -47,7 +47,7 @@ pub(in crate::model::spans) fn solve(
     workspace: &mut Workspace,
 ) -> Result<Converged, Failure> {
     let tuned = context.settings.changes;
-    let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
+    let purpose = if route.is_some() { SolvePurpose::FirstEquilibrium } else { SolvePurpose::Step };
     let (mut sum, mut caught, mut cycle) = (Converged::default(), 0, CycleSearch::default());
     for _ in 0..tuned.max_changes {
         point_load::join(section, context)?;

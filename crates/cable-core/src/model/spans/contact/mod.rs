@@ -5,6 +5,7 @@
 //! | `equations.rs` | two equations of a contact with derivatives; its mode, stick or slip |
 //! | `support_contact.rs` | a support that comes to lie on a boundary, slides along it, or lifts off |
 //! | `point_load.rs` | a dead load on a boundary: stick or slip, joining with contacts, lift-off |
+//! | `impending_slip.rs` | friction of all contacts of a section used up in one direction |
 //! | `load_balance.rs` | forces on such a load: both cable forces and the load, normal and tangential |
 //! | `kink_load.rs` | a load in a concave kink, held by both its edges or sliding out |
 //! | `slack_pocket.rs` | slack cable heaped in a concave kink, at zero tension |
@@ -12,6 +13,7 @@
 //! | `wheel_friction.rs` | friction memory and equations of one wheel, for models with spans of their own |
 
 pub(in crate::model::spans) mod equations;
+pub(in crate::model::spans) mod impending_slip;
 pub(in crate::model::spans) mod kink_load;
 pub(in crate::model::spans) mod load_balance;
 pub(in crate::model::spans) mod point_load;

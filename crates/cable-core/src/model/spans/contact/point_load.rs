@@ -84,24 +84,6 @@ pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, con
     (0..section.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// True if all of a section is about to slide in a direction (1: towards its end, −1: towards its
-/// start): at each contact the tensions are those of sliding within the relative tolerance `near`.
-pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &SolveContext, way: f64, near: f64) -> bool {
-    let slides = |(j, c): (usize, &Contact)| {
-        let m = way * context.friction(c);
-        if c.is_load() {
-            let load_balance = load_balance(section, context, j);
-            return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
-                <= near * load_balance.size;
-        }
-        let [t1, t2] = c.ends.tension;
-        let reached = context.contact_path(c).slide(c.ends.place[0], c.ends.place[1], t1, m).tension;
-        let laid = context.law.load.norm() * (c.ends.material[1] - c.ends.material[0]);
-        (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
-    };
-    !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
-}
-
 /// The place p of a load in the previous state.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
     c.history.breakpoints().first().map_or(c.ends.place[0], |k| k.coordinate)

@@ -1,7 +1,7 @@
 //! A cable held by friction alone slides if there is too little of it: this module finds how much
 //! it would need, and the equilibrium after the cable was drawn.
 
-use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::impending_slip;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection};
@@ -58,8 +58,9 @@ impl CableEquilibrium {
         }
         let found = rests(high, shape)?;
         let near = tuned.mobilised_fraction * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
-        let slides =
-            |s: &CableSection| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.context, *way, near));
+        let slides = |s: &CableSection| {
+            [1.0, -1.0].iter().any(|way| impending_slip::is_about_to_slide(s, &found.context, *way, near))
+        };
         let unheld =
             layout.sections.iter().zip(&found.sections).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         unheld.map(|(_, s)| s).any(slides).then_some(high)

@@ -93,7 +93,7 @@ impl FirstGuess<'_> {
             return None;
         }
         section.contacts = self.bends(TautString { first, last }, &material)?;
-        let join = joint(context, &heads, first == last, material.tension);
+        let join = if first == last { half_joint(context, &heads, material.tension) } else { 0.0 };
         for head in heads.iter().flatten() {
             let contact = self.lying_end_contact(head, join, &material);
             section.contacts.insert(if head.side == 0 { 0 } else { section.contacts.len() }, contact);
@@ -353,11 +353,11 @@ fn lies_whole(
     section
 }
 
-/// Half of the length Tδ/w of the span that joins two stretches at a kink of δ, m; 0 if they do not
-/// meet.
-fn joint(context: &SolveContext, heads: &[Option<EndContact>; 2], meet: bool, tension: f64) -> f64 {
+/// Half of the length Tδ/w of the span that joins two stretches that meet at a kink of δ, m; 0 if
+/// there is only one.
+fn half_joint(context: &SolveContext, heads: &[Option<EndContact>; 2], tension: f64) -> f64 {
     match heads {
-        [Some(a), Some(b)] if meet => {
+        [Some(a), Some(b)] => {
             let (u, v) = (
                 context.curves[a.curve].place(a.coordinates[1], a.chain_range),
                 context.curves[b.curve].place(b.coordinates[0], b.chain_range),

@@ -74,7 +74,7 @@ pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f
 
 /// The equations of a section at a state.
 #[derive(Clone, Debug, Default)]
-pub(super) struct System {
+pub(super) struct SectionEquations {
     pub residual: Vec<f64>,
     /// The Jacobian.
     pub band: Band,
@@ -84,7 +84,7 @@ pub(super) struct System {
 
 /// Assembles the equations of a section at its present state, and finds the stick zone of each
 /// contact.
-pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, system: &mut System) {
+pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, system: &mut SectionEquations) {
     let n = count(section);
     system.residual.clear();
     system.residual.resize(n, 0.0);
@@ -101,7 +101,7 @@ pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, syste
 }
 
 /// As [`assemble`], if only the mode of contact j has changed since.
-pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
+pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut SectionEquations) {
     if section.contacts[j].is_load() {
         // A contact that is joined to it sticks or slides with it.
         return assemble(section, context, system);
@@ -129,7 +129,7 @@ fn scale(section: &CableSection) -> f64 {
 }
 
 /// Adds the two rows of span k.
-fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
+fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut SectionEquations) {
     if k > 0 && section.is_joined(k, 0) {
         joined_rows(section, context, k, system);
     } else if let Some(force) = known_force(section, context, k) {
@@ -141,7 +141,7 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
 
 /// Adds the rows between two contacts without a span: both are at one place, and the tension is
 /// stored in the place of the force.
-fn joined_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
+fn joined_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut SectionEquations) {
     let (row, scale) = (6 * k, scale(section));
     let (r, band) = (&mut system.residual, &mut system.band);
     r[row] = (section.contacts[k - 1].ends.place[1] - section.contacts[k].ends.place[0]) * scale;
@@ -167,7 +167,13 @@ fn known_force(section: &CableSection, context: &SolveContext, k: usize) -> Opti
     }
 }
 
-fn known_force_rows(section: &CableSection, context: &SolveContext, k: usize, force: Vec2, system: &mut System) {
+fn known_force_rows(
+    section: &CableSection,
+    context: &SolveContext,
+    k: usize,
+    force: Vec2,
+    system: &mut SectionEquations,
+) {
     let (row, band) = (6 * k, &mut system.band);
     let d = section.forces[k] - force;
     let size = 1.0 / (force.norm() + context.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
@@ -177,7 +183,7 @@ fn known_force_rows(section: &CableSection, context: &SolveContext, k: usize, fo
 }
 
 /// Adds the rows that let span k reach from one of its ends to the other.
-fn chord_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
+fn chord_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut SectionEquations) {
     let (row, scale) = (6 * k, scale(section));
     let (r, band) = (&mut system.residual, &mut system.band);
     let before = k.checked_sub(1).map(|j| &system.end_points[j].0[1]);
@@ -213,7 +219,7 @@ fn chord_rows(section: &CableSection, context: &SolveContext, k: usize, system: 
 }
 
 /// Adds the rows of a load that lies on a boundary, see `point_load`.
-fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &mut System) {
+fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &mut SectionEquations) {
     let (r, b, scale) = (&mut system.residual, &mut system.band, scale(section));
     let (c, place) = (&section.contacts[j], &system.end_points[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.place[0]);
@@ -281,7 +287,7 @@ impl ContactEnd {
 
     /// Adds the row of tangency, or that which replaces it, and its columns to the rows of
     /// material.
-    fn add_to(&self, section: &CableSection, context: &SolveContext, system: &mut System) {
+    fn add_to(&self, section: &CableSection, context: &SolveContext, system: &mut SectionEquations) {
         let (b, scale, by) = (&mut system.band, scale(section), &self.by);
         let (p, s) = (self.place_column(), self.material_column());
         if section.in_pocket(self.contact, self.side) {
@@ -316,7 +322,7 @@ impl ContactEnd {
 
     /// Adds the row of tangency to the span beyond it, which has the force (N) there, and its
     /// columns to the rows of material.
-    fn add_tangency(&self, force: Vec2, load: Vec2, system: &mut System) {
+    fn add_tangency(&self, force: Vec2, load: Vec2, system: &mut SectionEquations) {
         let (r, b) = (&mut system.residual, &mut system.band);
         let place = &system.end_points[self.contact].0[self.side];
         let (p, s, g) = (self.place_column(), self.material_column(), self.force_column());
@@ -345,7 +351,7 @@ impl ContactEnd {
 }
 
 /// Adds the four rows of contact j: tangency at both ends, and two of its material.
-fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
+fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut SectionEquations) {
     if section.contacts[j].is_load() {
         return load_rows(section, context, j, system);
     }

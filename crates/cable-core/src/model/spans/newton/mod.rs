@@ -31,7 +31,9 @@ pub(in crate::model::spans) use slip_predictor::predict_slip;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::{ContactPath, Mode, StickZone, TensionProfile};
 use crate::model::spans::contact::{equations, point_load};
-use crate::model::spans::newton::jacobian::{System, assemble, gather, has_tension_unknown, pinned, renew, scatter};
+use crate::model::spans::newton::jacobian::{
+    SectionEquations, assemble, gather, has_tension_unknown, pinned, renew, scatter,
+};
 use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::section::{BoundaryConditions, CableSection, SolveContext};
@@ -49,7 +51,7 @@ const PIECE_END_OVERSHOOT: f64 = 1e-9;
 /// meaning between two steps.
 #[derive(Debug, Default)]
 pub(super) struct Workspace {
-    system: System,
+    system: SectionEquations,
     rhs: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
@@ -314,7 +316,13 @@ pub(super) fn solve(
 }
 
 /// The mode that the state of contact j requires.
-fn required_mode(section: &CableSection, context: &SolveContext, system: &System, j: usize, patience: f64) -> Mode {
+fn required_mode(
+    section: &CableSection,
+    context: &SolveContext,
+    system: &SectionEquations,
+    j: usize,
+    patience: f64,
+) -> Mode {
     let c = &section.contacts[j];
     if context.mobilised != 0.0 && c.kink().is_none() {
         return Mode::Slip(context.mobilised * context.friction(c));
@@ -334,7 +342,7 @@ fn required_mode(section: &CableSection, context: &SolveContext, system: &System
 
 /// True if every contact is in the mode that its state requires; `system` is assembled at that
 /// state.
-fn modes_agree(section: &CableSection, context: &SolveContext, system: &System) -> bool {
+fn modes_agree(section: &CableSection, context: &SolveContext, system: &SectionEquations) -> bool {
     let tuned = &context.settings.newton;
     // Like the residual, round-off grows with the stiffness.
     let patience = tuned.cycle_rounding_factor * tolerance(section, context) / tuned.residual;
@@ -344,7 +352,12 @@ fn modes_agree(section: &CableSection, context: &SolveContext, system: &System) 
 
 /// Gives contacts the mode that they require; returns whether any was changed, and whether all have
 /// the required mode.
-fn change_modes(section: &mut CableSection, context: &SolveContext, most: u32, system: &mut System) -> (bool, bool) {
+fn change_modes(
+    section: &mut CableSection,
+    context: &SolveContext,
+    most: u32,
+    system: &mut SectionEquations,
+) -> (bool, bool) {
     let tuned = &context.settings.newton;
     let (mut changed, mut content) = (false, true);
     for j in 0..section.contacts.len() {

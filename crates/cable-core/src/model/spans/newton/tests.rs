@@ -76,11 +76,11 @@ fn compare(section: &CableSection, context: &SolveContext, seed: usize) {
         moved
     };
     let residual = |x: &[f64]| {
-        let mut system = System::default();
+        let mut system = SectionEquations::default();
         assemble(&mut at(x), context, &mut system);
         system.residual
     };
-    let mut system = System::default();
+    let mut system = SectionEquations::default();
     assemble(&mut at(&x), context, &mut system);
     let (r, band) = (system.residual, system.band);
     let n = x.len();

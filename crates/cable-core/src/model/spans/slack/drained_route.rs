@@ -10,7 +10,7 @@
 
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, SurfaceShape, UpperSurfaces};
+use crate::model::spans::slack::upper_surfaces::{LoadFrame, NONE_M, SurfaceShape, UpperSurfaces};
 
 /// Maximum number of upper surfaces over which a cable that nothing holds slides down.
 const MOST_DOWN: usize = 1000;
@@ -42,7 +42,7 @@ pub(in crate::model::spans) struct DrainedRoute {
 struct RouteDraining<'a> {
     surfaces: &'a UpperSurfaces,
     bodies: &'a [Body],
-    frame: Frame,
+    frame: LoadFrame,
     legs: Vec<RouteLeg>,
     /// Height of its end so far.
     height: f64,
@@ -50,7 +50,7 @@ struct RouteDraining<'a> {
 
 impl DrainedRoute {
     /// Drains a route; None if the cable falls off everything.
-    pub fn new(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
+    pub fn new(surfaces: &UpperSurfaces, bodies: &[Body], frame: LoadFrame, route: &[Vec2]) -> Option<Self> {
         let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
         let (first, last) = (points.first()?, points.last()?);
         let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: first.y };
@@ -78,16 +78,17 @@ impl DrainedRoute {
         Some(Self { legs: draining.legs })
     }
 
-    /// The route from a point plumb down, or from below up to it.
-    pub fn plumb(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
+    /// The route from a point plumb down.
+    pub fn plumb_down(surfaces: &UpperSurfaces, bodies: &[Body], frame: LoadFrame, from: Vec2) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
-        let mut legs = draining.legs;
-        if up {
-            legs = legs.iter().rev().map(RouteLeg::back).collect();
-        }
-        Some(Self { legs })
+        Some(Self { legs: draining.legs })
+    }
+
+    /// The same route in the other direction.
+    pub fn back(&self) -> Self {
+        Self { legs: self.legs.iter().rev().map(RouteLeg::back).collect() }
     }
 
     /// Lays the ends that nothing holds on what is below them: of a route that ends above it no

@@ -7,14 +7,19 @@
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::{BearingEdge, BoundaryPoint, Heap, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
-use crate::model::spans::slack::upper_surfaces::Frame;
+use crate::model::spans::slack::upper_surfaces::LoadFrame;
 
 /// Excess of a crest over its friction cone that counts as round-off, as a fraction of the cable's
 /// weight.
 pub(super) const CREST_CONE_ROUNDING: f64 = 1e-9;
 
 /// The lowest place that holds a heap drawn by a force (N), and the index of the part after it.
-pub(super) fn heap(parts: &[SlackPart], context: &SolveContext, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
+pub(super) fn heap(
+    parts: &[SlackPart],
+    context: &SolveContext,
+    frame: LoadFrame,
+    force: Vec2,
+) -> Option<(usize, Heap)> {
     let side = |part: Option<&SlackPart>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
         Some((SlackForm::Lies(s), 0.0)) => Some((s, s.place(context, s.coordinates[end]))),
         _ => None,

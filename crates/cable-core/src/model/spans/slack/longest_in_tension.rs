@@ -15,7 +15,7 @@ use crate::model::spans::section::{BoundaryConditions, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::slack_parts::{LooseShapes, SlackSolver};
-use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, UpperSurfaces};
+use crate::model::spans::slack::upper_surfaces::{LoadFrame, NONE_M, UpperSurfaces};
 
 /// Relative excess over the drained route that a cable must have (round-off).
 const ROUNDING_FRACTION: f64 = 1e-9;
@@ -46,7 +46,7 @@ fn drained_length(
     let [from, to] = part.material;
     let loaded = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
     let held = part.supports.iter().all(Option::is_some) && part.pulleys.is_empty() && !loaded;
-    let frame = Frame::of(context.law.load).filter(|_| held)?;
+    let frame = LoadFrame::of(context.law.load).filter(|_| held)?;
     let route = section_route(layout, part, instant).points;
     let bodies = layout.problem.world.geometry().bodies();
     let surfaces = UpperSurfaces::new(context, bodies.len(), frame);
@@ -65,7 +65,7 @@ fn drained_length(
 }
 
 /// True if a route never turns back across the load.
-fn goes_one_way(route: &[Vec2], frame: Frame) -> bool {
+fn goes_one_way(route: &[Vec2], frame: LoadFrame) -> bool {
     let across = route.windows(2).map(|pair| frame.split(pair[1] - pair[0]).x);
     let [least, most] = across.fold([0.0, 0.0], |[a, b], u| [smaller(a, u), larger(b, u)]);
     least > -NONE_M || most < NONE_M

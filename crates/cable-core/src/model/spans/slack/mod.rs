@@ -55,7 +55,7 @@ use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
 use crate::model::spans::slack::pay_out::pay_out;
 use crate::model::spans::slack::slack_parts::SlackSolver;
-use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
+use crate::model::spans::slack::upper_surfaces::{LoadFrame, UpperSurfaces};
 
 pub(in crate::model::spans) use crate::model::spans::slack::longest_in_tension::exceeds_tension;
 pub(in crate::model::spans) use crate::model::spans::slack::slack_parts::LooseShapes;
@@ -71,7 +71,7 @@ pub(in crate::model::spans) fn loose_section(
     let part = layout.sections.get(index)?;
     let (load, [from, to]) = (context.law.load, part.material);
     let loaded = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
-    let frame = Frame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
+    let frame = LoadFrame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
     let bodies = layout.problem.world.geometry().bodies();
     let surfaces = UpperSurfaces::new(context, bodies.len(), frame);
     let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
@@ -105,7 +105,10 @@ pub(in crate::model::spans) fn loose_section(
                 let loose = s.loose.as_ref();
                 loose.is_some_and(|l| l.spreads() && (may_hang || l.hangs() <= layout.problem.cable.diameter_m))
             })
-            .or_else(|| section(DrainedRoute::plumb(&surfaces, bodies, frame, at, held[0].is_none())?))
+            .or_else(|| {
+                let down = DrainedRoute::plumb_down(&surfaces, bodies, frame, at)?;
+                section(if held[0].is_some() { down } else { down.back() })
+            })
         }
         [None, None] => None,
     }

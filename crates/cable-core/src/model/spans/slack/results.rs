@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;
-use crate::model::catenary::results::{Nodes, Point};
+use crate::model::catenary::results::{Nodes, ShapePoint};
 use crate::model::spans::boundary::{Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
@@ -53,7 +53,7 @@ impl LooseSection {
                 }
                 SlackForm::Heap(heap) => {
                     for s in part.arc_lengths {
-                        nodes.push(Point { arc_length: s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
+                        nodes.push(ShapePoint { arc_length: s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
                     }
                     runs.extend(LooseRun::of_heap(part, heap));
                 }
@@ -75,7 +75,12 @@ fn hang(context: &SolveContext, part: &SlackPart, [from, to]: [Vec2; 2], nodes: 
         let below = if falls { whole - s } else { s };
         let risen = law.thermal * below * (1.0 + 0.5 * weight * below / law.stiffness);
         let at = if falls { to - along * risen } else { from + along * risen };
-        nodes.push(Point { arc_length: part.arc_lengths[0] + s, at, force: along * (weight * below), curvature: 0.0 });
+        nodes.push(ShapePoint {
+            arc_length: part.arc_lengths[0] + s,
+            at,
+            force: along * (weight * below),
+            curvature: 0.0,
+        });
     }
 }
 
@@ -177,7 +182,7 @@ impl LooseRun {
             let here = at(k);
             let (place, arc_length, tension) = here;
             let curvature = if turns { place.turn * law.stretch(tension) / place.stretch } else { 0.0 };
-            nodes.push(Point { arc_length, at: place.at, force: place.tangent * tension, curvature });
+            nodes.push(ShapePoint { arc_length, at: place.at, force: place.tangent * tension, curvature });
             if k > 0 {
                 let own = law.load * (arc_length - before.1);
                 let held = before.0.tangent * before.2 - place.tangent * tension - own;

@@ -2,10 +2,10 @@
 //! kinks that a cable under tension would bridge.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult};
+use crate::model::spans::boundary::{BoundaryPoint, LyingStretch, SlackForm, SlackPart, SlideResult, slide_on_piece};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
-use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
+use crate::model::spans::slack::upper_surfaces::{LoadFrame, UpperSurfaces};
 
 /// Turn (rad) up to which two stretches are one, and by which a plumb leg beside a surface may be
 /// off its end.
@@ -31,7 +31,7 @@ impl LyingStretch {
 
     /// The tension at the place `to` that follows from the tension `t` at the place `from`.
     pub(super) fn slide(&self, context: &SolveContext, from: f64, to: f64, t: f64, m: f64) -> SlideResult {
-        context.law.along(&context.law.local_load(&self.place(context, from)), to - from, t, m)
+        slide_on_piece(&context.law, &context.law.local_load(&self.place(context, from)), to - from, t, m)
     }
 
     pub(super) fn friction(&self, context: &SolveContext) -> f64 {
@@ -49,7 +49,7 @@ pub(super) fn plumb(context: &SolveContext, height: f64) -> f64 {
 /// Computes the tensions of a drained route.
 pub(super) struct SlackSolver<'a> {
     pub context: &'a SolveContext,
-    pub frame: Frame,
+    pub frame: LoadFrame,
     /// Tension that counts as round-off, N.
     pub most: f64,
     pub sought: LooseShapes,

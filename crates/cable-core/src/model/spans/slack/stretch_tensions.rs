@@ -32,7 +32,7 @@ const TANGENCY_FRACTION: f64 = 1e-3;
 
 /// A span from one stretch to the next, in the direction from which its tension is computed.
 #[derive(Clone, Copy, Debug)]
-struct KinkSpan {
+struct DirectedSpan {
     /// Coordinates at which it leaves one stretch and meets the other.
     coordinates: [f64; 2],
     /// Tensions where it leaves and where it meets, N.
@@ -96,7 +96,7 @@ impl SlackSolver<'_> {
 
     /// The span from one edge to the next, from the tension at each p of the first; `way` is 1
     /// along the cable and −1 against it. None if it does not leave and meet them.
-    fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<KinkSpan> {
+    fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<DirectedSpan> {
         let end = usize::from(way > 0.0);
         let (kink, next) =
             (from.place(self.context, from.coordinates[end]), to.place(self.context, to.coordinates[1 - end]));
@@ -130,7 +130,7 @@ impl SlackSolver<'_> {
         let ([x1, x2], material) = aside(h);
         let p = [from.coordinates[end] - way * x1, to.coordinates[1 - end] + way * x2];
         let tension = [m1, m2].map(|m| h * 1.0f64.hypot(m));
-        (x1 < room(from) && x2 < room(to)).then_some(KinkSpan { coordinates: p, tension, material })
+        (x1 < room(from) && x2 < room(to)).then_some(DirectedSpan { coordinates: p, tension, material })
     }
 
     /// The span from a stretch at the foot of a wall up to the round above it, from the tension at
@@ -140,7 +140,7 @@ impl SlackSolver<'_> {
         [from, to]: [&LyingStretch; 2],
         way: f64,
         tension: &dyn Fn(f64) -> f64,
-    ) -> Option<Option<KinkSpan>> {
+    ) -> Option<Option<DirectedSpan>> {
         let end = usize::from(way > 0.0);
         let above = to.place(self.context, to.coordinates[1 - end]);
         if above.turn == 0.0 {
@@ -184,7 +184,7 @@ impl SlackSolver<'_> {
         let turned = cross(above.tangent, meets).atan2(above.tangent.dot(&meets));
         let p = to.coordinates[1 - end] + turned / above.turn;
         let inside = p >= to.coordinates[0] && p <= to.coordinates[1];
-        inside.then_some(Some(KinkSpan {
+        inside.then_some(Some(DirectedSpan {
             coordinates: [near, p],
             tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)),
             material,
@@ -252,7 +252,7 @@ impl TensionSweep<'_> {
 
     /// The span from stretch k up the wall beyond it, with the index of the stretch from which it
     /// leaves; spans over kinks that it passes are dropped.
-    fn climb_wall(&mut self, k: usize, to: &LyingStretch, way: f64) -> Option<(usize, KinkSpan)> {
+    fn climb_wall(&mut self, k: usize, to: &LyingStretch, way: f64) -> Option<(usize, DirectedSpan)> {
         let (solver, side) = (self.solver, self.side);
         let mut left = k;
         loop {
@@ -274,7 +274,7 @@ impl TensionSweep<'_> {
     }
 
     /// Adds a span from stretch `left` over a gap; the stretches end where it begins and ends.
-    fn add_span(&mut self, left: usize, gap: usize, span: &KinkSpan) {
+    fn add_span(&mut self, left: usize, gap: usize, span: &DirectedSpan) {
         let side = self.side;
         let (before, after) = if side == 0 { (left, gap + 1) } else { (gap, left) };
         let [p, ends] = [span.coordinates, span.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });

@@ -16,7 +16,7 @@ pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
 
 /// The directions across the load and against it, unit vectors.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Frame {
+pub(in crate::model::spans) struct LoadFrame {
     across: Vec2,
     pub up: Vec2,
 }
@@ -45,7 +45,7 @@ pub(in crate::model::spans) enum SurfaceShape {
 /// A directed part of a boundary: index of the curve, piece, and p at both ends.
 pub(in crate::model::spans) type BoundaryInterval = (usize, i64, [f64; 2]);
 
-impl Frame {
+impl LoadFrame {
     /// The frame of a load; None if the load is zero.
     pub fn of(load: Vec2) -> Option<Self> {
         let up = -load.try_normalize(0.0)?;
@@ -158,7 +158,7 @@ pub(in crate::model::spans) struct UpperSurfaces {
 
 impl UpperSurfaces {
     /// The upper surfaces of the bodies of a context.
-    pub fn new(context: &SolveContext, bodies: usize, frame: Frame) -> Self {
+    pub fn new(context: &SolveContext, bodies: usize, frame: LoadFrame) -> Self {
         let mut all = Vec::new();
         for body in 0..bodies {
             if let Some(curve) = context.curves.get(2 * body) {
@@ -179,7 +179,7 @@ impl UpperSurfaces {
     }
 }
 
-fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<UpperSurface>) {
+fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: LoadFrame, out: &mut Vec<UpperSurface>) {
     let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {
         PieceShape::Edge { from, tangent } => {

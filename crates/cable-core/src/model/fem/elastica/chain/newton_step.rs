@@ -58,7 +58,7 @@ impl LinearSystem {
 }
 
 /// A Newton step.
-pub(super) struct Step {
+pub(super) struct NewtonStep {
     /// Displacement of each node, m.
     pub(super) moves: Vec<Vec2>,
     /// True if the active set it was solved with is the one it ends in.
@@ -91,8 +91,13 @@ impl BarChain<'_> {
 
     /// One Newton step with a resistance to motion, N/m²; None where its matrix is not positive
     /// definite.
-    pub(super) fn newton_step(&mut self, system: &mut LinearSystem, resistance: f64, hessian: Hessian) -> Option<Step> {
-        let mut step = Step { moves: Vec::new(), contacts_settled: false };
+    pub(super) fn newton_step(
+        &mut self,
+        system: &mut LinearSystem,
+        resistance: f64,
+        hessian: Hessian,
+    ) -> Option<NewtonStep> {
+        let mut step = NewtonStep { moves: Vec::new(), contacts_settled: false };
         for set in 0..MAX_SETS {
             let mut right = vec![0.0; 2 * self.positions.len()];
             self.assemble(&mut system.matrix, &mut right, resistance, hessian);

@@ -9,8 +9,9 @@
 
 use crate::math::{Vec2, larger, perp, smaller};
 use crate::model::fem::elastica::chain::initial_mesh::PAY_OUT_RATE;
-use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
+use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, NewtonStep};
 use crate::model::fem::elastica::chain::{BarChain, REDUCED_RESISTANCE_FACTOR};
+use crate::numerics::backtrack;
 
 /// Maximum number of Newton steps. Usual are 10 to 20 from a flexible cable, and 200 to 600 from
 /// its route.
@@ -172,7 +173,7 @@ impl BarChain<'_> {
         system: &mut LinearSystem,
         resistance: &mut Resistance,
         round: usize,
-    ) -> Option<(Step, Hessian)> {
+    ) -> Option<(NewtonStep, Hessian)> {
         let mut hessian = if resistance.near_rest { Hessian::Exact } else { Hessian::Convex };
         for _ in 0..MAX_RESISTANCE_RISES {
             if let Some(step) = self.newton_step(system, resistance.now, hessian) {
@@ -203,15 +204,10 @@ impl BarChain<'_> {
     /// The fraction of a step, at most `longest`, that leads into no obstacle, and the positions
     /// there.
     fn clear_part(&self, moves: &[Vec2], longest: f64) -> Option<(f64, Vec<Vec2>)> {
-        let mut part = longest;
-        for _ in 0..=MAX_HALVINGS {
+        backtrack(longest, MAX_HALVINGS + 1, |part| {
             let positions: Vec<Vec2> = self.positions.iter().zip(moves).map(|(x, d)| x + d * part).collect();
-            if self.is_clear_enough(&positions) {
-                return Some((part, positions));
-            }
-            part *= 0.5;
-        }
-        None
+            self.is_clear_enough(&positions).then_some((part, positions))
+        })
     }
 
     /// Moves the nodes to the positions to which a part of a step leads, with the tensions of the

@@ -6,7 +6,7 @@
 //! From there the weight is turned back to where it is.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, nearest_turn};
+use crate::model::fem::free::beam::equilibrium::{Beam, BeamOutcome, nearest_turn};
 use crate::model::fem::free::dual_weighted_residual::apart;
 use crate::model::fem::free::stations::Station;
 
@@ -101,13 +101,13 @@ impl Beam {
         let weight = self.material.body;
         let image = axes.iter().enumerate().find_map(|(part, _)| axis(part)).map_or(weight, |u| mirrored(weight, u));
         let start = (other.angles.clone(), other.forces.clone());
-        if other.newton(self.bending) == Outcome::Stable {
+        if other.newton(self.bending) == BeamOutcome::Stable {
             return Some(other);
         }
         (other.angles, other.forces) = start;
         for k in 0..=TURNS_OF_WEIGHT {
             other.material.body = image + (weight - image) * (f64::from(k) / f64::from(TURNS_OF_WEIGHT));
-            if other.newton(self.bending) != Outcome::Stable {
+            if other.newton(self.bending) != BeamOutcome::Stable {
                 return None;
             }
         }

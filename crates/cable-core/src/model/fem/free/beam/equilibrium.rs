@@ -92,7 +92,7 @@ pub struct Beam {
 
 /// The outcome of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum BeamOutcome {
     /// A stable equilibrium.
     Stable,
     /// An unstable equilibrium.
@@ -107,7 +107,7 @@ fn shapes(x: f64) -> [f64; 3] {
 }
 
 /// The values of a bar at a Gauss point.
-pub(in crate::model::fem) struct Sample {
+pub(in crate::model::fem) struct GaussPoint {
     pub(in crate::model::fem) shapes: [f64; 3],
     /// Its part of the rest length, m.
     pub(in crate::model::fem) length: f64,
@@ -315,13 +315,13 @@ impl Beam {
     }
 
     /// Bar `e` at its Gauss points.
-    pub(in crate::model::fem) fn samples(&self, e: usize, starts: &[Vec2]) -> [Sample; 3] {
+    pub(in crate::model::fem) fn samples(&self, e: usize, starts: &[Vec2]) -> [GaussPoint; 3] {
         GAUSS_3.map(|(x, weight)| {
             let angle = self.angle(e, x);
             let t = Vec2::new(angle.cos(), angle.sin());
             let f = self.force(&self.bars[e], x, starts);
             let along = f.dot(&t);
-            Sample {
+            GaussPoint {
                 shapes: shapes(x),
                 length: weight * self.rest(e),
                 tangent: t,
@@ -333,10 +333,10 @@ impl Beam {
     }
 
     /// Finds the equilibrium at the whole bending stiffness.
-    pub fn solve(&mut self) -> Outcome {
+    pub fn solve(&mut self) -> BeamOutcome {
         let start = (self.angles.clone(), self.forces.clone());
         let mut outcome = self.newton(self.bending);
-        if outcome == Outcome::Stable {
+        if outcome == BeamOutcome::Stable {
             return outcome;
         }
         // Continue from a softer cable: `part` of the bending stiffness was reached last, `factor`
@@ -347,7 +347,7 @@ impl Beam {
         for _ in 0..MAX_TRIES {
             let next = (part * factor).min(1.0);
             outcome = self.newton(self.bending * next);
-            if outcome == Outcome::Stable {
+            if outcome == BeamOutcome::Stable {
                 if next >= 1.0 {
                     return outcome;
                 }
@@ -362,9 +362,9 @@ impl Beam {
     }
 
     /// Solves by Newton's method at one bending stiffness.
-    pub(super) fn newton(&mut self, bending: f64) -> Outcome {
+    pub(super) fn newton(&mut self, bending: f64) -> BeamOutcome {
         let n = self.angles.len();
-        let Ok(mut factor) = BandFactor::new(n, 2) else { return Outcome::Failed };
+        let Ok(mut factor) = BandFactor::new(n, 2) else { return BeamOutcome::Failed };
         let mut h = BandMatrix::new(n, 2);
         let mut before = f64::INFINITY;
         for _ in 0..MAX_STEPS {
@@ -387,13 +387,13 @@ impl Beam {
             let down =
                 if m > 0 { schur.clone().symmetric_eigenvalues().iter().filter(|&&e| !(e > 0.0)).count() } else { 0 };
             let Some(force_step) = (if m > 0 { schur.lu().solve(&right) } else { Some(right) }) else {
-                return Outcome::Failed;
+                return BeamOutcome::Failed;
             };
             let step: Vec<f64> =
                 (0..n).map(|e| -hg[e] - (0..m).map(|j| solved[j][e] * force_step[j]).sum::<f64>()).collect();
             let turn = step.iter().fold(0.0, |a: f64, s| if s.abs() <= a { a } else { s.abs() });
             if !turn.is_finite() {
-                return Outcome::Failed;
+                return BeamOutcome::Failed;
             }
             let scale = if turn > LONGEST_TURN { LONGEST_TURN / turn } else { 1.0 };
             for (a, s) in self.angles.iter_mut().zip(&step) {
@@ -414,11 +414,11 @@ impl Beam {
             if size <= STEP_TOLERANCE
                 || (size <= STALLED_TOLERANCES * STEP_TOLERANCE && size > STALLED_STEP_FRACTION * before)
             {
-                return if negative == down { Outcome::Stable } else { Outcome::Unstable };
+                return if negative == down { BeamOutcome::Stable } else { BeamOutcome::Unstable };
             }
             before = size;
         }
-        Outcome::Failed
+        BeamOutcome::Failed
     }
 
     /// Assembles the gradient, the force columns, C and the closure gaps at the present angles and

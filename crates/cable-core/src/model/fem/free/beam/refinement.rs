@@ -1,6 +1,6 @@
 //! This module refines the mesh of a stiff cable until its error estimate suffices.
 
-use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::beam::equilibrium::{Beam, BeamOutcome};
 use crate::model::fem::free::dual_weighted_residual;
 
 /// A solved stiff cable on its last mesh.
@@ -8,7 +8,7 @@ pub(in crate::model::fem) struct RefinedBeam {
     /// The cable.
     pub(in crate::model::fem) beam: Beam,
     /// The outcome of its solve.
-    pub(in crate::model::fem) outcome: Outcome,
+    pub(in crate::model::fem) outcome: BeamOutcome,
     /// Newton steps on all meshes.
     pub(in crate::model::fem) steps: usize,
     /// Estimated error of its tensions, relative to the greatest.
@@ -25,7 +25,7 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
     let mut steps = coarse.steps;
     let (mut estimate, mut shape_error) = (None, None);
     while let Some(wanted) = wanted
-        && outcome == Outcome::Stable
+        && outcome == BeamOutcome::Stable
         && coarse.bars() < most_bars
     {
         let mut fine = coarse.halved();
@@ -39,11 +39,11 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
             break;
         }
     }
-    if wanted.is_none() && outcome == Outcome::Stable {
+    if wanted.is_none() && outcome == BeamOutcome::Stable {
         // The given mesh is kept; the finer one only gives its error, sixteen fifteenths of the
         // change.
         let mut fine = coarse.halved();
-        if fine.solve() == Outcome::Stable {
+        if fine.solve() == BeamOutcome::Stable {
             estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
             shape_error = Some(2.0 * dual_weighted_residual::apart(&coarse.node_points(), &fine.node_points()));
         }

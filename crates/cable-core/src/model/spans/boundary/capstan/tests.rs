@@ -1,7 +1,9 @@
 //! These tests compare the capstan law along boundaries with closed forms.
 
 use crate::contact::World;
+use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::*;
+use crate::model::spans::boundary::{ChainRange, Curve};
 use crate::scene::obstacle::{Obstacle, Shape};
 use proptest::prelude::*;
 

@@ -5,8 +5,9 @@
 use std::cell::Cell;
 
 use crate::math::{Vec2, sin_cos};
-use crate::model::spans::boundary::arc::{ArcPath, SHORT_ARC};
-use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
+use crate::model::spans::boundary::capstan::arc::{ArcPath, SHORT_ARC};
+use crate::model::spans::boundary::capstan::cable_law::{CableLaw, LocalLoad, SlideResult};
+use crate::model::spans::boundary::capstan::piece_slide::slide_on_piece;
 use crate::model::spans::boundary::curve::{BoundaryPoint, ChainRange, Curve};
 use crate::model::spans::bracketed_root::{TENSION_ROUNDING, crossing};
 
@@ -95,17 +96,6 @@ impl CachedPiece {
     }
 }
 
-impl LocalLoad {
-    /// The cached point moved by a distance along its piece.
-    fn on(self, way: f64) -> Self {
-        if !self.turns || way == 0.0 {
-            return self;
-        }
-        let ((sin, cos), [bt, bn]) = (sin_cos(way), self.load);
-        Self { load: [bt * cos - bn * sin, bn * cos + bt * sin], ..self }
-    }
-}
-
 /// A tension that changes by sliding with m.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Sliding {
@@ -125,7 +115,7 @@ pub(in crate::model::spans) struct SegmentCursor<'a> {
 impl SegmentCursor<'_> {
     /// Slides with m from its point, where the tension is `t`, to p.
     pub fn slide(&self, p: f64, t: f64, m: f64) -> SlideResult {
-        self.law.along(&self.from, p - self.p0, t, m)
+        slide_on_piece(self.law, &self.from, p - self.p0, t, m)
     }
 
     /// The place before p₁ where two different tensions, each with its m, become equal, and both

@@ -6,7 +6,7 @@
 //! however many loads there are.
 
 use super::closed_form::{self, ChainPiece, DualEnergy, HorizontalForce};
-use super::span::{Catenary, Frame, Span};
+use super::span::{Catenary, LoadAxes, Span};
 use crate::error::SpanError;
 use crate::math::{Mat2, Vec2};
 
@@ -101,7 +101,7 @@ impl<'a> Chain<'a> {
     /// ∫ T + T²/2EA ds for a start force (N), N·m.
     #[must_use]
     pub fn complementary(&self, start_force: Vec2) -> f64 {
-        let frame = Frame::new(self.weight, start_force);
+        let frame = LoadAxes::new(self.weight, start_force);
         let (h, v) = frame.split(start_force);
         self.energy(frame, h, v).phi
     }
@@ -110,14 +110,14 @@ impl<'a> Chain<'a> {
     /// the force, m/N.
     #[must_use]
     pub fn reach(&self, start_force: Vec2) -> (Vec2, Mat2) {
-        let frame = Frame::new(self.weight, start_force);
+        let frame = LoadAxes::new(self.weight, start_force);
         let (h, v) = frame.split(start_force);
         let e = self.energy(frame, h, v);
         let turn = Mat2::from_columns(&[frame.across, frame.up]);
         (frame.join(e.x, e.z), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
     }
 
-    fn energy(&self, frame: Frame, h: f64, v: f64) -> DualEnergy {
+    fn energy(&self, frame: LoadAxes, h: f64, v: f64) -> DualEnergy {
         let mut sum = DualEnergy::default();
         let (mut h, mut v) = (h, v);
         let w = self.weight.norm();
@@ -146,7 +146,7 @@ impl<'a> Chain<'a> {
         if !(length > 0.0 && chord.iter().all(|c| c.is_finite()) && self.axial_stiffness > 0.0) {
             return Err(SpanError::NotANumber);
         }
-        let frame = Frame::new(self.weight, chord);
+        let frame = LoadAxes::new(self.weight, chord);
         let start = match near {
             Some(f) => f,
             None => self.guess(chord, length)?,
@@ -182,7 +182,7 @@ impl<'a> Chain<'a> {
             }
             return Ok(chord / c * (self.axial_stiffness * (c / length - 1.0)));
         }
-        let frame = Frame::new(load, chord).facing(chord);
+        let frame = LoadAxes::new(load, chord).facing(chord);
         let (x, z) = frame.split(chord / length);
         let (h, v) = closed_form::guess([x, z], total / self.axial_stiffness);
         Ok(frame.join(h * total, v * total))

@@ -2,7 +2,7 @@
 //! scene's order.
 
 use super::SimulatedCable;
-use super::piece::Piece;
+use super::piece::CablePiece;
 use crate::problem::SupportPoint;
 use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
 use crate::state::State;
@@ -60,7 +60,7 @@ impl SimulatedCable {
     /// The account of all pieces over the whole of the caller's step, where there is one.
     fn account(&self) -> Option<MomentumAccount> {
         let over_s = self.time_s() - self.peaks_since_s;
-        let whole = |p: &Piece| p.account.filter(|a| (a.over_s - over_s).abs() <= TIME_TOLERANCE * over_s);
+        let whole = |p: &CablePiece| p.account.filter(|a| (a.over_s - over_s).abs() <= TIME_TOLERANCE * over_s);
         let accounts: Option<Vec<MomentumAccount>> = self.pieces.iter().map(whole).collect();
         accounts?.into_iter().reduce(|a, b| a.with(&b))
     }

@@ -17,7 +17,7 @@
 //! without points in between.
 
 use crate::math::{exp, sin_cos};
-use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
+use crate::model::spans::boundary::capstan::cable_law::{CableLaw, LocalLoad, SlideResult};
 
 /// Longest stretch of one rule, rad: its error is h⁶/100 800 of the change of 1/λ along it, which
 /// is of the order of T/EA.

@@ -17,7 +17,7 @@ const DEPTH_FRACTION: f64 = 1e-9;
 
 /// The purpose of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(super) enum SolvePurpose {
     /// A first equilibrium is sought: contacts found meanwhile are frictionless.
     FirstEquilibrium,
     /// A step in time is followed.
@@ -29,7 +29,7 @@ pub(super) fn touch_obstacles(
     section: &mut CableSection,
     context: &SolveContext,
     world: &World,
-    purpose: Purpose,
+    purpose: SolvePurpose,
 ) -> Result<bool, Failure> {
     if world.is_empty() {
         return Ok(false);
@@ -109,7 +109,7 @@ pub(super) fn touch_passed_corner(
         context,
         k,
         &Penetration { arc_length: s, at: corner.at, tangent, gap, body: corner.body },
-        Purpose::FirstEquilibrium,
+        SolvePurpose::FirstEquilibrium,
     )?;
     Ok(true)
 }
@@ -121,7 +121,7 @@ fn lay_down_span(
     context: &SolveContext,
     k: usize,
     hit: &Penetration,
-    purpose: Purpose,
+    purpose: SolvePurpose,
 ) -> Result<(), Failure> {
     let impossible = Failure::ContactImpossible { s: hit.arc_length, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
@@ -194,14 +194,14 @@ fn insert_contact(
     k: usize,
     hit: &Penetration,
     new: NewContact,
-    purpose: Purpose,
+    purpose: SolvePurpose,
 ) {
     let NewContact { curve_index, chain_range, place: p, force } = new;
     let curve = &context.curves[curve_index];
     let ends = Ends { place: [p, p], material: [hit.arc_length, hit.arc_length], tension: [force, force] };
-    let mode = if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Stick } else { Mode::Slip(0.0) };
+    let mode = if curve.friction > 0.0 && purpose == SolvePurpose::Step { Mode::Stick } else { Mode::Slip(0.0) };
     let mut contact = Contact::new(curve_index, chain_range, ends, mode);
-    contact.smooth = purpose == Purpose::FirstEquilibrium;
+    contact.smooth = purpose == SolvePurpose::FirstEquilibrium;
     let contact_path = context.contact_path(&contact);
     let mut held_ends = [None, None];
     for side in 0..2 {
@@ -229,7 +229,7 @@ fn insert_contact(
             section.end_conditions[side] = EndCondition::Lies(p);
         }
     }
-    if purpose == Purpose::FirstEquilibrium {
+    if purpose == SolvePurpose::FirstEquilibrium {
         move_neighbours_over_edges(section, context, k);
     }
 }
