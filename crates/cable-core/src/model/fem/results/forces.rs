@@ -8,6 +8,10 @@ use crate::model::fem::mesh::{Mesh, SlidingNodeLoad};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 
+/// Difference of two bars, in parts of their length, up to which they count as equal. It only keeps
+/// rounding out: between even bars the tension of a node is their mean.
+const EVEN_BARS: f64 = 1e-9;
+
 /// Tension in the middle of the straight part of each bar, N; it may be negative in a stiff cable.
 pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
@@ -47,6 +51,19 @@ pub(super) fn tension_beside_round(
 ) -> f64 {
     let tangent = d.mesh.path(node + side - 1, x).ends[1 - side];
     load.tension[side] + d.input.loads.body.dot(&(x[node] - tangent))
+}
+
+/// Tension at inner node `k` between two bars, N: that of their middles, linear in between.
+pub(super) fn tension_at_node(d: &CableState, x: &[Vec2], tension: &[f64], k: usize) -> f64 {
+    let (mesh, s) = (&d.mesh, &d.mesh.arc_length);
+    let slides = [k - 1, k, k + 1].into_iter().any(|j| mesh.sliding[j].is_some());
+    let [before, after] =
+        if slides { [0, 1].map(|side| half(d, k, side, x)) } else { [s[k] - s[k - 1], s[k + 1] - s[k]] };
+    let whole = before + after;
+    if !((before - after).abs() > EVEN_BARS * whole) {
+        return 0.5 * (tension[k - 1] + tension[k]);
+    }
+    (tension[k - 1] * after + tension[k] * before) / whole
 }
 
 /// The force of the ground on the half bar at a held end that lies on it.

@@ -20,7 +20,7 @@ mod weighted_capstan;
 
 pub(in crate::model::fem) use bending_error::bending_error;
 
-use self::forces::{bar_tension, bar_tensions, end_forces, force_at_break};
+use self::forces::{bar_tension, bar_tensions, end_forces, force_at_break, tension_at_node};
 use crate::math::larger;
 use crate::model::fem::state::CableState;
 use crate::solution::{Assumptions, CableSolution};
@@ -76,7 +76,8 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     let ends = end_forces(cable, x, &gauged.bars).0.map(|f| f.norm());
     gauged.tension.clear();
     gauged.tension.push(ends[0]);
-    gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+    let inner = 1..gauged.bars.len().max(1);
+    gauged.tension.extend(inner.map(|k| tension_at_node(cable, x, &gauged.bars, k)));
     gauged.tension.push(ends[1]);
     for e in cable.mesh.breaks() {
         for (k, side) in [(e, 0), (e + 1, 1)] {

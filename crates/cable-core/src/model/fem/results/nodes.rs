@@ -2,7 +2,7 @@
 //! sliding nodes.
 
 use crate::math::Vec2;
-use crate::model::fem::results::forces::{curvature_at, force_at_break, half, moments, shear};
+use crate::model::fem::results::forces::{curvature_at, force_at_break, half, moments, shear, tension_at_node};
 use crate::model::fem::results::points_on_round::points_on_round;
 use crate::model::fem::state::CableState;
 use crate::solution::Node;
@@ -54,7 +54,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
             0 => ends[0].norm(),
             k if k + 1 == n => ends[1].norm(),
             _ if broken.is_some() => broken.map_or(0.0, |force| force.norm()),
-            k => 0.5 * (tension[k - 1] + tension[k]),
+            k => tension_at_node(d, x, tension, k),
         };
         let bar = |e: usize| mesh.direction(e, x) * tension[e] + shear(mesh, &moments, e, x);
         let force = match k {
