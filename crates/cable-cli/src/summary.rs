@@ -108,15 +108,28 @@ fn force(e: &EndForce) -> String {
 }
 
 fn stiffness(e: &EndStiffness) -> String {
-    let [x, y] = e.stiffness_n_per_m;
+    let [[right, aslant], [raised, up]] = e.stiffness_n_per_m.map(|row| row.map(|k| figure(k, 6)));
     format!(
-        "`{}` right {:.5e} N/m by moves right, {:.5e} N/m by moves up; up {:.5e} N/m, {:.5e} N/m (moved {:.1e} m)",
-        e.support, x[0], x[1], y[0], y[1], e.moved_m
+        "`{}` right {right} N/m by moves right, {aslant} N/m by moves up; up {raised} N/m, {up} N/m (moved {} m)",
+        e.support,
+        figure(e.moved_m, 2)
     )
 }
 
 fn at(p: CablePlace) -> String {
     format!("at {:.4} m ({:.4} m, {:.4} m)", p.arc_length_m, p.x_m, p.y_m)
+}
+
+/// A number with so many significant digits, in powers of ten only where it is very large or small.
+fn figure(value: f64, digits: i32) -> String {
+    let size = value.abs().log10().floor() as i32;
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (-4..6).contains(&size) {
+        format!("{value:.*}", (digits - 1 - size).max(0) as usize)
+    } else {
+        format!("{value:.*e}", (digits - 1).max(0) as usize)
+    }
 }
 
 fn percent(ratio: f64) -> String {
@@ -150,9 +163,20 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
     };
     let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
     let change = |what: &str, of: Option<f64>, unit: &str| {
-        of.map_or_else(|| format!("{what} by what is not known"), |v| format!("{what} by up to {v:.2e} {unit}"))
+        of.map_or_else(|| format!("{what} by what is not known"), |v| format!("{what} by up to {} {unit}", figure(v, 3)))
     };
     let supports = change("forces on supports change", b.changes.support_force_n, "N");
     let shape = change("the shape", b.changes.position_m, "m");
     format!("{with} the greatest tension is {tension:.4} N{more}; {supports}, {shape}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_usual_size_have_no_powers_of_ten() {
+        let all = [0.0, 6.9, -0.001_6, 82.123_456, 123_456.7, 2.5e7, 3e-9].map(|v| figure(v, 3));
+        assert_eq!(all, ["0", "6.90", "-0.00160", "82.1", "123457", "2.50e7", "3.00e-9"]);
+    }
 }
