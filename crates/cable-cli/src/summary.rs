@@ -163,7 +163,10 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
     };
     let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
     let change = |what: &str, of: Option<f64>, unit: &str| {
-        of.map_or_else(|| format!("{what} by what is not known"), |v| format!("{what} by up to {} {unit}", figure(v, 3)))
+        of.map_or_else(
+            || format!("{what} by what is not known"),
+            |v| format!("{what} by up to {} {unit}", figure(v, 3)),
+        )
     };
     let supports = change("forces on supports change", b.changes.support_force_n, "N");
     let shape = change("the shape", b.changes.position_m, "m");

@@ -124,8 +124,8 @@ fn end_stiffness_is_that_of_the_catenary() {
     }
 }
 
-/// An end from which a loose cable hangs plumb carries what hangs: a metre more of it for each metre
-/// that it is raised, and nothing more where it is moved aside.
+/// An end from which a loose cable hangs plumb carries what hangs: a metre more of it for each
+/// metre that it is raised, and nothing more where it is moved aside.
 #[test]
 fn issue_016_an_end_over_loose_cable_is_as_stiff_as_the_cable_is_heavy() {
     for (slack, heights) in [(0.1, [1.21, 1.61]), (1.5, [0.4, 2.0])] {

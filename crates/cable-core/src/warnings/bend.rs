@@ -26,8 +26,8 @@
 //! straight up and no tension at the bottom, EI θ'' = −w s cos θ with θ(0) = 0, θ → π/2 has the
 //! radius 0.912 (EI/w)^⅓ there; any wider loop has a larger one.
 //!
-//! The bars of a stiff cable in motion may be longer than that bend. They spread its turn over their
-//! length and show it too gentle by up to two times, so the formula judges it there, too.
+//! The bars of a stiff cable in motion may be longer than that bend. They spread its turn over
+//! their length and show it too gentle by up to two times, so the formula judges it there, too.
 
 use super::guide_at_node::{Guide, guide_at_node};
 use super::tangle::turns;
@@ -41,8 +41,8 @@ use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Warning, 
 const CORNER_TURN: f64 = 0.26;
 
 /// A stiff cable whose line has no more than this times the radius of a corner's or post's own arc
-/// may have been given no moment there: its mesh follows the arc. Closer to 1: rounding passes for a moment;
-/// further: bends that are as sharp are judged by the formula, which says the same.
+/// may have been given no moment there: its mesh follows the arc. Closer to 1: rounding passes for
+/// a moment; further: bends that are as sharp are judged by the formula, which says the same.
 const CORNER_ARC_RATIO: f64 = 1.05;
 
 /// Length of the bars beside a node of a stiff cable in motion, in bending lengths √(EI/T), above
@@ -60,8 +60,8 @@ const NARROWEST_LOOP: f64 = 0.912;
 const MAX_HANGING_ACCELERATION: f64 = 0.25;
 
 /// Distance from a corner, in bending lengths √(EI/T), within which a cable makes nearly all of its
-/// turn there: tan(φ/4) falls by e a bending length. Smaller: parts of the turn are left out; larger:
-/// the turns of other corners are counted.
+/// turn there: tan(φ/4) falls by e a bending length. Smaller: parts of the turn are left out;
+/// larger: the turns of other corners are counted.
 const BEND_REACH_LENGTHS: f64 = 3.0;
 
 /// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a
@@ -172,8 +172,8 @@ impl SharpestBends {
         self.free
     }
 
-    /// The least radius (m) with which the cable hangs in a loop by its weight at a node, if its line
-    /// is that of a flexible one; 0 where it may be bent more sharply.
+    /// The least radius (m) with which the cable hangs in a loop by its weight at a node, if its
+    /// line is that of a flexible one; 0 where it may be bent more sharply.
     fn loop_radius(&self, problem: &Problem, n: &Node) -> f64 {
         let weight = problem.weight.norm();
         // In a pile the cable is pressed into folds by what lies on it.

@@ -545,8 +545,8 @@ const NAMED: [(&str, &[WarningKind]); 7] = [
     ("robot-drive", &[]),
 ];
 
-/// A cable of likely 1.4 N·m² (its preset's) round a pipe and over an edge in the same place has one
-/// bend, and in a narrow loop that hangs it has no kink.
+/// A cable of likely 1.4 N·m² (its preset's) round a pipe and over an edge in the same place has
+/// one bend, and in a narrow loop that hangs it has no kink.
 #[test]
 fn issue_016_bends_of_flexible_lines_are_those_of_their_likely_stiffness() {
     let judged = |shape: Shape, ends: [[f64; 2]; 2], length_m: f64| {

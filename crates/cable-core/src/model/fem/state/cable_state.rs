@@ -67,7 +67,8 @@ impl CableState {
         self.contacts.meets_nothing(&self.problem)
     }
 
-    /// True if the cable can rub on anything: an obstacle, itself, a pulley, or the floor of a plan.
+    /// True if the cable can rub on anything: an obstacle, itself, a pulley, or the floor of a
+    /// plan.
     pub(in crate::model::fem) fn can_rub(&self) -> bool {
         !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none())
     }

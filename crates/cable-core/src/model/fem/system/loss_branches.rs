@@ -81,8 +81,8 @@ pub(in crate::model::fem) struct Loss {
 }
 
 impl Loss {
-    /// The loss of a cable of even bars of length `bar` (m): constant up to their highest frequency,
-    /// or, if it `rubs`, up to that at which the viscous loss is as great.
+    /// The loss of a cable of even bars of length `bar` (m): constant up to their highest
+    /// frequency, or, if it `rubs`, up to that at which the viscous loss is as great.
     pub(in crate::model::fem) fn of(problem: &Problem, bar: f64, rubs: bool) -> Self {
         let ratio = problem.cable.damping_ratio;
         let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;

@@ -10,8 +10,8 @@ use crate::math::larger;
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{Unknowns, bar_energy};
 
-/// Updates the branches by a step of `h` (s) to the unknowns at its end, before the motion itself is
-/// updated.
+/// Updates the branches by a step of `h` (s) to the unknowns at its end, before the motion itself
+/// is updated.
 pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
     if cable.loss.branches.is_empty() {
         return;

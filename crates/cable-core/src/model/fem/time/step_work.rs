@@ -194,8 +194,8 @@ impl BalancedStep<'_> {
         }
     }
 
-    /// Adds the damping work of a bar without sliding nodes. Returns the work of stretch at the end of the step and the energy that it
-    /// stores then, J.
+    /// Adds the damping work of a bar without sliding nodes. Returns the work of stretch at the end
+    /// of the step and the energy that it stores then, J.
     #[inline]
     fn plain_bar(&self, works: &mut Works, e: usize) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
