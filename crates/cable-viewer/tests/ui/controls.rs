@@ -40,6 +40,7 @@ fn names() -> BTreeSet<String> {
     let mut names = BTreeSet::new();
     for scene in [
         catalog::tank(),
+        crate::kinked_tank(),
         catalog::robot_drive(),
         catalog::loads_wind_heat(),
         catalog::pulley_waypoints(),

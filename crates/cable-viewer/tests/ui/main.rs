@@ -54,6 +54,14 @@ use egui::{Key, Modifiers, PointerButton, Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
+/// The tank with a cable that can touch itself: its free bends are judged as those of a flexible
+/// line, and one of them is a kink.
+fn kinked_tank() -> cable_core::Scene {
+    let mut scene = catalog::tank();
+    scene.cables[0].self_contact = true;
+    scene
+}
+
 fn open(scene: cable_core::Scene) -> Harness<'static, ViewerApp> {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))

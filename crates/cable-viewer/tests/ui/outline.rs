@@ -8,7 +8,7 @@ use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::open;
+use crate::{kinked_tank, open};
 
 fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
     harness.get_by_label(label).click();
@@ -22,7 +22,7 @@ fn selected(harness: &Harness<'_, ViewerApp>) -> Option<Item> {
 #[test]
 fn the_outline_begins_the_left_panel_and_selects() {
     for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
-        let mut harness = open(catalog::tank());
+        let mut harness = open(kinked_tank());
         harness.set_size(Vec2::from(size));
         harness.run_steps(4);
         let [outline, scene, canvas] = ["Outline", "Select Scene", "Canvas"].map(|l| harness.get_by_label(l).rect());

@@ -10,14 +10,14 @@ use egui::{Order, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, open};
+use crate::{apply, kinked_tank, open};
 
 /// Warnings of a scene that has several at rest, one of them with a long name.
 const TOLD: [&str; 2] = ["Kinked at", "Depends on how it was laid"];
 
 #[test]
 fn a_warning_is_one_line_at_every_width() {
-    let mut harness = open(catalog::tank());
+    let mut harness = open(kinked_tank());
     for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
         harness.set_size(Vec2::from(size));
         harness.run_steps(4);
@@ -174,7 +174,7 @@ fn a_cable_that_a_route_or_time_led_can_be_laid_anew() {
 
 #[test]
 fn a_click_on_a_warning_zooms_and_its_words_stand_on_hover_or_below() {
-    let mut harness = open(catalog::tank());
+    let mut harness = open(kinked_tank());
     harness.ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;
         style.interaction.show_tooltips_only_when_still = false;
@@ -254,7 +254,7 @@ fn the_line_of_the_worst_warning_leads_to_its_place_and_takes_the_same_room_with
 /// tension below it.
 #[test]
 fn issue_020_a_tension_above_its_limit_comes_first_among_equals() {
-    let mut scene = catalog::tank();
+    let mut scene = kinked_tank();
     scene.cables[0].service_tension_n = 20.0;
     let mut harness = open(scene);
     let live = &mut harness.state_mut().state.live;
