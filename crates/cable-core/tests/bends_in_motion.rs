@@ -1,9 +1,9 @@
 //! A stiff cable that a dead load pulls is bent over a post by a slow hand, without gravity or
 //! friction.
 //!
-//! Where a post pushes at one point the sharpest bend of a cable that is turned by θ has the radius
-//! ½ √(EI/T) / sin(θ/4) (Euler's elastica); where that is less than the radius R of its centre line
-//! on the post, it lies on the post.
+//! A cable that a post turns by θ at one point has the radius ½ √(EI/T) / sin(θ/4) there, its
+//! sharpest bend (Euler's elastica). If that is less than the radius R of its centre line on the
+//! post, it lies on the post.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};

@@ -64,9 +64,9 @@ pub fn end_stiffness(scene: &Scene, model: Model, settings: Settings) -> Result<
                 continue;
             };
             let top = answer.cables.get(k).map_or(0.0, |c| c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger));
-            // Where a part of the cable lies loose, nothing is drawn or held through it, and the
-            // end feels the equilibrium at its new place. A history would lift the cable off the
-            // ground bar by bar.
+            // Nothing is drawn or held through a part of the cable that lies loose, so the end
+            // feels the equilibrium at its new place. A history would lift the cable off the ground
+            // bar by bar.
             let is_loose = answer.cables.get(k).is_some_and(|c| c.nodes.iter().any(|n| n.tension_n <= 0.0));
             let moved = |by: Vec2| -> Result<Vec2, Error> {
                 let answer = if is_loose {

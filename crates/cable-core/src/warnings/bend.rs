@@ -76,7 +76,7 @@ const KINK_DIAMETERS: f64 = 1.0;
 /// than a billionth of a radian then: that is rounding of its nodes.
 const STRAIGHT_LENGTHS: f64 = 1e9;
 
-/// How well the line of an answer shows a bend at a node.
+/// The quality with which the line of an answer shows a bend at a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ShownBend {
     /// It has the curvature of the cable, or that of a flexible one.
@@ -88,7 +88,7 @@ enum ShownBend {
 }
 
 impl ShownBend {
-    /// How well the line shows a bend at node `k` of a piece.
+    /// The quality with which the line shows a bend at node `k` of a piece.
     fn of(problem: &Problem, answer: &CableSolution, piece: &[Node], k: usize) -> Self {
         if !answer.assumptions.inertia || problem.bending_stiffness == 0.0 {
             return Self::Exact;

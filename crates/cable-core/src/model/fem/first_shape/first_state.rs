@@ -35,7 +35,6 @@ pub(in crate::model::fem) fn cable_along_route(
         cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
         cable.contacts.self_contacts.friction = cable.problem.cable.friction;
     }
-    cable.loss = Loss::of(&cable.problem, cable.even(), cable.can_rub());
     cable.forget_history();
     prepare_input(&mut cable, 0.0, None);
     for k in 0..cable.mesh.nodes() {

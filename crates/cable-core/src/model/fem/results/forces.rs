@@ -252,3 +252,34 @@ pub(super) fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 
     let path = mesh.path(e, x);
     if path.length > 0.0 { perp(path.direction) * ((before - after) / path.length) } else { Vec2::zeros() }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::model::Settings;
+    use crate::model::fem::first_shape::cable_along_route;
+    use crate::problem::problems;
+    use crate::scene::{Load, catalog};
+
+    /// A tension that grows evenly along the cable has its own value at nodes between even bars and
+    /// between uneven ones.
+    #[test]
+    fn issue_016_an_even_growth_of_tension_is_seen_at_every_node() {
+        let mut scene = catalog::hanging_span();
+        let cable = scene.cables[0].name.clone();
+        let (arc_length_m, force_n) = (1.3, Some([0.0; 2]));
+        scene.loads = vec![Load { cable, arc_length_m, force_n, times_s: Vec::new(), forces_n: Vec::new() }];
+        let problem = problems(&scene).unwrap().remove(0);
+        let settings = Settings { segments: Some(8), ..Settings::default() };
+        let state = cable_along_route(problem, settings, Arc::default());
+        let s = &state.mesh.arc_length;
+        let bars: Vec<f64> = s.windows(2).map(|pair| 10.0 + 1.5 * (pair[0] + pair[1])).collect();
+        assert!((s[1] - s[0] - (s[2] - s[1])).abs() > 0.1, "even bars: {s:?}");
+        for k in 1..bars.len() {
+            let found = tension_at_node(&state, &state.motion.positions, &bars, k);
+            assert!((found - (10.0 + 3.0 * s[k])).abs() < 1e-12, "{found} at {}", s[k]);
+        }
+    }
+}

@@ -21,10 +21,12 @@
 //! This is a spring of stiffness C whose strain is measured from ε₀ − Q/C, the same form as the
 //! viscous damping of a step.
 //!
-//! A bar of a flexible cable that goes slack buckles between its nodes: its material keeps the
-//! strain 0, and its branches relax. A bar that was slack at the start of a step has the viscous
-//! damping of slack bars in that step. Branches are strained only in steps in which their force
-//! acts, so they give back only energy that was put in.
+//! A bar of a flexible cable that goes slack buckles between its nodes. Its material keeps the
+//! strain at which its tension ends and recovers from it (`time/loss_memory.rs`), so that the
+//! branches give back only energy that was put in.
+//!
+//! A cable that can rub has branches up to the frequency at which its viscous loss, which keeps
+//! impacts resolved, is as great as the loss that is asked for.
 
 use crate::math::{bounded, smaller};
 use crate::problem::Problem;
@@ -138,8 +140,8 @@ fn loss_factor(branches: &[RelaxationBranch], viscous: f64, omega: f64) -> f64 {
 }
 
 /// Time constant of viscous damping, s: that of the damping ratio at the first axial mode of the
-/// whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable that can touch
-/// nothing have relaxation branches instead.
+/// whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable that cannot
+/// rub have relaxation branches instead, those of one that can have them beside it.
 pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
     let first_mode = std::f64::consts::PI * wave / problem.damped_length;
