@@ -1,7 +1,7 @@
 //! A partition says which stretch, supports and loads of a broken cable belong to which piece.
 
 use crate::math::Vec2;
-use crate::problem::{Problem, SupportPoint, TimeSeries};
+use crate::problem::{Departure, Problem, SupportPoint, TimeSeries};
 use crate::scene::{PulleySide, SupportKind};
 use crate::state::State;
 
@@ -130,6 +130,8 @@ impl CablePart {
             let end = if i == 0 { Some(0.0) } else { (i == last).then_some(length) };
             let mut s = k.and_then(|k| whole.supports.get(k)).cloned().unwrap_or_else(free_end);
             s.arc_length = end.or(s.arc_length.map(|a| a - self.from));
+            // Only whole cables go on past wheels that they have left.
+            s.departure = Departure::Never;
             supports.push(s);
         }
         let mut loads: Vec<_> = self.loads.iter().filter_map(|&l| whole.loads.get(l)).cloned().collect();
@@ -139,16 +141,7 @@ impl CablePart {
         let mut cable = whole.cable.clone();
         cable.length_m = length;
         cable.segments = Some(elements);
-        Problem {
-            length,
-            supports,
-            loads,
-            route: route(state),
-            cable,
-            similar: None,
-            standing_wheels: None,
-            ..whole.clone()
-        }
+        Problem { length, supports, loads, route: route(state), cable, similar: None, wheels: None, ..whole.clone() }
     }
 }
 
@@ -176,6 +169,7 @@ fn free_end() -> SupportPoint {
         force: TimeSeries::default(),
         mass: 0.0,
         release: None,
+        departure: Departure::Never,
     }
 }
 

@@ -190,6 +190,12 @@ pub trait Mechanics: Send {
         false
     }
 
+    /// Goes on with wheels that let go of the cable now: `problem` is the same but for these, and
+    /// for posts after its other obstacles. Returns false, without a change, if the model cannot.
+    fn let_go_of_wheels(&mut self, _problem: Arc<Problem>) -> bool {
+        false
+    }
+
     /// Returns the energy of the cable as its energy account counts it; None if it keeps none.
     fn stored_energy(&self) -> Option<Energy> {
         None

@@ -275,7 +275,7 @@ fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
     };
     let inner = bare(problem, settings)?;
     let problem = inner.problem().clone();
-    let Some(wheels) = problem.standing_wheels.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
+    let Some(wheels) = problem.wheels.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
     let wheels = leavable_wheels::LeavableWheels::new(problem, wheels, settings, Arc::new(bare), inner);
     Ok(Box::new(Layered(wheels)))
 }

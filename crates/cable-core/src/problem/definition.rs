@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::time_series::{TIME_TOLERANCE_S, TimeSeries, turn_between};
-use super::wheels_as_posts::WheelPost;
+use super::wheels_as_posts::WheelLeft;
 use crate::contact::World;
 use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
@@ -61,8 +61,8 @@ pub struct Problem {
     /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
     /// farther away.
     pub similar: Option<(Similarity, Arc<Problem>)>,
-    /// Its wheels that stand still, where it has any.
-    pub(crate) standing_wheels: Option<Arc<StandingWheels>>,
+    /// Its wheels, where it has any.
+    pub(crate) wheels: Option<Arc<CableWheels>>,
 }
 
 /// A support, resolved.
@@ -92,6 +92,20 @@ pub struct SupportPoint {
     pub mass: f64,
     /// The time when it lets go, s.
     pub release: Option<f64>,
+    /// For a wheel, whether the cable may leave it, or has done so.
+    pub departure: Departure,
+}
+
+/// The departure of a cable from a wheel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Departure {
+    /// The cable stays on it: it is no wheel, or the cable is a piece of a broken one.
+    #[default]
+    Never,
+    /// A model reports that the wheel would have to pull, for the cable to leave it.
+    Possible,
+    /// The cable has left it, and goes on without it.
+    Done,
 }
 
 impl SupportPoint {
@@ -136,26 +150,49 @@ pub struct PointLoad {
     pub force: TimeSeries,
 }
 
-/// The wheels of a cable that stand still, of which any may be a post.
+/// The wheels of a cable, any of which it may leave.
 #[derive(Clone, Debug)]
-pub(crate) struct StandingWheels {
+pub(crate) struct CableWheels {
     /// The scene with the wheels.
     pub(super) scene: Scene,
     /// The cable in it.
     pub(super) cable_index: usize,
-    /// For each support of the cable, true if it is one of them.
+    /// For each support of the cable, true if it is a wheel.
+    pub wheels: Vec<bool>,
+    /// For each support of the cable, true if it is a wheel that stands still.
     pub standing: Vec<bool>,
 }
 
-/// A cable with posts in place of some of its wheels.
+/// A cable that has left some of its wheels: those that stand still are posts, the others are not
+/// there.
 #[derive(Clone, Debug)]
-pub(crate) struct WheelsAsPosts {
+pub(crate) struct WheelsLeft {
     /// The cable without those supports.
     pub problem: Arc<Problem>,
     /// The wheels.
-    pub wheels: Vec<WheelPost>,
+    pub wheels: Vec<WheelLeft>,
     /// For each support of the scene, true if it is one of them.
     pub replaced: Vec<bool>,
+}
+
+impl WheelsLeft {
+    /// A problem with the same supports, of which the wheels that were left let go at a time (s),
+    /// and with their posts; None if an obstacle would have another place in the list.
+    #[must_use]
+    pub(crate) fn let_go(&self, problem: &Problem, time_s: f64) -> Option<Arc<Problem>> {
+        let [before, after] = [problem, &*self.problem].map(|p| p.world.geometry().bodies());
+        let same = before.iter().zip(after).all(|(a, b)| a.obstacle == b.obstacle && a.first == b.first);
+        if !same || before.len() > after.len() {
+            return None;
+        }
+        let mut this = Problem { world: self.problem.world.clone(), unreachable: None, ..problem.clone() };
+        for (support, replaced) in this.supports.iter_mut().zip(&self.replaced) {
+            if *replaced && support.departure != Departure::Done {
+                (support.release, support.departure) = (Some(time_s), Departure::Done);
+            }
+        }
+        Some(Arc::new(this))
+    }
 }
 
 impl Problem {

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use super::definition::{PointLoad, Problem, StandingWheels, SupportPoint, WheelsAsPosts};
+use super::definition::{CableWheels, Departure, PointLoad, Problem, SupportPoint, WheelsLeft};
 use super::robot_outline::robot_outline;
 use super::time_series::TimeSeries;
-use super::wheels_as_posts::{WithPosts, standing_wheels, with_posts};
+use super::wheels_as_posts::{StandIn, WithPosts, stands_still, wheels, with_posts};
 use super::{ground_route, route_check, support_clearance};
 use crate::contact::World;
 use crate::error::SceneError;
@@ -46,7 +46,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
     let mut this = problem(scene, index, cable)?;
     support_clearance::clear_supports(&mut this)?;
     ground_route::lift_route(&mut this);
-    this.standing_wheels = StandingWheels::of(scene, index);
+    this.wheels = CableWheels::of(scene, index);
     let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
@@ -57,29 +57,31 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
             copy.time_scale = by.time;
             support_clearance::clear_supports(&mut copy)?;
             ground_route::lift_route(&mut copy);
-            copy.standing_wheels = StandingWheels::of(&scaled, index);
+            copy.wheels = CableWheels::of(&scaled, index);
             this.similar = Some((by, Arc::new(copy)));
         }
     }
     Ok(this)
 }
 
-impl StandingWheels {
-    /// The wheels of a cable that stand still; None where it has none.
+impl CableWheels {
+    /// The wheels of a cable; None where it has none.
     fn of(scene: &Scene, cable_index: usize) -> Option<Arc<Self>> {
-        let standing = standing_wheels(scene.cables.get(cable_index)?);
-        standing.contains(&true).then(|| Arc::new(Self { scene: scene.clone(), cable_index, standing }))
+        let cable = scene.cables.get(cable_index)?;
+        let wheels = wheels(cable);
+        let standing = cable.supports.iter().zip(&wheels).map(|(s, is_wheel)| *is_wheel && stands_still(s)).collect();
+        wheels.contains(&true).then(|| Arc::new(Self { scene: scene.clone(), cable_index, wheels, standing }))
     }
 
-    /// The cable with posts in place of those wheels for which `replaced` is true, at the places
-    /// given for its supports, m (None: where the scene has it). None where that is no wheel, or
-    /// the cable cannot be laid round the posts.
-    pub(crate) fn as_posts(&self, replaced: &[bool], places: &[Option<Vec2>]) -> Option<Arc<WheelsAsPosts>> {
+    /// The cable without the wheels that something stands in for, at the places given for its
+    /// supports, m (None: where the scene has it). None where that is no wheel, or the cable cannot
+    /// be laid round the posts.
+    pub(crate) fn left(&self, stand_ins: &[StandIn], places: &[Option<Vec2>]) -> Option<Arc<WheelsLeft>> {
         let mut cable = self.scene.cables.get(self.cable_index)?.clone();
         for (support, place) in cable.supports.iter_mut().zip(places) {
             support.at_m = place.map(Into::into).or(support.at_m);
         }
-        let WithPosts { scene, cables, wheels } = with_posts(&self.scene, &cable, replaced)?;
+        let WithPosts { scene, cables, wheels } = with_posts(&self.scene, &cable, stand_ins)?;
         let lay = |cable: &Cable| -> Result<Problem, SceneError> {
             let mut this = problem(&scene, self.cable_index, cable)?;
             support_clearance::clear_supports(&mut this)?;
@@ -88,7 +90,14 @@ impl StandingWheels {
             Ok(this)
         };
         let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
-        Some(Arc::new(WheelsAsPosts { problem, wheels, replaced: replaced.to_vec() }))
+        let replaced = stand_ins.iter().map(|s| *s != StandIn::Wheel).collect();
+        Some(Arc::new(WheelsLeft { problem, wheels, replaced }))
+    }
+
+    /// The cable with a post in place of each wheel that stands still; None as [`Self::left`].
+    pub(crate) fn all_as_posts(&self) -> Option<Arc<WheelsLeft>> {
+        let post = |stands: &bool| if *stands { StandIn::Post } else { StandIn::Wheel };
+        self.left(&self.standing.iter().map(post).collect::<Vec<_>>(), &[])
     }
 }
 
@@ -139,7 +148,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         notes: Vec::new(),
         similar: None,
-        standing_wheels: None,
+        wheels: None,
         cable,
     })
 }
@@ -172,6 +181,10 @@ fn support_point(scene: &Scene, cable: &Cable, k: usize) -> SupportPoint {
         force: force_series(s.force_n, &s.times_s, &s.forces_n),
         mass: s.mass_kg.unwrap_or(0.0),
         release: s.release_s,
+        departure: match s.kind == SupportKind::Pulley && k > 0 && k < last && s.radius_m.is_some_and(|r| r > 0.0) {
+            true => Departure::Possible,
+            false => Departure::Never,
+        },
     }
 }
 

@@ -11,7 +11,7 @@
 //! | `unreachable_obstacles.rs` | obstacles that the cable cannot come to are left out |
 //! | `way_over.rs` | the route between two places, over the obstacles in the way |
 //! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
-//! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
+//! | `wheels_as_posts.rs` | wheels as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //! | `answer_energy.rs` | the energy of an answer, from its nodes and the numbers of the cable |
 //!
@@ -34,8 +34,8 @@ pub(crate) mod way_over;
 pub(crate) mod wheel_passage;
 pub(crate) mod wheels_as_posts;
 
-pub use self::definition::{PointLoad, Problem, SupportPoint};
-pub(crate) use self::definition::{StandingWheels, WheelsAsPosts};
+pub(crate) use self::definition::{CableWheels, WheelsLeft};
+pub use self::definition::{Departure, PointLoad, Problem, SupportPoint};
 pub use self::from_scene::{check, problems};
 pub use self::robot_outline::{OUTLINE_NAME, robot_outline};
 pub use self::time_series::TimeSeries;

@@ -1,8 +1,8 @@
-//! A wheel that stands still is a round that the cable may leave: this copy of a cable has posts in
-//! place of some of its wheels.
+//! A wheel is a round that the cable may leave: this copy of a cable is without some of its wheels.
 //!
 //! A pulley of the models keeps the cable on its wheel. Where the cable does not press on it, it
-//! hangs clear, and the wheel is what a post of the same radius and friction is.
+//! hangs clear. A wheel that stands still is then what a post of the same radius and friction is;
+//! posts do not move, so one that moves is taken away until the cable comes to it again.
 
 use std::f64::consts::PI;
 
@@ -24,36 +24,53 @@ const LONGEST_ARC: f64 = PI / 3.0;
 #[derive(Clone, Debug)]
 pub(super) struct WithPosts {
     pub scene: Scene,
-    /// The cable without those supports, by its own route if it has one, and past the posts from
+    /// The cable without those supports, by its own route if it has one, and past the wheels from
     /// support to support.
     pub cables: Vec<Cable>,
-    pub wheels: Vec<WheelPost>,
+    pub wheels: Vec<WheelLeft>,
 }
 
-/// A wheel that is a post in the copy.
+/// The thing that a copy has in the place of a wheel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StandIn {
+    /// The wheel itself.
+    #[default]
+    Wheel,
+    /// A post.
+    Post,
+    /// Nothing.
+    Nothing,
+}
+
+/// A wheel that is a support no more in the copy.
 #[derive(Clone, Debug)]
-pub struct WheelPost {
+pub struct WheelLeft {
     /// Index of its support.
     pub support: usize,
-    /// Name of the post, which no obstacle of the scene has.
-    pub post: String,
-    /// Centre, m.
+    /// Name of the post, which no obstacle of the scene has; None if nothing stands there.
+    pub post: Option<String>,
+    /// Centre when it was left, m.
     pub center: Vec2,
 }
 
-/// For each support of a cable, whether it is a wheel that stands where it is.
-pub(super) fn standing_wheels(cable: &Cable) -> Vec<bool> {
+/// For each support of a cable, whether it is a wheel.
+pub(super) fn wheels(cable: &Cable) -> Vec<bool> {
     let last = cable.supports.len().saturating_sub(1);
-    let fixed = |(k, s): (usize, &Support)| {
-        let wheel = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
-        k > 0 && k < last && wheel && s.motion.is_none() && s.release_s.is_none() && s.at_m.is_some()
+    let is_wheel = |(k, s): (usize, &Support)| {
+        let round = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
+        k > 0 && k < last && round && s.at_m.is_some()
     };
-    cable.supports.iter().enumerate().map(fixed).collect()
+    cable.supports.iter().enumerate().map(is_wheel).collect()
 }
 
-/// Returns the scene with posts in place of those wheels of a cable for which `replaced` is true;
-/// None where that is none.
-pub(super) fn with_posts(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<WithPosts> {
+/// Returns whether a wheel stands where it is.
+pub(super) fn stands_still(wheel: &Support) -> bool {
+    wheel.motion.is_none() && wheel.release_s.is_none()
+}
+
+/// Returns the scene with these things in place of the wheels of a cable; None where all are wheels.
+pub(super) fn with_posts(scene: &Scene, cable: &Cable, stand_ins: &[StandIn]) -> Option<WithPosts> {
+    let replaced: Vec<bool> = stand_ins.iter().map(|s| *s != StandIn::Wheel).collect();
     if !replaced.contains(&true) {
         return None;
     }
@@ -62,16 +79,20 @@ pub(super) fn with_posts(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Opt
     for k in (0..replaced.len()).filter(|k| replaced[*k]) {
         let support = &cable.supports[k];
         let center = support.at_m?;
+        if stand_ins[k] == StandIn::Nothing {
+            wheels.push(WheelLeft { support: k, post: None, center: vec2(center) });
+            continue;
+        }
         let mut post = support.name.clone();
         while scene.obstacles.iter().any(|o| o.name == post) {
             post.push('\'');
         }
         let shape = Shape::Circle { center_m: center, radius_m: support.radius_m? };
         scene.obstacles.push(Obstacle { name: post.clone(), shape, friction: Some(support.friction.unwrap_or(0.0)) });
-        wheels.push(WheelPost { support: k, post, center: vec2(center) });
+        wheels.push(WheelLeft { support: k, post: Some(post), center: vec2(center) });
     }
     let own = (!cable.route_m.is_empty()).then(|| cable.route_m.clone());
-    let past_posts = route(&scene, cable, replaced).map(|r| r.into_iter().map(Into::into).collect());
+    let past_posts = route(&scene, cable, &replaced).map(|r| r.into_iter().map(Into::into).collect());
     let by = |route_m| {
         let mut keep = replaced.iter().map(|r| !r);
         let mut cable = Cable { route_m, ..cable.clone() };
@@ -126,6 +147,7 @@ mod tests {
     use crate::contact::distance::segment_segment;
     use crate::math::{Vec2, smaller};
     use crate::problem::problems;
+    use crate::problem::wheels_as_posts::StandIn;
     use crate::scene::{Support, catalog};
 
     /// Over the first and the last wheel the way turns by more than 150°. Points of it stood on the
@@ -145,16 +167,16 @@ mod tests {
             Support::fixed("b", [2.06, -0.99]),
         ];
         let problem = &problems(&scene).unwrap()[0];
-        let wheels = problem.standing_wheels.as_ref().unwrap();
+        let wheels = problem.wheels.as_ref().unwrap();
         assert_eq!(wheels.standing, [false, true, true, true, false]);
-        let posts = wheels.as_posts(&wheels.standing, &[]).unwrap();
+        let posts = wheels.all_as_posts().unwrap();
         assert_eq!(posts.problem.supports.len(), 2);
         for wheel in &posts.wheels {
             let clear = |leg: &[Vec2]| segment_segment(leg[0], leg[1], wheel.center, wheel.center);
             let nearest = posts.problem.route.windows(2).map(clear).fold(f64::INFINITY, smaller);
             let radius = problem.supports[wheel.support].wheel_radius;
-            assert!(nearest > radius && nearest < 1.3 * radius, "{nearest} m from `{}` of {radius} m", wheel.post);
+            assert!(nearest > radius && nearest < 1.3 * radius, "{nearest} m from {:?} of {radius} m", wheel.post);
         }
-        assert!(wheels.as_posts(&[false; 5], &[]).is_none(), "none is left");
+        assert!(wheels.left(&[StandIn::Wheel; 5], &[]).is_none(), "none is left");
     }
 }

@@ -77,7 +77,7 @@ fn neglected_by(reason: &ModelReason) -> Option<NeglectedEffect> {
 /// The cable without it.
 fn without(problem: &Problem, neglects: NeglectedEffect) -> Problem {
     let mut this = problem.clone();
-    this.standing_wheels = None;
+    this.wheels = None;
     if let Some((by, copy)) = this.similar.take() {
         this.similar = Some((by, Arc::new(without(&copy, neglects))));
     }

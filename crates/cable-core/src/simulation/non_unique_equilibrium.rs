@@ -35,10 +35,7 @@ impl Simulation {
                 laid.warnings.into_iter().find(of_cable)
             };
             // A cable that leaves a wheel is laid over posts in their place.
-            let posts = || {
-                let wheels = problem.standing_wheels.as_ref()?;
-                laid(&wheels.as_posts(&wheels.standing, &[])?.problem)
-            };
+            let posts = || laid(&problem.wheels.as_ref()?.all_as_posts()?.problem);
             let refused = loading_histories::refused_by_spans(cable);
             let whole = || if refused { None } else { laid(&Arc::new(problem.clone())) };
             let seek = || whole().or_else(posts);

@@ -324,6 +324,16 @@ impl Mechanics for FemModel {
         broken
     }
 
+    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        let Ok(statics) = free::Statics::new(problem.clone(), self.settings) else { return false };
+        if self.present != PresentPart::Stepper || self.elastica_answer.is_some() {
+            return false;
+        }
+        (self.statics, self.problem) = (statics, problem.clone());
+        self.stepper.let_go_of_wheels(problem);
+        true
+    }
+
     fn stored_energy(&self) -> Option<Energy> {
         let counts = self.present == PresentPart::Stepper && self.stepper.accounts_energy;
         counts.then(|| stored_energy(&self.stepper.cable))

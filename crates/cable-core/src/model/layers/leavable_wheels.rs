@@ -1,34 +1,44 @@
 //! This layer lets a cable leave its wheels: if a model finds that the cable does not press on a
-//! wheel, that wheel is replaced by a post ([`StandingWheels`]).
+//! wheel, that wheel is replaced by a post ([`CableWheels`]), or taken away if it moves, until the
+//! cable comes back to it.
 //!
 //! A post acts on the cable like a wheel with the same friction, as long as it presses on it; its
 //! force is reported as the reaction of the pulley. The other wheels stay, because a cable can
-//! slide far over a wheel, but has to be followed in small steps over a post.
+//! slide far over a wheel, but has to be followed in small steps over a post. The same model goes
+//! on if it can, with its history: its wheel lets go. Else a model without the wheel takes over its
+//! state, or its answer with the friction.
 
 use std::sync::Arc;
 
 use super::Layer;
-use crate::contact::distance::segment_segment;
+use crate::contact::distance::{nearest_fraction, segment_segment};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
 use crate::model::mechanics::Constructor;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::problem::wheels_as_posts::WheelPost;
-use crate::problem::{Problem, StandingWheels, WheelsAsPosts};
+use crate::problem::wheels_as_posts::{StandIn, WheelLeft};
+use crate::problem::{CableWheels, Problem, WheelsLeft};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
-/// A model of a cable over wheels, and of the same with posts once it leaves one.
+/// Depth to which a cable may lie within a wheel that it left, in radii: beyond it the cable has
+/// come back. Smaller: a cable that leaves is taken back, because it still lies on the wheel to
+/// round-off; larger: it comes back late, and jumps on it. A choice, tuned on no campaign.
+const RETURN_DEPTH: f64 = 1e-3;
+
+/// A model of a cable over wheels, and of the same without those that it leaves.
 pub struct LeavableWheels {
     problem: Arc<Problem>,
-    wheels: Arc<StandingWheels>,
+    wheels: Arc<CableWheels>,
     settings: Settings,
     construct: Arc<Constructor>,
     inner: Box<dyn Mechanics>,
-    /// The problem of the inner model, with the wheels that the cable has left as posts; None if it
-    /// has left none.
-    left: Option<Arc<WheelsAsPosts>>,
+    /// The wheels that the cable has left; None if it has left none.
+    left: Option<Arc<WheelsLeft>>,
+    /// True if those wheels are supports of the inner model which have let go; else it is one of
+    /// the problem without them.
+    let_go: bool,
     /// Places to which supports were moved, m, and by what.
     led: Vec<Option<SupportMove>>,
     robot_pose: Option<RigidPose>,
@@ -43,6 +53,29 @@ enum SupportMove {
     Pulled(Vec2),
 }
 
+impl SupportMove {
+    fn place(self) -> Vec2 {
+        match self {
+            Self::Dragged(at) | Self::Pulled(at) => at,
+        }
+    }
+}
+
+/// The way in which a model continues.
+enum Start<'a> {
+    /// Along the route.
+    Route,
+    /// From a state of motion.
+    Motion(&'a State),
+    /// From an answer without motion, with its friction, at a time (s).
+    Rest(&'a CableSolution, f64),
+}
+
+/// Distance of a point from a bar, m.
+fn distance(point: Vec2, from: Vec2, to: Vec2) -> f64 {
+    (from + (to - from) * nearest_fraction(point, from, to) - point).norm()
+}
+
 /// The names of the wheels that the cable leaves, by an error.
 fn wheels_left_by(error: &SolveError) -> Vec<&str> {
     match error {
@@ -54,43 +87,40 @@ fn wheels_left_by(error: &SolveError) -> Vec<&str> {
 }
 
 impl LeavableWheels {
-    /// Wraps a model of the cable; `construct` builds those with posts.
+    /// Wraps a model of the cable; `construct` builds those without some of its wheels.
     pub fn new(
         problem: Arc<Problem>,
-        wheels: Arc<StandingWheels>,
+        wheels: Arc<CableWheels>,
         settings: Settings,
         construct: Arc<Constructor>,
         inner: Box<dyn Mechanics>,
     ) -> Self {
         let led = vec![None; problem.supports.len()];
-        Self { problem, wheels, settings, construct, inner, left: None, led, robot_pose: None }
+        Self { problem, wheels, settings, construct, inner, left: None, let_go: false, led, robot_pose: None }
     }
 
-    /// Index that a support has in the inner model; None for a wheel that is a post there.
+    /// Index that a support has in the inner model; None for a wheel that was left.
     fn inner_index(&self, support: usize) -> Option<usize> {
         let Some(replaced) = self.left.as_ref().map(|left| &left.replaced) else { return Some(support) };
         match replaced.get(support) {
             Some(true) => None,
-            Some(false) => Some(replaced[..support].iter().filter(|r| !**r).count()),
-            None => Some(support),
+            Some(false) if !self.let_go => Some(replaced[..support].iter().filter(|r| !**r).count()),
+            _ => Some(support),
         }
     }
 
-    /// A model with some wheels as posts, with supports moved as in this one, in the given state
-    /// (None: along the route).
-    fn built(
-        &self,
-        left: Option<&Arc<WheelsAsPosts>>,
-        state: Option<&State>,
-    ) -> Result<Box<dyn Mechanics>, SolveError> {
+    /// A model without the wheels that were left, with supports moved as in this one.
+    fn built(&self, left: Option<&Arc<WheelsLeft>>, start: &Start<'_>) -> Result<Box<dyn Mechanics>, SolveError> {
         let problem = left.map_or(&self.problem, |left| &left.problem);
         let mut this =
             Self { left: left.cloned(), ..Self::empty(self, (self.construct)(problem.clone(), self.settings)?) };
         if let Some(pose) = self.robot_pose {
             this.inner.set_robot_pose(pose);
         }
-        if let Some(state) = state {
-            this.inner.set_state(state)?;
+        match start {
+            Start::Route => {}
+            Start::Motion(state) => this.inner.set_state(state)?,
+            Start::Rest(answer, time_s) => this.inner.warm_start(answer, *time_s)?,
         }
         for (k, lead) in self.led.iter().enumerate() {
             let Some(inner) = this.inner_index(k) else { continue };
@@ -108,7 +138,12 @@ impl LeavableWheels {
         Self::new(of.problem.clone(), of.wheels.clone(), of.settings, of.construct.clone(), inner)
     }
 
-    /// Returns whether a post moves to a place (m) clear of the cable.
+    /// Continues with a model of the problem without the wheels that were left.
+    fn continue_with(&mut self, inner: Box<dyn Mechanics>, left: Option<Arc<WheelsLeft>>) {
+        (self.inner, self.left, self.let_go) = (inner, left, false);
+    }
+
+    /// Returns whether a wheel that was left moves to a place (m) clear of the cable.
     fn goes_clear(&self, support: usize, to: Vec2) -> bool {
         let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
         let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
@@ -117,8 +152,8 @@ impl LeavableWheels {
         state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
     }
 
-    /// Moves a support. A wheel that was replaced by a post stays so if its path is clear of the
-    /// cable; else it becomes a wheel again, because posts stand still.
+    /// Moves a support. A wheel that was left stays so if its path is clear of the cable; else it
+    /// becomes a wheel again.
     fn lead(&mut self, support: usize, lead: SupportMove) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
@@ -129,9 +164,9 @@ impl LeavableWheels {
             (None, lead) => {
                 let clear = matches!(lead, SupportMove::Dragged(to) if self.goes_clear(support, to));
                 if !(clear && self.move_posts())
-                    && let Ok(inner) = self.built(None, Some(&self.inner.state()))
+                    && let Ok(inner) = self.built(None, &Start::Motion(&self.inner.state()))
                 {
-                    (self.inner, self.left) = (inner, None);
+                    self.continue_with(inner, None);
                 }
             }
         }
@@ -140,9 +175,9 @@ impl LeavableWheels {
     /// Moves the posts to the places of the wheels; false if that is impossible.
     fn move_posts(&mut self) -> bool {
         let replaced = self.replaced();
-        let Some(posts) = self.posts(&replaced) else { return false };
-        let Ok(inner) = self.built(Some(&posts), Some(&self.inner.state())) else { return false };
-        (self.inner, self.left) = (inner, Some(posts));
+        let Some(posts) = self.without(&replaced, Inertia::QuasiStatic) else { return false };
+        let Ok(inner) = self.built(Some(&posts), &Start::Motion(&self.inner.state())) else { return false };
+        self.continue_with(inner, Some(posts));
         true
     }
 
@@ -151,43 +186,46 @@ impl LeavableWheels {
         self.left.as_ref().map_or_else(|| vec![false; self.problem.supports.len()], |left| left.replaced.clone())
     }
 
-    /// The wheels that are posts already and those that the cable leaves by an error; None if the
-    /// error names no other wheel that may be left.
+    /// The wheels that were left already and those that the cable leaves by an error; None if the
+    /// error names no other wheel.
     fn also_left(&self, mut replaced: Vec<bool>, error: &SolveError) -> Option<Vec<bool>> {
         let names = wheels_left_by(error);
         let before = replaced.clone();
-        for ((replaced, standing), support) in
-            replaced.iter_mut().zip(&self.wheels.standing).zip(&self.problem.supports)
+        for ((replaced, is_wheel), support) in replaced.iter_mut().zip(&self.wheels.wheels).zip(&self.problem.supports)
         {
-            *replaced |= *standing && names.contains(&support.name.as_str());
+            *replaced |= *is_wheel && names.contains(&support.name.as_str());
         }
         (replaced != before).then_some(replaced)
     }
 
-    /// Some wheels as posts at their present places; None if a hand holds one by a spring.
-    fn posts(&self, replaced: &[bool]) -> Option<Arc<WheelsAsPosts>> {
-        let places = self.led.iter().zip(replaced).map(|(lead, replaced)| match lead {
-            Some(SupportMove::Pulled(_)) if *replaced => Err(()),
-            Some(SupportMove::Dragged(at)) if *replaced => Ok(Some(*at)),
-            _ => Ok(None),
-        });
-        self.wheels.as_posts(replaced, &places.collect::<Result<Vec<_>, ()>>().ok()?)
+    /// The cable without some wheels at their present places. Posts stand in for those that stand
+    /// still: in a motion that is not so of wheels that a hand leads.
+    fn without(&self, replaced: &[bool], inertia: Inertia) -> Option<Arc<WheelsLeft>> {
+        let stand_in = |k: usize| match (replaced[k], self.led[k]) {
+            (false, _) => StandIn::Wheel,
+            (true, Some(_)) if inertia == Inertia::Dynamic => StandIn::Nothing,
+            (true, _) if self.wheels.standing[k] => StandIn::Post,
+            (true, _) => StandIn::Nothing,
+        };
+        let stand_ins: Vec<StandIn> = (0..replaced.len()).map(stand_in).collect();
+        let places: Vec<Option<Vec2>> =
+            (0..replaced.len()).map(|k| self.led[k].filter(|_| replaced[k]).map(SupportMove::place)).collect();
+        self.wheels.left(&stand_ins, &places)
     }
 
-    /// Continues from a state (None: along the route) with posts for the wheels that the cable
-    /// leaves by this error and by following ones; returns None, with nothing changed, if that
-    /// fails.
-    fn run_on_posts(
+    /// Continues without the wheels that the cable leaves by this error and by following ones;
+    /// returns None, with nothing changed, if that fails.
+    fn run_without(
         &mut self,
         error: &SolveError,
-        state: Option<&State>,
-        posts: impl Fn(&Self, &[bool]) -> Option<Arc<WheelsAsPosts>>,
+        start: &Start<'_>,
+        inertia: Inertia,
         mut run: impl FnMut(&mut dyn Mechanics) -> Result<StepReport, SolveError>,
     ) -> Option<StepReport> {
         let mut replaced = self.also_left(self.replaced(), error)?;
         loop {
-            let left = posts(self, &replaced)?;
-            let mut inner = self.built(Some(&left), state).ok()?;
+            let left = self.without(&replaced, inertia)?;
+            let mut inner = self.built(Some(&left), start).ok()?;
             let found = run(&mut *inner);
             let refusal = match &found {
                 Ok(_) => inner.refusal(),
@@ -196,12 +234,85 @@ impl LeavableWheels {
             match (refusal.and_then(|error| self.also_left(replaced.clone(), error)), found) {
                 (Some(more), _) => replaced = more,
                 (None, Ok(report)) => {
-                    (self.inner, self.left) = (inner, Some(left));
+                    self.continue_with(inner, Some(left));
                     return Some(report);
                 }
                 (None, Err(_)) => return None,
             }
         }
+    }
+
+    /// Lets the wheels go that the cable leaves by this error, in the model that holds the state;
+    /// returns whether it can do so.
+    fn let_go_of(&mut self, error: &SolveError, inertia: Inertia) -> bool {
+        if self.left.is_some() && !self.let_go {
+            return false;
+        }
+        let left = self.also_left(self.replaced(), error).and_then(|replaced| self.without(&replaced, inertia)).filter(
+            |left| {
+                let problem = left.let_go(self.inner.problem(), self.inner.time_s());
+                problem.is_some_and(|problem| self.inner.let_go_of_wheels(problem))
+            },
+        );
+        self.let_go |= left.is_some();
+        let lets_go = left.is_some();
+        self.left = left.or(self.left.take());
+        lets_go
+    }
+
+    /// Advances to a time (s), and on without the wheels that the cable leaves on the way.
+    fn advance_to(&mut self, end_s: f64, inertia: Inertia, gauge: &mut TensionGauge) -> Result<StepReport, SolveError> {
+        loop {
+            let from_s = self.inner.time_s();
+            let error = match self.inner.advance_gauged(end_s - from_s, inertia, gauge) {
+                Ok(report) => return Ok(report),
+                Err(error) => error,
+            };
+            if self.let_go_of(&error, inertia) {
+                continue;
+            }
+            let (from_s, state, answer) = (self.inner.time_s(), self.inner.state(), self.inner.solution());
+            let start = match inertia {
+                Inertia::Dynamic => Start::Motion(&state),
+                Inertia::QuasiStatic => Start::Rest(&answer, from_s),
+            };
+            let run = |inner: &mut dyn Mechanics| inner.advance_gauged(end_s - from_s, inertia, gauge);
+            return self.run_without(&error, &start, inertia, run).ok_or(error);
+        }
+    }
+
+    /// Lays the cable on the wheels again that it left and to which it has come back, where no post
+    /// stands.
+    ///
+    /// # Errors Those of the model on these wheels.
+    fn come_back(&mut self, inertia: Inertia) -> Result<(), SolveError> {
+        let Some(left) = &self.left else { return Ok(()) };
+        let state = self.inner.state();
+        let is_within = |wheel: &&WheelLeft| {
+            let support = &self.problem.supports[wheel.support];
+            let led = self.led[wheel.support].map(SupportMove::place);
+            let center = led.or_else(|| support.position_at(state.time_s).map(|place| place.0));
+            let near = support.wheel_radius * (1.0 - RETURN_DEPTH);
+            let meets = |center| state.position_m.windows(2).any(|bar| distance(center, bar[0], bar[1]) < near);
+            wheel.post.is_none() && center.is_some_and(meets)
+        };
+        let back: Vec<usize> = left.wheels.iter().filter(is_within).map(|wheel| wheel.support).collect();
+        if back.is_empty() {
+            return Ok(());
+        }
+        let mut replaced = self.replaced();
+        for k in back {
+            replaced[k] = false;
+        }
+        let left = self.without(&replaced, inertia);
+        let answer = self.inner.solution();
+        let start = match inertia {
+            Inertia::Dynamic => Start::Motion(&state),
+            Inertia::QuasiStatic => Start::Rest(&answer, state.time_s),
+        };
+        let inner = self.built(left.as_ref(), &start)?;
+        self.continue_with(inner, left);
+        Ok(())
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.
@@ -224,11 +335,11 @@ impl LeavableWheels {
     }
 }
 
-/// The reaction of a pulley whose wheel is a post, from an answer of the copy.
-fn reaction(problem: &Problem, wheel: &WheelPost, answer: &CableSolution) -> SupportReaction {
+/// The reaction of a wheel that was left, with its centre (m), from an answer without it.
+fn reaction(problem: &Problem, wheel: &WheelLeft, center: Vec2, answer: &CableSolution) -> SupportReaction {
     let name = problem.supports.get(wheel.support).map(|s| s.name.clone()).unwrap_or_default();
-    let mut out = SupportReaction { name, x_m: wheel.center.x, y_m: wheel.center.y, ..SupportReaction::default() };
-    let on = || answer.contacts.iter().filter(|c| c.obstacle == wheel.post);
+    let mut out = SupportReaction { name, x_m: center.x, y_m: center.y, ..SupportReaction::default() };
+    let on = || answer.contacts.iter().filter(|c| wheel.post.as_ref() == Some(&c.obstacle));
     if let (Some(first), Some(last)) = (on().next(), on().next_back()) {
         for c in on() {
             out.reaction_x_n -= c.force_n[0];
@@ -238,7 +349,7 @@ fn reaction(problem: &Problem, wheel: &WheelPost, answer: &CableSolution) -> Sup
         out.tension_before_n = Some(first.tension_before_n);
         out.tension_after_n = Some(last.tension_after_n);
     } else {
-        let distance = |n: &Node| (n.at() - wheel.center).norm();
+        let distance = |n: &Node| (n.at() - center).norm();
         let nearest = answer.nodes.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         if let Some(node) = nearest {
             out.arc_length_m = node.arc_length_m;
@@ -266,6 +377,7 @@ impl Layer for LeavableWheels {
             construct: self.construct.clone(),
             inner,
             left: self.left.clone(),
+            let_go: self.let_go,
             led: self.led.clone(),
             robot_pose: self.robot_pose,
         }
@@ -283,8 +395,10 @@ impl Layer for LeavableWheels {
             Err(error) => Some(error),
         };
         if let Some(refusal) = refusal.cloned() {
-            let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
-            if let Some(report) = self.run_on_posts(&refusal, state.as_ref(), Self::posts, |inner| inner.settle()) {
+            let state = self.inner.state();
+            let start = if self.inner.time_s() > 0.0 { Start::Motion(&state) } else { Start::Route };
+            let run = |inner: &mut dyn Mechanics| inner.settle();
+            if let Some(report) = self.run_without(&refusal, &start, Inertia::QuasiStatic, run) {
                 return Ok(self.told(report));
             }
         }
@@ -298,28 +412,10 @@ impl Layer for LeavableWheels {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         let end_s = self.inner.time_s() + dt_s;
-        let error = match self.inner.advance_gauged(dt_s, inertia, gauge) {
-            Ok(report) => return Ok(self.told(report)),
-            Err(error) => error,
-        };
-        // Posts stand still, so a moving wheel is not replaced.
-        let standing = |this: &Self, replaced: &[bool]| {
-            let led = replaced.iter().zip(&this.led).any(|(replaced, led)| *replaced && led.is_some());
-            if led { None } else { this.posts(replaced) }
-        };
-        let (state, from_s) = (self.inner.state(), self.inner.time_s());
-        let run = |inner: &mut dyn Mechanics| inner.advance_gauged(end_s - from_s, inertia, gauge);
-        match self.run_on_posts(&error, Some(&state), standing, run) {
-            Some(report) => Ok(self.told(report)),
-            None => Err(error),
-        }
-    }
-
-    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
-        if self.left.is_some() {
-            return self.inner.set_state(&State::of_nodes(&answer.nodes, time_s));
-        }
-        self.inner.warm_start(answer, time_s)
+        let report = self.advance_to(end_s, inertia, gauge)?;
+        let told = self.told(report);
+        self.come_back(inertia)?;
+        Ok(told)
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
@@ -347,19 +443,25 @@ impl Layer for LeavableWheels {
         if cuts_posts || self.inner.time_s() > 0.0 || self.replaced() == all {
             return false;
         }
-        let Some(posts) = self.posts(&all) else { return false };
-        let Ok(inner) = self.built(Some(&posts), None) else { return false };
-        (self.inner, self.left) = (inner, Some(posts));
+        let Some(posts) = self.without(&all, Inertia::QuasiStatic) else { return false };
+        let Ok(inner) = self.built(Some(&posts), &Start::Route) else { return false };
+        self.continue_with(inner, Some(posts));
         true
     }
 
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
         let Some(left) = &self.left else { return answer };
         for wheel in &left.wheels {
-            let reaction = reaction(&self.problem, wheel, &answer);
-            answer.supports.insert(wheel.support.min(answer.supports.len()), reaction);
+            let led = self.led.get(wheel.support).copied().flatten().map(SupportMove::place);
+            let moved = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
+            let center = led.filter(|_| wheel.post.is_none()).or_else(|| wheel.post.is_none().then(moved).flatten());
+            let reaction = reaction(&self.problem, wheel, center.unwrap_or(wheel.center), &answer);
+            match answer.supports.get_mut(wheel.support).filter(|_| self.let_go) {
+                Some(of_let_go) => *of_let_go = reaction,
+                None => answer.supports.insert(wheel.support.min(answer.supports.len()), reaction),
+            }
         }
-        answer.contacts.retain(|c| left.wheels.iter().all(|w| w.post != c.obstacle));
+        answer.contacts.retain(|c| left.wheels.iter().all(|w| w.post.as_ref() != Some(&c.obstacle)));
         answer
     }
 

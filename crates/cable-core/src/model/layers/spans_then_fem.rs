@@ -10,7 +10,7 @@
 
 use std::sync::Arc;
 
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
@@ -330,6 +330,10 @@ impl Mechanics for SwitchingModel {
                     return Ok(report);
                 }
                 Err(error @ SolveError::TimeStep { .. }) => return Err(error),
+                // The cable goes on without that wheel (see `leavable_wheels.rs`).
+                Err(error @ SolveError::Unsupported { feature: Unsupported::OffWheel { .. }, .. }) => {
+                    return Err(error);
+                }
                 Err(error) => why = Some(ModelReason::NoAnswer(Box::new(error))),
             }
         }
@@ -421,6 +425,21 @@ impl Mechanics for SwitchingModel {
 
     fn break_at(&mut self, place: &BreakPlace) -> bool {
         self.fem.as_mut().is_some_and(|fem| fem.break_at(place))
+    }
+
+    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        let simpler = Problem::without_self_contact(Problem::without_outline(problem.clone()));
+        let lets_go = match &mut self.fem {
+            Some(fem) => {
+                let spans = SpansModel::new(simpler, self.settings).ok();
+                spans.filter(|_| fem.let_go_of_wheels(problem.clone())).map(|spans| self.spans = spans).is_some()
+            }
+            None => self.spans.let_go_of_wheels(simpler),
+        };
+        if lets_go {
+            self.problem = problem;
+        }
+        lets_go
     }
 
     fn stored_energy(&self) -> Option<Energy> {

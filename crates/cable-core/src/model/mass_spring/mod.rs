@@ -158,6 +158,11 @@ impl Mechanics for MassSpringModel {
         }
     }
 
+    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        self.cable.chain.mesh.problem = problem;
+        true
+    }
+
     fn solution(&self) -> CableSolution {
         self.cable.answer(&self.estimate.errors)
     }

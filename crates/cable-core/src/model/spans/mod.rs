@@ -605,6 +605,15 @@ impl Mechanics for SpansModel {
         Ok(())
     }
 
+    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        let Some(equilibrium) = &self.cable_equilibrium else { return false };
+        let settings = self.layout.settings.clone();
+        let Ok(layout) = counted(&problem, self.layout.counted_from, settings) else { return false };
+        let Some(without) = equilibrium.without_wheels(&self.layout, &layout) else { return false };
+        (self.problem, self.layout, self.cable_equilibrium) = (problem, layout, Some(without));
+        true
+    }
+
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);

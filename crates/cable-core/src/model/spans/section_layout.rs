@@ -10,8 +10,8 @@ use crate::model::auxiliary_weight::auxiliary_weight;
 use crate::model::spans::boundary::{CableLaw, Curve, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::section::{BoundaryConditions, CableSection, EndCondition, Failure, SolveContext};
 use crate::model::spans::settings::SpansSettings;
-use crate::problem::Problem;
 use crate::problem::wheel_passage::facing;
+use crate::problem::{Departure, Problem, SupportPoint};
 use crate::scene::SupportKind;
 use std::sync::Arc;
 
@@ -89,7 +89,7 @@ fn refuse_unsupported(p: &Problem) -> Result<(), SolveError> {
     if p.cable.self_contact {
         return Err(unsupported(Unsupported::SelfContact));
     }
-    if p.supports.iter().any(|s| s.release.is_some()) {
+    if p.supports.iter().any(|s| s.release.is_some() && s.departure != Departure::Done) {
         return Err(unsupported(Unsupported::Release));
     }
     Ok(())
@@ -117,6 +117,7 @@ fn sections_of(p: &Problem) -> Result<Vec<SectionBounds>, SolveError> {
     for (k, s) in p.supports.iter().enumerate() {
         match s.kind {
             SupportKind::Load | SupportKind::Free => {}
+            SupportKind::Pulley if s.departure == Departure::Done => {}
             SupportKind::Pulley => {
                 part.pulleys.push(Pulley { support: k, curve: next_wheel, facing: 0.0 });
                 next_wheel += 2;
@@ -191,7 +192,8 @@ impl SectionLayout {
     pub fn curves(&self) -> Vec<Curve> {
         let p = &self.problem;
         let mut out: Vec<Curve> = p.world.geometry().bodies().iter().flat_map(Curve::both).collect();
-        for s in p.supports.iter().filter(|s| s.kind == SupportKind::Pulley) {
+        let holds = |s: &&SupportPoint| s.kind == SupportKind::Pulley && s.departure != Departure::Done;
+        for s in p.supports.iter().filter(holds) {
             for sense in [1.0, -1.0] {
                 out.push(Curve::wheel(s.wheel_radius, s.friction, sense));
             }
@@ -203,7 +205,7 @@ impl SectionLayout {
     pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut BoundaryConditions) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
-        let place = |(k, s): (usize, &crate::problem::SupportPoint)| {
+        let place = |(k, s): (usize, &SupportPoint)| {
             let own = s.position_at(time_s).map_or(Vec2::zeros(), |(at, _)| at);
             dragged.get(k).copied().flatten().unwrap_or(own)
         };

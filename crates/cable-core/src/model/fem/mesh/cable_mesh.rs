@@ -301,6 +301,15 @@ impl Mesh {
         }
     }
 
+    /// True if a node is the only one of its wrap round an obstacle or a pulley.
+    pub(in crate::model::fem) fn is_alone_on_round(&self, k: usize) -> bool {
+        let shares = |j: usize| match (self.sliding[j], self.sliding[k]) {
+            (Some(other), Some(node)) => other.shares_round(&node),
+            _ => false,
+        };
+        self.sliding[k].is_some() && !shares(k - 1) && !shares(k + 1)
+    }
+
     /// Centre of a pulley, m; None for other supports and pulleys that have let go.
     pub(in crate::model::fem) fn pulley_center(&self, support: usize) -> Option<Vec2> {
         self.sliding.iter().flatten().find(|s| s.slide_over == SlideOver::Pulley(support)).map(|s| s.end.center)

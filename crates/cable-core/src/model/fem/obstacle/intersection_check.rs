@@ -12,7 +12,7 @@ use crate::model::Model;
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNode, TangentPath, round_of};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::StepContext;
-use crate::problem::Problem;
+use crate::problem::{Departure, Problem};
 
 /// Depth, in radii of the cable, from which the cable is reported to run through an obstacle; a
 /// cable that just touches has a depth of 0. Smaller: cables that press on an obstacle are
@@ -170,11 +170,25 @@ impl<'a> IntersectionCheck<'a> {
     pub(in crate::model::fem) fn pulled_corner(&self, wrong: f64) -> Option<usize> {
         (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
             self.mesh.sliding[k].is_some_and(|node| {
-                let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
                 let is_wrong = || self.mesh.turn(k, self.positions) < -wrong || self.beyond_its_corner(k);
-                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && is_wrong()
+                node.feature().is_some() && self.mesh.is_alone_on_round(k) && is_wrong()
             })
         })
+    }
+
+    /// A sliding node on a wheel that the cable may leave and round which it turns the wrong way by
+    /// more than `wrong` (rad): the wheel would have to pull.
+    pub(in crate::model::fem) fn pulled_wheel(&self, wrong: f64) -> Option<usize> {
+        let may_be_left = |k: usize| match self.mesh.sliding[k].map(|node| node.slide_over) {
+            Some(SlideOver::Pulley(support)) => {
+                self.problem.supports.get(support).is_some_and(|s| s.departure == Departure::Possible)
+            }
+            _ => false,
+        };
+        let is_wrong = |k: &usize| {
+            may_be_left(*k) && self.mesh.is_alone_on_round(*k) && self.mesh.turn(*k, self.positions) < -wrong
+        };
+        (1..self.mesh.nodes().saturating_sub(1)).find(is_wrong)
     }
 
     /// Distance at which the cable runs round a corner or circle, m: the reach of the barrier, but

@@ -31,8 +31,8 @@ impl Stepper {
 
     /// Predicts the unknowns of a step of `h` (s) and minimises its incremental potential.
     ///
-    /// # Errors The reason why no minimum was found, or `CornerPulls` if a corner would have to
-    /// pull.
+    /// # Errors The reason why no minimum was found, or `CornerPulls` if a corner or a wheel would
+    /// have to pull.
     fn minimise_step(&mut self, h: f64) -> Result<(Unknowns, Converged), Failure> {
         let (mut unknowns, exact) =
             (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
@@ -47,7 +47,8 @@ impl Stepper {
         self.cable.input.stopping.tolerance = exact;
         let done = done?;
         let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
-        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
+        let check = IntersectionCheck::at(&self.cable, &unknowns.positions);
+        if let Some(node) = check.pulled_corner(most).or_else(|| check.pulled_wheel(most)) {
             return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
         Ok((unknowns, done))

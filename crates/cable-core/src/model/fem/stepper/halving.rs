@@ -5,8 +5,8 @@
 //! its way. A step without inertia that was halved often enough relaxes the cable to its
 //! equilibrium instead.
 
-use crate::error::SolveError;
-use crate::model::fem::remesh::settle_down;
+use crate::error::{SolveError, Unsupported};
+use crate::model::fem::remesh::{lifted_wheel, settle_down};
 use crate::model::fem::state::{CableState, lay_down_released, renew_input};
 use crate::model::fem::stepper::{StepRequest, Stepper};
 use crate::model::fem::system::{Converged, Failure, FailureCause};
@@ -70,6 +70,10 @@ impl Stepper {
         loop {
             if self.cable.motion.step_before == 0.0 && is_dynamic && self.cable.meets_nothing() {
                 progress.begin_motion(self.cable.mesh.tuning.step.first_fraction);
+            }
+            if let Some(wheel) = lifted_wheel(&self.cable).filter(|_| is_dynamic) {
+                let feature = Unsupported::OffWheel { support: wheel.name.clone() };
+                return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
             self.rollback.save(&self.cable);
             let start = self.cable.motion.time;
@@ -148,7 +152,9 @@ impl Stepper {
 
     /// Removes the cause of a failure if that is possible without halving; returns whether it was.
     fn recover(&mut self, failure: Failure, progress: &mut HalvingProgress, inertia: Inertia) -> bool {
-        if failure.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, failure.node) {
+        let on_obstacle =
+            self.cable.mesh.sliding.get(failure.node).is_some_and(|s| s.is_some_and(|s| s.feature().is_some()));
+        if failure.cause == FailureCause::CornerPulls && on_obstacle && settle_down(&mut self.cable, failure.node) {
             renew_input(&mut self.cable);
             return true;
         }

@@ -10,7 +10,7 @@ use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::supports::HandSettings;
 use crate::model::mass_spring::dynamics::{SubStep, floor_friction, hands, impacts};
 use crate::model::mass_spring::forces::{nodal, tension};
-use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
+use crate::model::mass_spring::mesh::{Mesh, lifted_wheel, release_pulleys};
 use crate::model::tension_gauge::TensionGauge;
 use crate::problem::Problem;
 
@@ -43,7 +43,8 @@ pub(in crate::model::mass_spring) fn integrate(
         let travel = tuning.max_travel_radii * chain.mesh.problem.radius / fastest;
         let limit = if !chain.mesh.problem.world.is_empty() && travel < stable { travel } else { stable };
         let h = until_release(&chain.mesh.problem, chain.clock.time_s, left / (left / limit).ceil());
-        if let Some(e) = chain.mesh.non_finite(chain.clock.time_s) {
+        let failed = chain.mesh.non_finite(chain.clock.time_s);
+        if let Some(e) = failed.or_else(|| lifted_wheel(&chain.mesh, chain.clock.time_s)) {
             return Err(e);
         }
         if h < tuning.min_stable_fraction * if stable < dt_s { stable } else { dt_s } {

@@ -6,9 +6,12 @@
 //! of rest length is spread over the whole stretch between its fixed marks, so that tension does
 //! not jump there.
 
+use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
+use crate::model::Model;
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::numerics::bisect;
+use crate::problem::Departure;
 
 /// Material that stays beside a node that does not run through a pulley, m.
 pub(in crate::model::mass_spring) fn least_straight_length(mesh: &Mesh) -> f64 {
@@ -70,6 +73,18 @@ pub(in crate::model::mass_spring) fn release_pulleys(mesh: &mut Mesh, begins_s: 
         mesh.arc_length[n] = mesh.arc_length[n - 1] + whole * needs[0] / (needs[0] + needs[1]);
         mesh.update_elements();
     }
+}
+
+/// A wheel that the cable may leave and round which it turns the wrong way: it would have to pull.
+pub(in crate::model::mass_spring) fn lifted_wheel(mesh: &Mesh, time_s: f64) -> Option<SolveError> {
+    let support = mesh.wheels.pulleys.iter().filter(|p| p.radius > 0.0 && p.turn < 0.0).find_map(|p| {
+        mesh.problem
+            .supports
+            .get(p.support)
+            .filter(|support| support.departure == Departure::Possible && support.holds_from(time_s))
+    })?;
+    let feature = Unsupported::OffWheel { support: support.name.clone() };
+    Some(SolveError::Unsupported { model: Model::MassSpring, feature })
 }
 
 /// Places node `n` at the distance from a point (m) along a direction at which its elements are

@@ -15,6 +15,6 @@ pub(in crate::model::mass_spring) mod pulley;
 mod spring_damping;
 
 pub(in crate::model::mass_spring) use cable_mesh::Mesh;
-pub(in crate::model::mass_spring) use edit::{even_out, least_straight_length, release_pulleys, remesh};
+pub(in crate::model::mass_spring) use edit::{even_out, least_straight_length, lifted_wheel, release_pulleys, remesh};
 pub(in crate::model::mass_spring) use node_placement::first_support_arc_lengths;
 pub(in crate::model::mass_spring) use pulley::{ElementGeometry, Pulley, angle_of, principal_angle};

@@ -21,7 +21,7 @@ use crate::model::mass_spring::dynamics::{
     ChainState, HandSettings, RunawayGuard, SupportDrives, floor_friction, hands, impacts,
 };
 use crate::model::mass_spring::forces::{nodal, pulley, tension};
-use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
+use crate::model::mass_spring::mesh::{Mesh, lifted_wheel, release_pulleys};
 use crate::model::mass_spring::preview_choice::FRAME_S;
 use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
@@ -46,6 +46,9 @@ pub(in crate::model::mass_spring) fn preview(
     while left > 0.0 {
         let stable = (tuning.max_swing / max_transverse_frequency_squared(&chain.mesh)).sqrt();
         let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
+        if let Some(e) = lifted_wheel(&chain.mesh, chain.clock.time_s) {
+            return Err(e);
+        }
         let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
         let h = left / parts;
         left = if parts > 1.0 { left - h } else { 0.0 };

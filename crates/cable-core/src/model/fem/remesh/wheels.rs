@@ -1,0 +1,64 @@
+//! A wheel can press on the cable, but not pull it: one round which a cable in motion would turn
+//! the wrong way lets go. If a post stands in its place the cable slides over that from then on,
+//! and leaves it like any other post.
+
+use std::sync::Arc;
+
+use crate::contact::geometry::Body;
+use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
+use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::state::{CableState, MovingOutline, renew_input};
+use crate::problem::{Departure, Problem, SupportPoint};
+
+/// The node on a wheel that would have to pull the cable, with its support.
+pub(in crate::model::fem) fn lifted_wheel(cable: &CableState) -> Option<&SupportPoint> {
+    let mesh = &cable.mesh;
+    (1..mesh.nodes().saturating_sub(1)).find_map(|k| {
+        let node = mesh.sliding[k].filter(|_| mesh.is_alone_on_round(k))?;
+        let SlideOver::Pulley(support) = node.slide_over else { return None };
+        let support = cable.problem.supports.get(support)?;
+        let holds = support.departure == Departure::Possible && support.holds_from(cable.motion.time);
+        (holds && mesh.turn(k, &cable.motion.positions) < 0.0).then_some(support)
+    })
+}
+
+/// Goes on with a problem in which some wheels have let go, with posts for some of them after its
+/// other obstacles.
+pub(in crate::model::fem) fn let_go_of_wheels(cable: &mut CableState, problem: Arc<Problem>) {
+    let known = cable.problem.world.geometry().bodies().iter().filter(|body| !body.moves()).count();
+    let (outline, problem) = MovingOutline::of(problem);
+    cable.problem = problem;
+    if let (Some(present), Some(new)) = (&mut cable.outline, outline) {
+        // The obstacles of its contacts have other numbers.
+        present.obstacle = new.obstacle;
+        cable.contacts.forget();
+    }
+    cable.contacts.search.lists.clear();
+    place_outline(cable);
+    for k in 0..cable.mesh.nodes() {
+        if let Some(on_post) = cable.mesh.sliding[k].and_then(|node| on_post(cable, known, node)) {
+            cable.motion.shift(k, on_post.position() - cable.motion.positions[k]);
+            cable.mesh.sliding[k] = Some(on_post);
+        }
+    }
+    let x = std::mem::take(&mut cable.motion.positions);
+    cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
+    cable.motion.positions = x;
+    renew_input(cable);
+}
+
+/// A node that slides over a wheel which has let go, on the post in its place: one of the obstacles
+/// after the first `known`.
+fn on_post(cable: &CableState, known: usize, node: SlidingNode) -> Option<SlidingNode> {
+    let SlideOver::Pulley(support) = node.slide_over else { return None };
+    let geometry = cable.problem.world.geometry();
+    let has_left = cable.problem.supports.get(support).is_some_and(|s| s.departure == Departure::Done);
+    let is_post = |body: &&Body| body.center == Some(node.end.center);
+    let body = geometry.bodies().iter().skip(known).filter(|_| has_left).find(is_post)?;
+    // An edge would have the first feature of the body, a circle has the next.
+    let feature = body.first + 1;
+    let clearance = IntersectionCheck::of(cable).clearance(feature);
+    let (center, radius) = round_of(geometry, feature, clearance, 0.0)?;
+    let slide_over = SlideOver::Obstacle { obstacle: body.obstacle, feature };
+    Some(SlidingNode { end: BarEnd { center, radius, ..node.end }, slide_over, ..node })
+}
