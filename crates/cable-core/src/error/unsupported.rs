@@ -50,6 +50,11 @@ pub enum Unsupported {
         /// The pulley's name.
         support: String,
     },
+    /// The cable comes back to a wheel that it has left, and that moves.
+    BackOnWheel {
+        /// The pulley's name.
+        support: String,
+    },
     /// No fixed support holds the cable.
     NothingHolds,
     /// A support holds no point of the cable.

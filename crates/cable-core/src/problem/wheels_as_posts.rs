@@ -68,7 +68,8 @@ pub(super) fn stands_still(wheel: &Support) -> bool {
     wheel.motion.is_none() && wheel.release_s.is_none()
 }
 
-/// Returns the scene with these things in place of the wheels of a cable; None where all are wheels.
+/// Returns the scene with these things in place of the wheels of a cable; None where all are
+/// wheels.
 pub(super) fn with_posts(scene: &Scene, cable: &Cable, stand_ins: &[StandIn]) -> Option<WithPosts> {
     let replaced: Vec<bool> = stand_ins.iter().map(|s| *s != StandIn::Wheel).collect();
     if !replaced.contains(&true) {

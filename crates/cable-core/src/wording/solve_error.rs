@@ -260,6 +260,9 @@ impl Sentence for Unsupported {
                 return format!("an obstacle is met {along} along the cable at {at}");
             }
             Self::OffWheel { support } => return format!("the cable lifts off the wheel of `{support}`"),
+            Self::BackOnWheel { support } => {
+                return format!("the cable comes back to the moving wheel of `{support}`, which it had left");
+            }
             Self::NothingHolds => "no support holds the cable: two loads or loose ends, and obstacles at most",
             Self::SupportWithoutPlace => "a grip without a place",
             Self::EndlessContacts { arc_length_m } => {

@@ -286,7 +286,8 @@ impl LeavableWheels {
     ///
     /// # Errors Those of the model on these wheels.
     fn come_back(&mut self, inertia: Inertia) -> Result<(), SolveError> {
-        let Some(left) = &self.left else { return Ok(()) };
+        let moves = |left: &&Arc<WheelsLeft>| left.wheels.iter().any(|wheel| wheel.post.is_none());
+        let Some(left) = self.left.as_ref().filter(moves) else { return Ok(()) };
         let state = self.inner.state();
         let is_within = |wheel: &&WheelLeft| {
             let support = &self.problem.supports[wheel.support];
@@ -299,6 +300,12 @@ impl LeavableWheels {
         let back: Vec<usize> = left.wheels.iter().filter(is_within).map(|wheel| wheel.support).collect();
         if back.is_empty() {
             return Ok(());
+        }
+        // The wheel would push its node out at once, and stretch its two elements by all of that.
+        if inertia == Inertia::Dynamic && self.inner.model() == Model::MassSpring {
+            let support = back.iter().filter_map(|k| self.problem.supports.get(*k)).map(|s| s.name.clone()).next();
+            let feature = Unsupported::BackOnWheel { support: support.unwrap_or_default() };
+            return Err(SolveError::Unsupported { model: Model::MassSpring, feature });
         }
         let mut replaced = self.replaced();
         for k in back {
