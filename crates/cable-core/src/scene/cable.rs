@@ -41,8 +41,8 @@ pub struct Cable {
     /// that in stretching.
     ///
     /// `fem` has it from 0.1 Hz to the highest frequency at which its bars bend, and what is asked
-    /// beyond 0.1 as a viscous loss at the first axial mode. `mass_spring` has no loss of its own in
-    /// bending.
+    /// beyond 0.1 as a viscous loss at the first axial mode. `mass_spring` has no loss of its own
+    /// in bending.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending_damping_ratio: Option<f64>,
     /// Thermal expansion, 1/K.

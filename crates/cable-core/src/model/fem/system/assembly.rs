@@ -209,8 +209,8 @@ impl System {
         energy.value(&local)
     }
 
-    /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness and the unbent turns of
-    /// [`LossTerms`](super::step_input::LossTerms) this is the damping of bending.
+    /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness and the unbent turns
+    /// of [`LossTerms`](super::step_input::LossTerms) this is the damping of bending.
     pub fn add_bends(&mut self, mesh: &Mesh, bends: Bends<'_>, x: &[Vec2], curvature: Curvature) -> f64 {
         let mut value = 0.0;
         visit_bends(mesh, bends, |bend| {

@@ -6,8 +6,8 @@
 //! just after a stretch it is a little longer than at rest, and recovers with the times of the
 //! branches.
 //!
-//! The material of a bend has its curvature ψ/l̄. In a step of h its loss is a bend of the stiffness
-//! C = EI (τ/h + Σ y g) that has no moment at the turn ψ₀ − Q l̄/C.
+//! The material of a bend has its curvature ψ/l̄. In a step of h its loss is a bend of the
+//! stiffness C = EI (τ/h + Σ y g) that has no moment at the turn ψ₀ − Q l̄/C.
 
 use crate::math::larger;
 use crate::model::fem::state::CableState;
@@ -75,8 +75,8 @@ fn relax_bends(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
     mesh.branch_moments = memory;
 }
 
-/// Adds the damping of the branches of bars in a step of `h` (s) to the viscous damping, with velocities
-/// `rate` (1/s) times differences.
+/// Adds the damping of the branches of bars in a step of `h` (s) to the viscous damping, with
+/// velocities `rate` (1/s) times differences.
 pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, decay: &mut Vec<f64>) {
     let (mesh, losses, ea) = (&cable.mesh, &mut cable.input.losses, cable.problem.axial_stiffness);
     let slides = |e: usize| mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some();
