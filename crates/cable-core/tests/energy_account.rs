@@ -378,3 +378,35 @@ fn the_account_goes_on_over_a_break() {
         assert!(last.supports_j > 1.0, "{last:?}");
     }
 }
+
+/// A clamped cable that a load has bent rings down: what its bends lose is the work of its
+/// material, and none of it comes back as energy from nowhere.
+#[test]
+fn what_bends_lose_is_the_work_of_the_material() {
+    let scene = cable(
+        r#"length_m = 2.0
+bending_stiffness_n_m2 = 20.0
+damping_ratio = 0.0
+bending_damping_ratio = 0.05
+segments = 24
+[[cables.supports]]
+name = "wall"
+kind = "clamped"
+at_m = [0.0, 0.0]
+angle_deg = 0.0
+[[cables.supports]]
+name = "end"
+kind = "load"
+times_s = [0.0, 0.2, 0.21]
+forces_n = [[0.0, 0.0], [0.0, -3.0], [0.0, 0.0]]"#,
+        "[environment]\ngravity_m_per_s2 = 0.0",
+    );
+    for dt_s in [1.0 / 240.0, 1.0 / 960.0] {
+        let m = run("a clamped cable that rings down", &scene, 3.0, dt_s);
+        let a = &m.last;
+        assert!(m.worst < 1e-3, "{} of what was exchanged", m.worst);
+        assert!(-a.material_j > 0.5 * a.loads_j, "the material takes {} of {} J", a.material_j, a.loads_j);
+        assert!(a.numerical_j.abs() < 0.02 * a.loads_j, "steps take {} J", a.numerical_j);
+        assert!(a.gained.total_j() > 0.0, "{:?}", a.gained);
+    }
+}

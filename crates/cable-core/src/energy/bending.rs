@@ -23,8 +23,8 @@ pub struct BendingEnergy {
     pub stiffness: f64,
     /// Half the sum of both bars' rest lengths, m.
     pub length: f64,
-    /// Reference turn, rad: 0 for the elastic energy, and for a loss the turn at the start of the
-    /// step.
+    /// Reference turn, rad: 0 for the elastic energy, and for a loss the turn at which it has no
+    /// moment.
     pub from: f64,
 }
 

@@ -37,6 +37,14 @@ pub struct Cable {
     /// constant of at least 1 ms.
     #[serde(default)]
     pub damping_ratio: f64,
+    /// Material damping in bending, fraction of critical: half of the loss factor; left out, it is
+    /// that in stretching.
+    ///
+    /// `fem` has it from 0.1 Hz to the highest frequency at which its bars bend, and what is asked
+    /// beyond 0.1 as a viscous loss at the first axial mode. `mass_spring` has no loss of its own
+    /// in bending.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending_damping_ratio: Option<f64>,
     /// Thermal expansion, 1/K.
     #[serde(default)]
     pub thermal_expansion_per_k: f64,
@@ -142,6 +150,12 @@ impl Cable {
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         std::f64::consts::FRAC_PI_4 * self.diameter_m * self.diameter_m
+    }
+
+    /// Material damping in bending, fraction of critical: its own, or else that in stretching.
+    #[must_use]
+    pub fn bending_damping(&self) -> f64 {
+        self.bending_damping_ratio.unwrap_or(self.damping_ratio)
     }
 
     /// The bending stiffness by which bends at sharp corners are judged, N·m²: its own, of a cable

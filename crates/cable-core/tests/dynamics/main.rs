@@ -11,6 +11,7 @@
 
 mod atwood;
 mod axial_wave;
+mod bending_wave;
 mod capstan;
 mod dropped_mass;
 mod falling_chain;

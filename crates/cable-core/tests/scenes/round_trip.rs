@@ -170,6 +170,7 @@ fn cable() -> impl Strategy<Value = Cable> {
                 bending_stiffness_n_m2: value(2, 0.0),
                 diameter_m: value(3, 0.01) / 1000.0 + 1e-5,
                 damping_ratio: value(4, 0.0) / 1000.0,
+                bending_damping_ratio: self_contact.then_some(value(4, 0.0) / 500.0),
                 thermal_expansion_per_k: value(5, 0.0) / 1e6,
                 service_tension_n: value(6, 1.0),
                 breaking_tension_n: value(7, 1.0) + value(6, 1.0),

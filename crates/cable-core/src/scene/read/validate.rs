@@ -100,6 +100,9 @@ fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     if let Some(limit) = cable.sidewall_limit_n_per_m {
         number(&at.key("sidewall_limit_n_per_m"), limit, range::SIDEWALL)?;
     }
+    if let Some(ratio) = cable.bending_damping_ratio {
+        number(&at.key("bending_damping_ratio"), ratio, range::DAMPING)?;
+    }
     if let Some(id) = &cable.preset
         && preset::cable_preset(id).is_none()
     {

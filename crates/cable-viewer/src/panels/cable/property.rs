@@ -29,7 +29,7 @@ macro_rules! property {
 }
 
 /// All of them but the segments, in the order shown.
-pub const PROPERTIES: [Property; 12] = [
+pub const PROPERTIES: [Property; 13] = [
     property!(
         length_m,
         "Length",
@@ -62,6 +62,18 @@ pub const PROPERTIES: [Property; 12] = [
         true,
         "EI, bending moment divided by curvature; 0 = perfectly flexible. A real cable lies anywhere between strands that slip and strands that stick, about 1 to 10 apart: a single value is an assumption."
     ),
+    Property {
+        key: "bending_damping_ratio",
+        quantity: PropertyQuantity {
+            name: "Bending damping",
+            unit: Unit::PERCENT,
+            usual: [0.0, 1.0],
+            logarithmic: true,
+            help: "Half the loss factor of the material in bending; that of stretching until it is set to another. It calms vibration and does not change where the cable rests.",
+        },
+        get: Cable::bending_damping,
+        set: |cable, value| cable.bending_damping_ratio = (value != cable.damping_ratio).then_some(value),
+    },
     property!(
         diameter_m,
         "Diameter",

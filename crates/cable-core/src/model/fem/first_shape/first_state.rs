@@ -14,7 +14,8 @@ use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
     CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
 };
-use crate::model::fem::system::{ContactSet, Loss, StepInput, load_scale, tolerance};
+use crate::model::fem::system::{ContactSet, StepInput, load_scale, tolerance};
+use crate::model::material_loss::Loss;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 

@@ -1,5 +1,5 @@
 //! The forces in the relaxation branches of the bars of a mesh, the memory of material loss
-//! (`system/loss_branches.rs`).
+//! in stretching (`model/material_loss.rs`).
 //!
 //! They belong to the bars. A bar that is divided gives its forces to both parts, and one bar that
 //! takes the place of two has the mean of theirs by length, as it has the mean of their strains.

@@ -6,6 +6,7 @@ use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
 use crate::model::fem::mesh::branch_forces::BranchForces;
+use crate::model::fem::mesh::branch_moments::BranchMoments;
 use crate::model::fem::mesh::mass_matrix::{MassMatrix, Spread};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, StraightPart, TangentPath, angle_between};
@@ -48,6 +49,8 @@ pub struct Mesh {
     pub spread: Spread,
     /// Forces in the relaxation branches of its bars.
     pub(in crate::model::fem) branch_forces: BranchForces,
+    /// Moments in the relaxation branches of its bends.
+    pub(in crate::model::fem) branch_moments: BranchMoments,
 }
 
 impl Mesh {
@@ -80,6 +83,7 @@ impl Mesh {
                 MassMatrix::Lumped => Spread::default(),
             },
             branch_forces: BranchForces::default(),
+            branch_moments: BranchMoments::default(),
         }
     }
 
@@ -104,7 +108,7 @@ impl Mesh {
 
     /// As [`Self::copy_from`] where neither mesh can have sliding nodes.
     pub fn copy_material_nodes_from(&mut self, other: &Self) {
-        let Self { tuning, arc_length, rest_length, held, clamps, spread, branch_forces, .. } = other;
+        let Self { tuning, arc_length, rest_length, held, clamps, spread, branch_forces, branch_moments, .. } = other;
         self.tuning.clone_from(tuning);
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
@@ -112,6 +116,7 @@ impl Mesh {
         self.clamps.clone_from(clamps);
         self.spread.copy_from(spread);
         self.branch_forces.copy_from(branch_forces);
+        self.branch_moments.copy_from(branch_moments);
         self.thermal_stretch = other.thermal_stretch;
         self.axial_stiffness = other.axial_stiffness;
         self.bending_stiffness = other.bending_stiffness;
@@ -325,6 +330,7 @@ impl Mesh {
         let (a, b) = (self.arc_length[k - 1], self.arc_length[k]);
         self.spread.clear();
         self.branch_forces.divide(k - 1);
+        self.branch_moments.insert_node(k, (arc_length - a) / (b - a));
         self.arc_length.insert(k, arc_length);
         self.rest_length[k - 1] = self.thermal_stretch * (arc_length - a);
         self.rest_length.insert(k, self.thermal_stretch * (b - arc_length));
@@ -336,6 +342,7 @@ impl Mesh {
     pub(in crate::model::fem) fn break_at(&mut self, k: usize) {
         self.arc_length.insert(k + 1, self.arc_length[k]);
         self.branch_forces.insert_break(k);
+        self.branch_moments.break_at(k);
         self.rest_length.insert(k, 0.0);
         self.held.insert(k + 1, false);
         self.sliding.insert(k + 1, None);
@@ -345,6 +352,7 @@ impl Mesh {
     pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
         self.spread.clear();
         self.branch_forces.merge(k - 1, self.material_between(k - 1, k) / self.material_between(k - 1, k + 1));
+        self.branch_moments.remove_node(k);
         self.arc_length.remove(k);
         self.rest_length.remove(k);
         self.rest_length[k - 1] = self.thermal_stretch * (self.arc_length[k] - self.arc_length[k - 1]);

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `cable_mesh.rs` | `Mesh`: nodes, bars, clamps, sliding nodes, masses and stiffnesses |
 //! | `branch_forces.rs` | forces in the relaxation branches of bars, through changes of the mesh |
+//! | `branch_moments.rs` | moments in those of bends, through changes of the mesh |
 //! | `mass_matrix.rs` | mean of lumped and consistent mass matrix, fourth order in the frequencies |
 //! | `bar_count.rs` | number of bars, given by the user or by length and surroundings |
 //! | `sliding_node.rs` | node on a corner, post or pulley, its arc length unknown; capstan stick-slip |
@@ -12,6 +13,7 @@
 
 pub(in crate::model::fem) mod bar_count;
 pub(in crate::model::fem) mod branch_forces;
+pub(in crate::model::fem) mod branch_moments;
 pub(in crate::model::fem) mod cable_mesh;
 pub(in crate::model::fem) mod mass_matrix;
 pub(in crate::model::fem) mod sliding_node;

@@ -168,9 +168,9 @@ impl Workspace {
         if mesh.bending_stiffness > 0.0 {
             let bends = Bends { stiffness: mesh.bending_stiffness, scale: &input.scale, from: None };
             value += s.add_bends(mesh, bends, x, curvature);
-            if input.losses.bending > 0.0 {
-                let from = Some(input.supports.start.as_slice());
-                value += s.add_bends(mesh, Bends { stiffness: input.losses.bending, from, ..bends }, x, curvature);
+            let ([stiffness, _], [_, unbent]) = (input.losses.bending, &input.losses.turns);
+            if stiffness > 0.0 {
+                value += s.add_bends(mesh, Bends { stiffness, from: Some(unbent), ..bends }, x, curvature);
             }
         }
         self.magnitude += value.abs();

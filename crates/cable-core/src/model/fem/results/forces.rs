@@ -243,7 +243,19 @@ pub(super) fn moments(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     let slides = |k: usize| mesh.sliding.get(k).is_some_and(Option::is_some);
     let carries = |k: usize| !(slides(k) || slides(k + 1) || k > 0 && slides(k - 1));
     let stiffness = mesh.bending_stiffness / mesh.thermal_stretch;
-    (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
+    let moment = |k: usize| stiffness * curvature_at(mesh, k, x) + branch_moment(mesh, k);
+    (0..x.len()).map(|k| if carries(k) { moment(k) } else { 0.0 }).collect()
+}
+
+/// The moment in the relaxation branches of the bend at a node, N·m.
+fn branch_moment(mesh: &Mesh, k: usize) -> f64 {
+    let ends = |e: Option<usize>| e.is_none_or(|e| mesh.rest_length.get(e).is_none_or(|l| *l == 0.0));
+    let slots = match [ends(k.checked_sub(1)), ends(Some(k))] {
+        [false, false] => [2 * k, 2 * k + 1],
+        [true, _] => [2 * k + 1, 2 * k + 1],
+        [false, true] => [2 * k, 2 * k],
+    };
+    mesh.branch_moments.sum(slots)
 }
 
 /// Shear force of bar e, N, which balances the moments at its nodes.

@@ -10,7 +10,8 @@ use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNodeLoad};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;
-use crate::model::fem::system::{ContactSet, Loss, StepContext, StepInput, Unknowns, load_scale, slip_at_rest};
+use crate::model::fem::system::{ContactSet, StepContext, StepInput, Unknowns, load_scale, slip_at_rest};
+use crate::model::material_loss::Loss;
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -52,7 +53,7 @@ pub(in crate::model::fem) struct CableState {
     pub(in crate::model::fem) meshing: Meshing,
     pub(in crate::model::fem) contacts: ContactSet,
     pub(in crate::model::fem) motion: NodalMotion,
-    /// Material damping of taut bars.
+    /// Material damping of taut bars and of bends.
     pub(in crate::model::fem) loss: Loss,
     /// The outline of the robot, if there is one.
     pub(in crate::model::fem) outline: Option<MovingOutline>,
@@ -83,6 +84,7 @@ impl CableState {
         self.answers.stepped = None;
         self.motion.forget(&self.mesh.arc_length);
         self.mesh.branch_forces.clear();
+        self.mesh.branch_moments.clear();
     }
 
     /// Position of a support, m.

@@ -140,7 +140,7 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
     input.stopping.shift = 0.0;
     input.losses.bars.clear();
     input.losses.bars.resize(mesh.rest_length.len(), [0.0; 2]);
-    input.losses.bending = 0.0;
+    input.losses.bending = [0.0; 2];
     input.stopping.max_noise = f64::INFINITY;
     input.inertial.stiffness.clear();
     input.inertial.stiffness.resize(n, 0.0);

@@ -19,10 +19,39 @@ fn bends_at(mesh: &Mesh, node: usize) -> bool {
 
 /// A bend of a mesh and its nodes.
 enum NodeBend {
-    /// The bend beside a clamp.
-    Clamped(ClampBend, [usize; 2]),
+    /// The bend beside a clamp, on the side of its node (0: before it, 1: after it).
+    Clamped(ClampBend, [usize; 2], usize),
     /// The bend between two bars.
     Free(BendingEnergy, [usize; 3]),
+}
+
+/// The turn of a bend, positive where the cable turns to the left.
+#[derive(Clone, Copy, Debug)]
+pub struct BendTurn {
+    /// The slots in which its moments are kept (`branch_moments.rs`), in increasing order.
+    pub slots: [usize; 2],
+    /// rad.
+    pub turn: f64,
+    /// Bent length, m.
+    pub length: f64,
+}
+
+/// Passes the turn of each bend of a mesh at `x` (m) to `visit`, in the order of their slots.
+pub fn visit_turns(mesh: &Mesh, x: &[Vec2], mut visit: impl FnMut(BendTurn)) {
+    visit_bends(mesh, Bends { stiffness: 0.0, scale: &[], from: None }, |bend| {
+        visit(match bend {
+            NodeBend::Clamped(bend, [a, b], side) => {
+                let slot = 2 * (b - side) + side;
+                let turn = turn(bend.direction, x[b] - x[a]);
+                let turn = if side == 0 { -turn } else { turn };
+                BendTurn { slots: [slot, slot], turn, length: bend.length }
+            }
+            NodeBend::Free(bend, [a, b, c]) => {
+                let turn = turn(x[b] - x[a], x[c] - x[b]);
+                BendTurn { slots: [2 * b, 2 * b + 1], turn, length: bend.length }
+            }
+        });
+    });
 }
 
 /// The stiffness of bends, and the turns from which they are measured.
@@ -33,8 +62,9 @@ pub struct Bends<'a> {
     /// Factors of the energies of bars and of the bends between them (see `sliding_node.rs`); where
     /// there are none, the factor is 1.
     pub scale: &'a [f64],
-    /// Positions of the nodes at which nothing is bent, m; None if the straight cable is not bent.
-    pub from: Option<&'a [Vec2]>,
+    /// The turn at which each bend is not bent, in its slots (see [`BendTurn`]), rad; None if the
+    /// straight cable is not bent.
+    pub from: Option<&'a [f64]>,
 }
 
 /// Passes each bend of a mesh to `visit`.
@@ -43,6 +73,7 @@ fn visit_bends(mesh: &Mesh, bends: Bends<'_>, mut visit: impl FnMut(NodeBend)) {
     let Bends { stiffness, scale, from } = bends;
     // The two bars of a bend have the same factor: no sliding node lies between them.
     let stiffness = |bar: usize| stiffness * scale.get(bar).copied().unwrap_or(1.0);
+    let from = |slot: usize| from.and_then(|turns| turns.get(slot)).copied().unwrap_or(0.0);
     let rest = &mesh.rest_length;
     let mut clamps = mesh.clamps.iter().peekable();
     for node in 0..mesh.nodes() {
@@ -50,13 +81,15 @@ fn visit_bends(mesh: &Mesh, bends: Bends<'_>, mut visit: impl FnMut(NodeBend)) {
             let first = node.saturating_sub(1);
             for (e, rest) in rest.iter().enumerate().take(node + 1).skip(first).filter(|(e, _)| !mesh.is_break(*e)) {
                 let direction = clamp.direction;
-                let from = from.map_or(0.0, |x| turn(direction, x[e + 1] - x[e]));
+                let side = usize::from(e == node);
+                // The angle from a clamp to the bar before it is minus the turn there.
+                let from = from(2 * node + side) * if side == 0 { -1.0 } else { 1.0 };
                 let bend = ClampBend { stiffness: stiffness(e), length: 0.5 * rest, direction, from };
-                visit(NodeBend::Clamped(bend, [e, e + 1]));
+                visit(NodeBend::Clamped(bend, [e, e + 1], side));
             }
         } else if node > 0 && node < rest.len() && bends_at(mesh, node) {
-            let from = from.map_or(0.0, |x| turn(x[node] - x[node - 1], x[node + 1] - x[node]));
-            let bend = BendingEnergy { stiffness: stiffness(node), length: 0.5 * (rest[node - 1] + rest[node]), from };
+            let length = 0.5 * (rest[node - 1] + rest[node]);
+            let bend = BendingEnergy { stiffness: stiffness(node), length, from: from(2 * node) };
             visit(NodeBend::Free(bend, [node - 1, node, node + 1]));
         }
     }
@@ -67,7 +100,7 @@ pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
     visit_bends(mesh, Bends { stiffness: mesh.bending_stiffness, scale: &[], from: None }, |bend| {
         value += match bend {
-            NodeBend::Clamped(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
+            NodeBend::Clamped(bend, nodes, _) => bend.value(&nodes.map(|n| x[n])),
             NodeBend::Free(bend, nodes) => bend.value(&nodes.map(|n| x[n])),
         };
     });
@@ -76,14 +109,14 @@ pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
 
 /// Slope of the energy of bends (see [`System::add_bends`]) at `x` (m) times the displacements of
 /// the nodes (m), J.
-pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[Vec2]>, x: &[Vec2], ways: &[Vec2]) -> f64 {
+pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[f64]>, x: &[Vec2], ways: &[Vec2]) -> f64 {
     fn along<const N: usize>(bend: &impl Energy<N>, nodes: [usize; N], x: &[Vec2], ways: &[Vec2]) -> f64 {
         bend.gradient(&nodes.map(|n| x[n])).iter().zip(nodes).map(|(g, n)| g.dot(&ways[n])).sum()
     }
     let mut slope = 0.0;
     visit_bends(mesh, Bends { stiffness, scale: &[], from }, |bend| {
         slope += match bend {
-            NodeBend::Clamped(bend, nodes) => along(&bend, nodes, x, ways),
+            NodeBend::Clamped(bend, nodes, _) => along(&bend, nodes, x, ways),
             NodeBend::Free(bend, nodes) => along(&bend, nodes, x, ways),
         };
     });
@@ -176,13 +209,13 @@ impl System {
         energy.value(&local)
     }
 
-    /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness EI τ/h and the
-    /// positions at the start of a step of h this is the damping of bending.
+    /// Adds the energy of bends at `x` (m); returns it, J. With the stiffness and the unbent turns
+    /// of [`LossTerms`](super::step_input::LossTerms) this is the damping of bending.
     pub fn add_bends(&mut self, mesh: &Mesh, bends: Bends<'_>, x: &[Vec2], curvature: Curvature) -> f64 {
         let mut value = 0.0;
         visit_bends(mesh, bends, |bend| {
             value += match bend {
-                NodeBend::Clamped(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
+                NodeBend::Clamped(bend, nodes, _) => self.add_energy(&bend, nodes, x, curvature),
                 NodeBend::Free(bend, nodes) => self.add_energy(&bend, nodes, x, curvature),
             };
         });

@@ -10,7 +10,7 @@
 //! slide. The weight of the bar acts at the centroid c of its path (`bar_weight.rs`), so a change
 //! δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through. Viscous
 //! damping with time constant τ is a second bar of stiffness EA τ a whose strain is measured from
-//! the predicted one; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
+//! the predicted one; so is that of relaxation branches in a taut bar (`model/material_loss.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};

@@ -89,8 +89,12 @@ pub struct LossTerms {
     /// Bars beside the wheels of pulleys, with the length (m) of the path of each at the start of
     /// the step, before the wheels move.
     pub lengths_at_wheels: Vec<(usize, f64)>,
-    /// Damping stiffness of bends, EI τ/h, N m² (0: none).
-    pub bending: f64,
+    /// Damping stiffness of bends, N m² (0: none): that of all their loss, and the part of it that
+    /// is viscous.
+    pub bending: [f64; 2],
+    /// The turn of each bend at the start of the step and that at which its loss has no moment,
+    /// rad, in its slots (`branch_moments.rs`).
+    pub turns: [Vec<f64>; 2],
 }
 
 /// Forces from outside in a step.

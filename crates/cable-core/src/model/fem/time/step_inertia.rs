@@ -3,9 +3,9 @@
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::fem::state::CableState;
-use crate::model::fem::system::damping_time;
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::loss_memory;
+use crate::model::material_loss::damping_time;
 
 /// Damping coefficient of a slack bar of length l (force over rate of length), in units of √(ρ b
 /// l), with b its weight and wind per metre: that of a fold as high as the bar is long which comes
@@ -68,7 +68,6 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     for (loss, l) in input.losses.bars.iter_mut().zip(&mesh.rest_length) {
         *loss = [taut, folds * l * l.sqrt()];
     }
-    input.losses.bending = mesh.bending_stiffness * time / h;
     for e in 0..mesh.rest_length.len() {
         input.losses.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
             mesh.path(e, &m.positions).length
@@ -89,4 +88,5 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         input.losses.predicted_length[bar] = length;
     }
     loss_memory::add(cable, h, rate, decay);
+    loss_memory::add_to_bends(cable, h, decay);
 }

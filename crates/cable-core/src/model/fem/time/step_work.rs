@@ -21,7 +21,7 @@ use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight::{self};
-use crate::model::fem::system::{ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope};
+use crate::model::fem::system::{ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns};
 use crate::scene::SupportKind;
 use crate::solution::Energy;
 
@@ -265,8 +265,20 @@ impl BalancedStep<'_> {
         if mesh.is_flexible() {
             return 0.0;
         }
-        if input.losses.bending > 0.0 {
-            works.material -= bends_slope(mesh, input.losses.bending, Some(&input.supports.start), x, self.ways);
+        let ([stiffness, viscous], [start, unbent]) = (input.losses.bending, &input.losses.turns);
+        if stiffness > 0.0 {
+            // The viscous part is even in the step, the branches go from their moments at its start
+            // to those at its end.
+            let mut mean = 0.0;
+            visit_turns(mesh, x, |bend| {
+                let [slot, _] = bend.slots;
+                let turned = bend.turn - start[slot];
+                let end = stiffness * (bend.turn - unbent[slot]) / bend.length;
+                let even = viscous * turned / bend.length;
+                mean += 0.5 * (end + even + mesh.branch_moments.sum(bend.slots)) * turned;
+            });
+            let end = bends_slope(mesh, stiffness, Some(unbent), x, self.ways);
+            note(&mut works.material, &mut works.numerical, [-mean, -end]);
         }
         -bends_slope(mesh, mesh.bending_stiffness, None, x, self.ways)
     }

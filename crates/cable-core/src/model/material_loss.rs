@@ -1,5 +1,5 @@
-//! This module models material damping with a constant loss factor: the same fraction of the
-//! stretching energy is lost in a cycle at every frequency.
+//! This module models material damping with a constant loss factor: the same fraction of the energy
+//! of stretching, and of that of bending, is lost in a cycle at every frequency.
 //!
 //! In parallel to the spring EA a bar has relaxation branches, each a spring EA y in series with a
 //! dashpot of relaxation time θ (generalised Maxwell body: H. Emmerich, M. Korn, "Incorporation of
@@ -21,12 +21,16 @@
 //! This is a spring of stiffness C whose strain is measured from ε₀ − Q/C, the same form as the
 //! viscous damping of a step.
 //!
+//! In bending EI takes the place of EA, the curvature ψ/l̄ that of the strain and a moment that of
+//! the force.
+//!
 //! A bar of a flexible cable that goes slack buckles between its nodes. Its material keeps the
-//! strain at which its tension ends and recovers from it (`time/loss_memory.rs`), so that the
+//! strain at which its tension ends and recovers from it (`fem/time/loss_memory.rs`), so that the
 //! branches give back only energy that was put in.
 //!
-//! A cable that can rub has branches up to the frequency at which its viscous loss, which keeps
-//! impacts resolved, is as great as the loss that is asked for.
+//! In stretching a cable that can rub has branches up to the frequency at which its viscous loss,
+//! which keeps impacts resolved, is as great as the loss that is asked for. In bending it has the
+//! loss that is asked for, and no other.
 
 use crate::math::{bounded, smaller};
 use crate::problem::Problem;
@@ -59,49 +63,77 @@ const ROUNDS: usize = 40;
 
 /// A relaxation branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::fem) struct RelaxationBranch {
+pub(in crate::model) struct RelaxationBranch {
     /// Relaxation time θ, s.
     time: f64,
-    /// Stiffness y as a fraction of EA.
+    /// Stiffness y as a fraction of EA or EI.
     part: f64,
 }
 
 impl RelaxationBranch {
     /// The values d and y g of a step of `h` (s).
-    pub(in crate::model::fem) fn in_step(&self, h: f64) -> [f64; 2] {
+    pub(in crate::model) fn in_step(&self, h: f64) -> [f64; 2] {
         let r = h / self.time;
         [(-r).exp(), self.part * -(-r).exp_m1() / r]
     }
 }
 
+/// The loss of a material in one kind of strain.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::model) struct MaterialLoss {
+    pub(in crate::model) branches: Vec<RelaxationBranch>,
+    /// Time constant of the viscous part of the loss, s.
+    pub(in crate::model) viscous: f64,
+}
+
 /// The loss of a cable's material.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::model::fem) struct Loss {
-    pub(in crate::model::fem) branches: Vec<RelaxationBranch>,
-    /// Time constant of the viscous part of the loss of a taut bar, s.
-    pub(in crate::model::fem) viscous: f64,
+pub(in crate::model) struct Loss {
+    /// That of a taut bar.
+    pub(in crate::model) stretching: MaterialLoss,
+    /// That of a bend.
+    pub(in crate::model) bending: MaterialLoss,
 }
 
 impl Loss {
     /// The loss of a cable of even bars of length `bar` (m): constant up to their highest
-    /// frequency, or, if it `rubs`, up to that at which the viscous loss is as great.
-    pub(in crate::model::fem) fn of(problem: &Problem, bar: f64, rubs: bool) -> Self {
-        let ratio = problem.cable.damping_ratio;
-        let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
-        let cutoff = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
-        if !(ratio > 0.0 && cutoff.is_finite()) {
-            return Self::default();
-        }
-        let even = smaller(ratio, CONSTANT_LOSS_RATIO_LIMIT);
-        if !rubs {
-            let viscous = damping_time(problem, false) * (1.0 - even / ratio);
-            return Self { branches: fit(2.0 * even, 0.0, [lowest, cutoff]), viscous };
-        }
-        let viscous = damping_time(problem, true);
-        let highest = smaller(cutoff, 2.0 * even / viscous);
-        let branches = if highest > lowest { fit(2.0 * even, viscous, [lowest, highest]) } else { Vec::new() };
-        Self { branches, viscous }
+    /// frequency, or, in stretching if it `rubs`, up to that at which the viscous loss is as great.
+    pub(in crate::model) fn of(problem: &Problem, bar: f64, rubs: bool) -> Self {
+        Self { stretching: stretching(problem, bar, rubs), bending: bending(problem, bar) }
     }
+}
+
+/// The loss in stretching.
+fn stretching(problem: &Problem, bar: f64, rubs: bool) -> MaterialLoss {
+    let ratio = problem.cable.damping_ratio;
+    let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
+    let cutoff = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
+    if !(ratio > 0.0 && cutoff.is_finite()) {
+        return MaterialLoss::default();
+    }
+    let even = smaller(ratio, CONSTANT_LOSS_RATIO_LIMIT);
+    if !rubs {
+        let viscous = damping_time(problem, false) * (1.0 - even / ratio);
+        return MaterialLoss { branches: fit(2.0 * even, 0.0, [lowest, cutoff]), viscous };
+    }
+    let viscous = damping_time(problem, true);
+    let highest = smaller(cutoff, 2.0 * even / viscous);
+    let branches = if highest > lowest { fit(2.0 * even, viscous, [lowest, highest]) } else { Vec::new() };
+    MaterialLoss { branches, viscous }
+}
+
+/// The loss in bending. The highest frequency at which bars of a length b bend is 4 √(EI/ρ)/b²,
+/// where their nodes move to and fro in turn.
+fn bending(problem: &Problem, bar: f64) -> MaterialLoss {
+    let ratio = problem.cable.bending_damping();
+    let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
+    let cutoff = 4.0 * (problem.bending_stiffness / problem.linear_density).sqrt() / (bar * bar);
+    if !(ratio > 0.0 && cutoff > 0.0 && cutoff.is_finite()) {
+        return MaterialLoss::default();
+    }
+    let even = smaller(ratio, CONSTANT_LOSS_RATIO_LIMIT);
+    let viscous = viscous_time(problem, ratio - even);
+    MaterialLoss { branches: fit(2.0 * even, 0.0, [lowest, cutoff]), viscous }
 }
 
 /// Fits branches beside a viscous loss with a time constant `viscous` (s) to a loss factor from the
@@ -139,14 +171,20 @@ fn loss_factor(branches: &[RelaxationBranch], viscous: f64, omega: f64) -> f64 {
     imaginary / real
 }
 
-/// Time constant of viscous damping, s: that of the damping ratio at the first axial mode of the
-/// whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable that cannot
-/// rub have relaxation branches instead, those of one that can have them beside it.
-pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
+/// Time constant of viscous damping in stretching, s: that of the damping ratio at the first axial
+/// mode of the whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable
+/// that cannot rub have relaxation branches instead, those of one that can have them beside it.
+pub(in crate::model) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
+    let own = viscous_time(problem, problem.cable.damping_ratio);
+    if rubs { MATERIAL_DAMPING.max(own) } else { own }
+}
+
+/// Time constant of a viscous loss with a damping ratio at the first axial mode of the whole cable,
+/// s.
+fn viscous_time(problem: &Problem, ratio: f64) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
     let first_mode = std::f64::consts::PI * wave / problem.damped_length;
-    let own = 2.0 * problem.cable.damping_ratio / first_mode;
-    if rubs { MATERIAL_DAMPING.max(own) } else { own }
+    2.0 * ratio / first_mode
 }
 
 #[cfg(test)]
