@@ -171,12 +171,10 @@ impl BarEnergy {
         if !mesh.is_flexible() || elastic.slope[0] > 0.0 && elastic.slope[0] + viscous.slope[0] > 0.0 {
             return elastic.and(viscous);
         }
-        if ratio > 1.0 {
-            // The energy at the length at which the tension ends remains, per length.
-            let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
-            return Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() };
-        }
-        if viscous.slope[0] > 0.0 { viscous } else { Self::default() }
+        // Damping is measured from no less than the unstretched length. The energy at the length at
+        // which the tension ends remains, per length.
+        let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
+        Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() }
     }
 }
 

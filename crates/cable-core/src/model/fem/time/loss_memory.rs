@@ -82,8 +82,8 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
     let slides = |e: usize| mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some();
     losses.damped_from.clone_from(&losses.predicted_length);
     if mesh.is_flexible() {
-        for (e, from) in losses.damped_from.iter_mut().enumerate().filter(|(e, _)| !slides(*e)) {
-            *from = larger(*from, mesh.rest_length[e]);
+        for (from, length) in losses.damped_from.iter_mut().zip(&mesh.rest_length) {
+            *from = larger(*from, *length);
         }
     }
     let loss = &cable.loss.stretching;
@@ -113,10 +113,6 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
         let is_slack = mesh.is_flexible() && strain < slack_strain;
         let strain = if is_slack { slack_strain } else { strain };
         losses.material_strain.push(strain);
-        // A slack bar with a sliding node resists by its viscous damping alone.
-        if is_slack && slides(e) {
-            continue;
-        }
         let kept: f64 = forces.iter().zip(&*decay).map(|(q, d)| q * d).sum();
         let material = length * (1.0 + strain);
         let late = if is_slack { material } else { losses.predicted_length[e] };
