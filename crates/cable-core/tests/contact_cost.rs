@@ -34,7 +34,7 @@ const ITERATIONS: [(&str, Model, usize, usize); 19] = [
     ("floor-drag", Model::MassSpring, 119, 32940),
     ("rubble-drop", Model::Fem, 0, 439),
     ("rubble-drop", Model::MassSpring, 1, 28680),
-    ("plan-posts", Model::Fem, 62, 1692),
+    ("plan-posts", Model::Fem, 62, 1552),
     ("plan-posts", Model::MassSpring, 5, 22950),
 ];
 

@@ -204,7 +204,8 @@ fn a_wheel_that_goes_and_comes_back_carries_its_cable_again() {
     }
 }
 
-/// `mass-spring` would stretch the elements beside the wheel by all that it has come into the cable.
+/// `mass-spring` would stretch the elements beside the wheel by all that it has come into the
+/// cable.
 #[test]
 fn a_chain_of_springs_does_not_come_back_to_a_wheel() {
     let mut scene = lowered(0.0);

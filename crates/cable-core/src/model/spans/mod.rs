@@ -21,6 +21,7 @@
 //! | `slack` | cable that lies without tension |
 //! | `acceptance` | checks of an equilibrium that do not use the solver |
 //! | `results` | the answer |
+//! | `wheel_departure` | wheels that the cable leaves |
 //! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
@@ -41,6 +42,7 @@ mod section;
 mod section_layout;
 mod settings;
 mod slack;
+mod wheel_departure;
 
 use std::sync::Arc;
 

@@ -5,14 +5,12 @@
 //! | `cable_section.rs` | free spans and contacts between two end conditions: the unknowns |
 //! | `boundary_conditions.rs` | supports, loads and temperature at an instant |
 //! | `failure.rs` | why a section has no equilibrium |
-//! | `wheel_departure.rs` | wheels that the cable leaves |
 //! | `tension_loss.rs` | the place where the cable lost its tension, if a step failed by that |
 
 pub(in crate::model::spans) mod boundary_conditions;
 pub(in crate::model::spans) mod cable_section;
 pub(in crate::model::spans) mod failure;
 pub(in crate::model::spans) mod tension_loss;
-mod wheel_departure;
 
 pub(in crate::model::spans) use boundary_conditions::BoundaryConditions;
 pub(in crate::model::spans) use cable_section::{
