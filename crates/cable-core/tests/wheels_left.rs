@@ -228,6 +228,61 @@ fn a_wheel_that_is_left_is_told() {
     assert!(told);
 }
 
+/// A run whose cable has been lifted off its second wheel.
+fn lifted_off() -> Simulation {
+    let mut sim = Simulation::new(over_two(LIFTED, 6.35, &LIFT, true), Model::Auto).unwrap();
+    sim.settle().unwrap();
+    for _ in 0..(7.0 * HZ) as usize {
+        sim.step(1.0 / HZ).unwrap();
+    }
+    assert_eq!(sim.answers()[0].supports[2].reaction_y_n, 0.0);
+    sim
+}
+
+/// Steps for a time (s); returns the greatest tension of all inner steps, N.
+fn greatest_of(sim: &mut Simulation, seconds: f64) -> f64 {
+    let mut greatest = 0.0_f64;
+    for _ in 0..(seconds * HZ) as usize {
+        sim.step(1.0 / HZ).unwrap();
+        greatest = greatest.max(sim.answers()[0].peaks_at(sim.time_s()).greatest.tension_n);
+    }
+    greatest
+}
+
+#[test]
+fn a_hand_leads_a_wheel_back_under_its_cable() {
+    let mut sim = lifted_off();
+    let quiet = greatest_of(&mut sim, 0.5);
+    // A mouse leads it in jumps, clear of the cable first.
+    for k in 1..=20 {
+        sim.drag_support(0, 2, cable_core::Vec2::new(4.0, 0.2 + 0.03 * f64::from(k)));
+        let pulled = greatest_of(&mut sim, 0.1);
+        // A wheel that strikes the cable at the 2 m/s of a hand pulls with EA (v/c)^{4/3}/∛2 = 93
+        // N.
+        assert!(pulled < quiet + 200.0, "{pulled} N for {quiet} N with the wheel at step {k}");
+    }
+    greatest_of(&mut sim, 1.0);
+    let wheel = &sim.answers()[0].supports[2];
+    println!(
+        "{quiet:.1} N, then the wheel at ({:.3}, {:.3}) m bears {:.1} N",
+        wheel.x_m, wheel.y_m, wheel.reaction_y_n
+    );
+    assert!((wheel.y_m - 0.8).abs() < 1e-6 && wheel.reaction_y_n < -1.0, "{wheel:?}");
+}
+
+#[test]
+fn a_run_goes_on_in_an_edited_scene_with_its_cable_clear_of_a_wheel() {
+    let mut sim = lifted_off();
+    let quiet = greatest_of(&mut sim, 0.5);
+    let mut scene = over_two(LIFTED, 6.35, &LIFT, true);
+    scene.cables[0].supports[2].move_to([4.0, 0.0]);
+    let mut edited = sim.with_scene(scene, Settings::default()).unwrap();
+    let pulled = greatest_of(&mut edited, 1.0);
+    // The state is laid on another mesh, which jolts it.
+    assert!(pulled < 10.0 * quiet, "{pulled} N for {quiet} N");
+    assert_eq!(edited.answers()[0].supports[2].reaction_y_n, 0.0);
+}
+
 #[test]
 #[ignore = "minutes: random cables"]
 fn random_cables_are_lifted_off_a_wheel_as_off_a_post() {

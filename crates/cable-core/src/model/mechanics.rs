@@ -190,9 +190,10 @@ pub trait Mechanics: Send {
         false
     }
 
-    /// Goes on with wheels that let go of the cable now: `problem` is the same but for these, and
-    /// for posts after its other obstacles. Returns false, without a change, if the model cannot.
-    fn let_go_of_wheels(&mut self, _problem: Arc<Problem>) -> bool {
+    /// Goes on with wheels that let go of the cable now, or hold it again: `problem` is the same
+    /// but for these, and for posts after its other obstacles. Returns false, without a change, if
+    /// the model cannot.
+    fn change_wheels(&mut self, _problem: Arc<Problem>) -> bool {
         false
     }
 

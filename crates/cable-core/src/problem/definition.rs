@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::time_series::{TIME_TOLERANCE_S, TimeSeries, turn_between};
 use super::wheels_as_posts::WheelLeft;
 use crate::contact::World;
+use crate::contact::geometry::Body;
 use crate::contact::moving_outline::Outline;
 use crate::math::{Vec2, vec2};
 use crate::scene::froude_scaling::Similarity;
@@ -176,19 +177,33 @@ pub(crate) struct WheelsLeft {
 }
 
 impl WheelsLeft {
-    /// A problem with the same supports, of which the wheels that were left let go at a time (s),
-    /// and with their posts; None if an obstacle would have another place in the list.
+    /// The problem with which a model of `present` goes on: with the supports of the scene, of
+    /// which the wheels that were left let go from a time (s) on and the others stand at their
+    /// places (m, where they were led), and with the posts. None if another obstacle would have a
+    /// new place in the list.
     #[must_use]
-    pub(crate) fn let_go(&self, problem: &Problem, time_s: f64) -> Option<Arc<Problem>> {
-        let [before, after] = [problem, &*self.problem].map(|p| p.world.geometry().bodies());
-        let same = before.iter().zip(after).all(|(a, b)| a.obstacle == b.obstacle && a.first == b.first);
-        if !same || before.len() > after.len() {
+    pub(crate) fn going_on(
+        &self,
+        present: &Problem,
+        scene: &Problem,
+        places: &[Option<Vec2>],
+        time_s: f64,
+    ) -> Option<Arc<Problem>> {
+        let [before, after] = [present, &*self.problem].map(|p| p.world.geometry().bodies());
+        let same = |(a, b): (&Body, &Body)| a.obstacle == b.obstacle && a.first == b.first && a.name == b.name;
+        if !before.iter().zip(after).all(same) {
             return None;
         }
-        let mut this = Problem { world: self.problem.world.clone(), unreachable: None, ..problem.clone() };
-        for (support, replaced) in this.supports.iter_mut().zip(&self.replaced) {
-            if *replaced && support.departure != Departure::Done {
-                (support.release, support.departure) = (Some(time_s), Departure::Done);
+        let mut this = Problem { world: self.problem.world.clone(), unreachable: None, ..present.clone() };
+        for (k, support) in this.supports.iter_mut().enumerate() {
+            match (self.replaced.get(k) == Some(&true), support.departure == Departure::Done) {
+                (true, false) => (support.release, support.departure) = (Some(time_s), Departure::Done),
+                (false, true) => {
+                    let own = scene.supports.get(k)?.clone();
+                    let at = places.get(k).copied().flatten().or(own.at);
+                    *support = SupportPoint { at, ..own };
+                }
+                _ => {}
             }
         }
         Some(Arc::new(this))

@@ -97,6 +97,9 @@ impl CableWheels {
     /// The cable with a post in place of each wheel that stands still; None as [`Self::left`].
     pub(crate) fn all_as_posts(&self) -> Option<Arc<WheelsLeft>> {
         let post = |stands: &bool| if *stands { StandIn::Post } else { StandIn::Wheel };
+        if !self.standing.contains(&true) {
+            return None;
+        }
         self.left(&self.standing.iter().map(post).collect::<Vec<_>>(), &[])
     }
 }

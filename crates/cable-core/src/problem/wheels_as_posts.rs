@@ -72,9 +72,6 @@ pub(super) fn stands_still(wheel: &Support) -> bool {
 /// wheels.
 pub(super) fn with_posts(scene: &Scene, cable: &Cable, stand_ins: &[StandIn]) -> Option<WithPosts> {
     let replaced: Vec<bool> = stand_ins.iter().map(|s| *s != StandIn::Wheel).collect();
-    if !replaced.contains(&true) {
-        return None;
-    }
     let mut scene = scene.clone();
     let mut wheels = Vec::new();
     for k in (0..replaced.len()).filter(|k| replaced[*k]) {
@@ -178,6 +175,7 @@ mod tests {
             let radius = problem.supports[wheel.support].wheel_radius;
             assert!(nearest > radius && nearest < 1.3 * radius, "{nearest} m from {:?} of {radius} m", wheel.post);
         }
-        assert!(wheels.left(&[StandIn::Wheel; 5], &[]).is_none(), "none is left");
+        let same = wheels.left(&[StandIn::Wheel; 5], &[]).unwrap();
+        assert!(same.wheels.is_empty() && same.problem.supports.len() == 5, "none is left");
     }
 }

@@ -324,13 +324,13 @@ impl Mechanics for FemModel {
         broken
     }
 
-    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+    fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
         let Ok(statics) = free::Statics::new(problem.clone(), self.settings) else { return false };
         if self.present != PresentPart::Stepper || self.elastica_answer.is_some() {
             return false;
         }
         (self.statics, self.problem) = (statics, problem.clone());
-        self.stepper.let_go_of_wheels(problem);
+        self.stepper.change_wheels(problem);
         true
     }
 

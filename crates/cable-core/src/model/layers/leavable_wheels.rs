@@ -18,7 +18,7 @@ use crate::model::mechanics::Constructor;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::wheels_as_posts::{StandIn, WheelLeft};
-use crate::problem::{CableWheels, Problem, WheelsLeft};
+use crate::problem::{CableWheels, Problem, SupportPoint, WheelsLeft};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
@@ -41,6 +41,8 @@ pub struct LeavableWheels {
     let_go: bool,
     /// Places to which supports were moved, m, and by what.
     led: Vec<Option<SupportMove>>,
+    /// Present places of wheels that were led while the cable was clear of them, m.
+    places: Vec<Option<Vec2>>,
     robot_pose: Option<RigidPose>,
 }
 
@@ -95,8 +97,9 @@ impl LeavableWheels {
         construct: Arc<Constructor>,
         inner: Box<dyn Mechanics>,
     ) -> Self {
-        let led = vec![None; problem.supports.len()];
-        Self { problem, wheels, settings, construct, inner, left: None, let_go: false, led, robot_pose: None }
+        let n = problem.supports.len();
+        let (led, places) = (vec![None; n], vec![None; n]);
+        Self { problem, wheels, settings, construct, inner, left: None, let_go: false, led, places, robot_pose: None }
     }
 
     /// Index that a support has in the inner model; None for a wheel that was left.
@@ -152,8 +155,7 @@ impl LeavableWheels {
         state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
     }
 
-    /// Moves a support. A wheel that was left stays so if its path is clear of the cable; else it
-    /// becomes a wheel again.
+    /// Moves a support; a wheel that was left goes there when the cable is next solved.
     fn lead(&mut self, support: usize, lead: SupportMove) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
@@ -161,15 +163,69 @@ impl LeavableWheels {
         match (self.inner_index(support), lead) {
             (Some(inner), SupportMove::Dragged(at)) => self.inner.drag_support(inner, at),
             (Some(inner), SupportMove::Pulled(at)) => self.inner.pull_support(inner, at),
-            (None, lead) => {
-                let clear = matches!(lead, SupportMove::Dragged(to) if self.goes_clear(support, to));
-                if !(clear && self.move_posts())
-                    && let Ok(inner) = self.built(None, &Start::Motion(&self.inner.state()))
-                {
-                    self.continue_with(inner, None);
-                }
+            (None, _) => {}
+        }
+    }
+
+    /// The wheels that were left and have been led from where they are, with their targets, m.
+    fn led_away(&self) -> Vec<(usize, Vec2)> {
+        let wheels = self.left.iter().flat_map(|left| &left.wheels);
+        let led = wheels.filter_map(|wheel| {
+            let to = self.led[wheel.support].map(SupportMove::place)?;
+            let at = self.places[wheel.support].unwrap_or(wheel.center);
+            (at != to).then_some((wheel.support, to))
+        });
+        led.collect()
+    }
+
+    /// Puts wheels that were left where they have been led, at once. One stays left if its path is
+    /// clear of the cable; else all become wheels again.
+    fn put_at_rest(&mut self) {
+        let led = self.led_away();
+        if led.is_empty() {
+            return;
+        }
+        let clear = led.iter().all(|(support, to)| self.goes_clear(*support, *to));
+        let before = self.places.clone();
+        for (support, to) in led {
+            self.places[support] = Some(to);
+        }
+        if clear && self.move_posts() {
+            return;
+        }
+        if let Ok(inner) = self.built(None, &Start::Motion(&self.inner.state())) {
+            self.continue_with(inner, None);
+            self.places.fill(None);
+        } else {
+            self.places = before;
+        }
+    }
+
+    /// Moves wheels that were left to where they have been led in a step of `dt_s` (s), no faster
+    /// than a hand. Posts stand still, so one that stands for a wheel that is led is taken away.
+    ///
+    /// # Errors Those of the model without it.
+    fn move_led(&mut self, dt_s: f64) -> Result<(), SolveError> {
+        let led = self.led_away();
+        let is_post = |support: usize| {
+            self.left.iter().flat_map(|left| &left.wheels).any(|w| w.support == support && w.post.is_some())
+        };
+        if led.iter().any(|(support, _)| is_post(*support)) {
+            let left = self.without(&self.replaced(), Inertia::Dynamic);
+            if !left.as_ref().is_some_and(|left| self.goes_on(left.clone())) {
+                let inner = self.built(left.as_ref(), &Start::Motion(&self.inner.state()))?;
+                self.continue_with(inner, left);
             }
         }
+        let most = self.settings.hand_speed_m_per_s * dt_s;
+        for (support, to) in led {
+            let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
+            let Some(from) = self.places[support].or(wheel.map(|w| w.center)) else { continue };
+            let way = to - from;
+            let part = if way.norm() > most { most / way.norm() } else { 1.0 };
+            self.places[support] = Some(if part < 1.0 { from + way * part } else { to });
+        }
+        Ok(())
     }
 
     /// Moves the posts to the places of the wheels; false if that is impossible.
@@ -179,6 +235,16 @@ impl LeavableWheels {
         let Ok(inner) = self.built(Some(&posts), &Start::Motion(&self.inner.state())) else { return false };
         self.continue_with(inner, Some(posts));
         true
+    }
+
+    /// Records the present places of wheels that a hand leads and the cable leaves.
+    fn note_places(&mut self, replaced: &[bool]) {
+        let answer = self.outer_solution(self.inner.solution());
+        for (k, support) in answer.supports.iter().enumerate() {
+            if replaced.get(k) == Some(&true) && self.places[k].is_none() && self.led[k].is_some() {
+                self.places[k] = Some(Vec2::new(support.x_m, support.y_m));
+            }
+        }
     }
 
     /// For each support, true if it is a wheel that the cable has left.
@@ -198,19 +264,27 @@ impl LeavableWheels {
         (replaced != before).then_some(replaced)
     }
 
-    /// The cable without some wheels at their present places. Posts stand in for those that stand
-    /// still: in a motion that is not so of wheels that a hand leads.
-    fn without(&self, replaced: &[bool], inertia: Inertia) -> Option<Arc<WheelsLeft>> {
+    /// The things in place of wheels, some of which the cable has left.
+    fn stand_ins(&self, replaced: &[bool], inertia: Inertia) -> Vec<StandIn> {
         let stand_in = |k: usize| match (replaced[k], self.led[k]) {
             (false, _) => StandIn::Wheel,
             (true, Some(_)) if inertia == Inertia::Dynamic => StandIn::Nothing,
             (true, _) if self.wheels.standing[k] => StandIn::Post,
             (true, _) => StandIn::Nothing,
         };
-        let stand_ins: Vec<StandIn> = (0..replaced.len()).map(stand_in).collect();
-        let places: Vec<Option<Vec2>> =
-            (0..replaced.len()).map(|k| self.led[k].filter(|_| replaced[k]).map(SupportMove::place)).collect();
-        self.wheels.left(&stand_ins, &places)
+        (0..replaced.len()).map(stand_in).collect()
+    }
+
+    /// The cable without some wheels, the others at their present places; None if that is the cable
+    /// itself. Posts stand in for wheels that stand still: in a motion that is not so of those that
+    /// a hand leads.
+    fn without(&self, replaced: &[bool], inertia: Inertia) -> Option<Arc<WheelsLeft>> {
+        let stand_ins = self.stand_ins(replaced, inertia);
+        let at_rest = |k: usize| self.led[k].filter(|_| replaced[k] && inertia == Inertia::QuasiStatic);
+        let place = |k: usize| self.places[k].or(at_rest(k).map(SupportMove::place));
+        let places: Vec<Option<Vec2>> = (0..replaced.len()).map(place).collect();
+        let changed = replaced.contains(&true) || places.iter().any(Option::is_some);
+        if changed { self.wheels.left(&stand_ins, &places) } else { None }
     }
 
     /// Continues without the wheels that the cable leaves by this error and by following ones;
@@ -245,19 +319,26 @@ impl LeavableWheels {
     /// Lets the wheels go that the cable leaves by this error, in the model that holds the state;
     /// returns whether it can do so.
     fn let_go_of(&mut self, error: &SolveError, inertia: Inertia) -> bool {
-        if self.left.is_some() && !self.let_go {
+        if let Some(replaced) = self.also_left(self.replaced(), error) {
+            self.note_places(&replaced);
+        }
+        let left = self.also_left(self.replaced(), error).and_then(|replaced| self.without(&replaced, inertia));
+        left.is_some_and(|left| self.goes_on(left))
+    }
+
+    /// Goes on with wheels that let go or hold again, in the model that holds the state; returns
+    /// whether it can do so.
+    fn goes_on(&mut self, left: Arc<WheelsLeft>) -> bool {
+        if self.replaced().contains(&true) && !self.let_go {
             return false;
         }
-        let left = self.also_left(self.replaced(), error).and_then(|replaced| self.without(&replaced, inertia)).filter(
-            |left| {
-                let problem = left.let_go(self.inner.problem(), self.inner.time_s());
-                problem.is_some_and(|problem| self.inner.let_go_of_wheels(problem))
-            },
-        );
-        self.let_go |= left.is_some();
-        let lets_go = left.is_some();
-        self.left = left.or(self.left.take());
-        lets_go
+        let (present, time_s) = (self.inner.problem(), self.inner.time_s());
+        let problem = left.going_on(present, &self.problem, &self.places, time_s);
+        let goes_on = problem.is_some_and(|problem| self.inner.change_wheels(problem));
+        if goes_on {
+            (self.left, self.let_go) = (Some(left), true);
+        }
+        goes_on
     }
 
     /// Advances to a time (s), and on without the wheels that the cable leaves on the way.
@@ -291,8 +372,7 @@ impl LeavableWheels {
         let state = self.inner.state();
         let is_within = |wheel: &&WheelLeft| {
             let support = &self.problem.supports[wheel.support];
-            let led = self.led[wheel.support].map(SupportMove::place);
-            let center = led.or_else(|| support.position_at(state.time_s).map(|place| place.0));
+            let center = self.places[wheel.support].or_else(|| support.position_at(state.time_s).map(|place| place.0));
             let near = support.wheel_radius * (1.0 - RETURN_DEPTH);
             let meets = |center| state.position_m.windows(2).any(|bar| distance(center, bar[0], bar[1]) < near);
             wheel.post.is_none() && center.is_some_and(meets)
@@ -310,6 +390,13 @@ impl LeavableWheels {
         let mut replaced = self.replaced();
         for k in back {
             replaced[k] = false;
+        }
+        let stand_ins = self.stand_ins(&replaced, inertia);
+        if inertia == Inertia::Dynamic
+            && let Some(left) = self.wheels.left(&stand_ins, &self.places)
+            && self.goes_on(left)
+        {
+            return Ok(());
         }
         let left = self.without(&replaced, inertia);
         let answer = self.inner.solution();
@@ -386,6 +473,7 @@ impl Layer for LeavableWheels {
             left: self.left.clone(),
             let_go: self.let_go,
             led: self.led.clone(),
+            places: self.places.clone(),
             robot_pose: self.robot_pose,
         }
     }
@@ -395,7 +483,30 @@ impl Layer for LeavableWheels {
         self.inner.reason().or(as_posts.and(Some(&ModelReason::Obstacles)))
     }
 
+    /// A moving cable is on the wheels on which its state lies; it has left the others.
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        let off = |(k, support): (usize, &SupportPoint)| {
+            let center = self.places[k].or_else(|| support.position_at(state.time_s).map(|place| place.0));
+            let far = support.wheel_radius * (1.0 + RETURN_DEPTH);
+            let clear = |center| state.position_m.windows(2).all(|bar| distance(center, bar[0], bar[1]) > far);
+            self.wheels.wheels[k] && center.is_some_and(clear)
+        };
+        let is_whole = || state.pieces().len() == 1;
+        if state.moves() && state.first_non_finite().is_none() && is_whole() {
+            let replaced: Vec<bool> = self.problem.supports.iter().enumerate().map(off).collect();
+            if replaced != self.replaced() {
+                let left = self.without(&replaced, Inertia::Dynamic);
+                if let Ok(inner) = self.built(left.as_ref(), &Start::Motion(state)) {
+                    self.continue_with(inner, left);
+                    return Ok(());
+                }
+            }
+        }
+        self.inner.set_state(state)
+    }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
+        self.put_at_rest();
         let found = self.inner.settle();
         let refusal = match &found {
             Ok(_) => self.inner.refusal(),
@@ -418,6 +529,10 @@ impl Layer for LeavableWheels {
         inertia: Inertia,
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
+        match inertia {
+            Inertia::Dynamic => self.move_led(dt_s)?,
+            Inertia::QuasiStatic => self.put_at_rest(),
+        }
         let end_s = self.inner.time_s() + dt_s;
         let report = self.advance_to(end_s, inertia, gauge)?;
         let told = self.told(report);
@@ -459,10 +574,10 @@ impl Layer for LeavableWheels {
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
         let Some(left) = &self.left else { return answer };
         for wheel in &left.wheels {
-            let led = self.led.get(wheel.support).copied().flatten().map(SupportMove::place);
+            let led = self.places.get(wheel.support).copied().flatten();
             let moved = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
-            let center = led.filter(|_| wheel.post.is_none()).or_else(|| wheel.post.is_none().then(moved).flatten());
-            let reaction = reaction(&self.problem, wheel, center.unwrap_or(wheel.center), &answer);
+            let center = led.or_else(moved).filter(|_| wheel.post.is_none()).unwrap_or(wheel.center);
+            let reaction = reaction(&self.problem, wheel, center, &answer);
             match answer.supports.get_mut(wheel.support).filter(|_| self.let_go) {
                 Some(of_let_go) => *of_let_go = reaction,
                 None => answer.supports.insert(wheel.support.min(answer.supports.len()), reaction),

@@ -63,6 +63,10 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
         self.inner_mut().advance_gauged(dt_s, inertia, gauge)
     }
 
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        self.inner_mut().set_state(state)
+    }
+
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.inner_mut().warm_start(answer, time_s)
     }
@@ -177,7 +181,7 @@ impl<L: Layer> Mechanics for Layered<L> {
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         let state = self.0.inner_state(state);
-        let outcome = self.0.inner_mut().set_state(&state);
+        let outcome = self.0.set_state(&state);
         self.0.observe();
         outcome.map_err(|e| self.0.outer_error(e))
     }

@@ -427,14 +427,14 @@ impl Mechanics for SwitchingModel {
         self.fem.as_mut().is_some_and(|fem| fem.break_at(place))
     }
 
-    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+    fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
         let simpler = Problem::without_self_contact(Problem::without_outline(problem.clone()));
         let lets_go = match &mut self.fem {
             Some(fem) => {
                 let spans = SpansModel::new(simpler, self.settings).ok();
-                spans.filter(|_| fem.let_go_of_wheels(problem.clone())).map(|spans| self.spans = spans).is_some()
+                spans.filter(|_| fem.change_wheels(problem.clone())).map(|spans| self.spans = spans).is_some()
             }
-            None => self.spans.let_go_of_wheels(simpler),
+            None => self.spans.change_wheels(simpler),
         };
         if lets_go {
             self.problem = problem;

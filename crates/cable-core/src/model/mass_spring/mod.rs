@@ -70,7 +70,7 @@ use crate::model::mass_spring::chain_model::ChainModel;
 use crate::model::mass_spring::error_estimate::{CoarseMeshStart, Estimate};
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::problem::Problem;
+use crate::problem::{Departure, Problem};
 use crate::scene::SupportKind;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -158,9 +158,14 @@ impl Mechanics for MassSpringModel {
         }
     }
 
-    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
-        self.cable.chain.mesh.problem = problem;
-        true
+    fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        let present = &mut self.cable.chain.mesh.problem;
+        let left = |p: &Problem| p.supports.iter().filter(|s| s.departure == Departure::Done).count();
+        let lets_go = left(&problem) > left(present);
+        if lets_go {
+            *present = problem;
+        }
+        lets_go
     }
 
     fn solution(&self) -> CableSolution {

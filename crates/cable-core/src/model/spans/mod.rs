@@ -607,7 +607,7 @@ impl Mechanics for SpansModel {
         Ok(())
     }
 
-    fn let_go_of_wheels(&mut self, problem: Arc<Problem>) -> bool {
+    fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
         let Some(equilibrium) = &self.cable_equilibrium else { return false };
         let settings = self.layout.settings.clone();
         let Ok(layout) = counted(&problem, self.layout.counted_from, settings) else { return false };

@@ -7,12 +7,16 @@ use crate::problem::Departure;
 
 impl CableEquilibrium {
     /// The same equilibrium in a layout without the wheels that the cable has left there; None if
-    /// it touches one for which no post stands.
+    /// there are none, or if it touches one for which no post stands.
     pub(in crate::model::spans) fn without_wheels(
         &self,
         before: &SectionLayout,
         after: &SectionLayout,
     ) -> Option<Self> {
+        let holds = |layout: &SectionLayout| layout.sections.iter().map(|s| s.pulleys.len()).sum::<usize>();
+        if holds(after) >= holds(before) {
+            return None;
+        }
         let bodies = after.problem.world.geometry().bodies();
         let known = before.problem.world.geometry().bodies().len();
         let left = |support: usize| after.problem.supports.get(support).is_some_and(|s| s.departure == Departure::Done);

@@ -9,16 +9,20 @@ use crate::model::fem::remesh::clear_of_nodes;
 use crate::model::fem::remesh::{even_out, insert};
 use crate::model::fem::state::{CableState, renew_input};
 use crate::problem::wheel_passage::facing;
+use crate::problem::{Departure, Problem};
 use crate::scene::PulleySide;
 use crate::state::State;
 
-/// Puts a sliding node at every pulley: at the material that is nearest to it in `state`, else at
-/// the arc length of the layout.
+/// Puts a sliding node at every pulley that has none: at the material that is nearest to it in
+/// `state`, else at the arc length of the layout.
 pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Option<&State>) {
     let problem = Arc::clone(&cable.problem);
     let layout = StationLayout::new(&problem, cable.motion.time, &[], &[]);
     for station in &layout.stations {
         let (Restraint::Pulley(wheel), Some(support)) = (station.restraint, station.support) else { continue };
+        if cable.mesh.pulley_center(support).is_some() || support_has_left(&problem, support) {
+            continue;
+        }
         let lies = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or([station.arc_length; 2]);
         // Material nodes on the wheel would have no contact there.
         clear_of_nodes(cable, lies);
@@ -39,4 +43,9 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
     }
     even_out(cable);
     renew_input(cable);
+}
+
+/// True if the cable has left the wheel of a pulley.
+fn support_has_left(problem: &Problem, support: usize) -> bool {
+    problem.supports.get(support).is_some_and(|s| s.departure == Departure::Done)
 }

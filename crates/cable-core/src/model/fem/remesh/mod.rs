@@ -19,4 +19,4 @@ mod wheels;
 pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
 pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};
-pub(in crate::model::fem) use wheels::{let_go_of_wheels, lifted_wheel};
+pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel};

@@ -81,9 +81,9 @@ impl Stepper {
         Ok(self.report(total, halved, h))
     }
 
-    /// Goes on with a problem in which some wheels have let go (see `let_go_of_wheels`).
-    pub(in crate::model::fem) fn let_go_of_wheels(&mut self, problem: Arc<Problem>) {
-        remesh::let_go_of_wheels(&mut self.cable, problem);
+    /// Goes on with a problem in which some wheels have let go (see `change_wheels`).
+    pub(in crate::model::fem) fn change_wheels(&mut self, problem: Arc<Problem>) {
+        remesh::change_wheels(&mut self.cable, problem);
         if self.accounts_energy {
             self.cable.motion.energies.edit(stored_energy(&self.cable));
             self.cable.motion.energies.end_step();
