@@ -5,7 +5,6 @@
 use std::sync::Arc;
 
 use crate::contact::geometry::Body;
-use crate::model::fem::first_shape::thread_pulleys;
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
 use crate::model::fem::state::{CableState, MovingOutline, renew_input};
@@ -24,7 +23,7 @@ pub(in crate::model::fem) fn lifted_wheel(cable: &CableState) -> Option<&Support
 }
 
 /// Goes on with a problem in which some wheels have let go, with posts for some of them after its
-/// other obstacles, or hold the cable again where it is.
+/// other obstacles.
 pub(in crate::model::fem) fn change_wheels(cable: &mut CableState, problem: Arc<Problem>) {
     let known = cable.problem.world.geometry().bodies().iter().filter(|body| !body.moves()).count();
     let (outline, problem) = MovingOutline::of(problem);
@@ -42,8 +41,6 @@ pub(in crate::model::fem) fn change_wheels(cable: &mut CableState, problem: Arc<
             cable.mesh.sliding[k] = Some(on_post);
         }
     }
-    let state = cable.state();
-    thread_pulleys(cable, Some(&state));
     let x = std::mem::take(&mut cable.motion.positions);
     cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
     cable.motion.positions = x;

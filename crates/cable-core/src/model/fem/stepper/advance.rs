@@ -1,18 +1,15 @@
 //! This module divides an `advance` into inner steps, with or without inertia, and reports it.
 
-use std::sync::Arc;
-
 use super::{StepRequest, Stepper};
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::mesh::SlideOver;
-use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds, stored_energy};
+use crate::model::fem::results;
+use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds};
 use crate::model::fem::system::{Converged, WorkBudget};
-use crate::model::fem::{remesh, results};
 use crate::model::smoothed_target::held_warning;
 use crate::model::tension_gauge::{TensionBefore, TensionGauge};
 use crate::model::{Inertia, StepReport};
-use crate::problem::Problem;
 use crate::solution::{Cost, Warning, WarningCause};
 
 impl Stepper {
@@ -79,15 +76,6 @@ impl Stepper {
             }
         }
         Ok(self.report(total, halved, h))
-    }
-
-    /// Goes on with a problem in which some wheels have let go (see `change_wheels`).
-    pub(in crate::model::fem) fn change_wheels(&mut self, problem: Arc<Problem>) {
-        remesh::change_wheels(&mut self.cable, problem);
-        if self.accounts_energy {
-            self.cable.motion.energies.edit(stored_energy(&self.cable));
-            self.cable.motion.energies.end_step();
-        }
     }
 
     /// Begins an `advance` of `dt_s` (s); returns its end time, s.

@@ -9,18 +9,22 @@
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
 
+use std::sync::Arc;
+
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
-use crate::model::fem::state::renew_input;
+use crate::model::fem::remesh::change_wheels;
+use crate::model::fem::state::{renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
 use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes};
+use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
 
@@ -92,6 +96,19 @@ impl Stepper {
             self.rollback.restore(&mut self.cable);
         }
         Ok(())
+    }
+
+    /// Goes on with a problem in which some wheels have let go, with posts for some of them after
+    /// its other obstacles, or hold the cable again where it is.
+    pub(in crate::model::fem) fn change_wheels(&mut self, problem: Arc<Problem>) {
+        change_wheels(&mut self.cable, problem);
+        let state = self.cable.state();
+        thread_pulleys(&mut self.cable, Some(&state));
+        renew_input(&mut self.cable);
+        if self.accounts_energy {
+            self.cable.motion.energies.edit(stored_energy(&self.cable));
+            self.cable.motion.energies.end_step();
+        }
     }
 
     /// Adopts a state: node by node if the nodes are the same, else by arc length.
