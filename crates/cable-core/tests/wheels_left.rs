@@ -187,12 +187,18 @@ fn a_wheel_comes_up_under_a_cable_that_hangs_clear_of_it() {
     }
 }
 
-#[test]
-fn a_wheel_that_goes_and_comes_back_carries_its_cable_again() {
+/// A wheel under the middle of a span goes down by 3 m and comes back.
+fn to_and_fro() -> Scene {
     let mut scene = lowered(0.0);
     let way = |t: f64| [3.0, -1.5 + 1.5 * (std::f64::consts::TAU * t / WAY_S).cos()];
     let times_s: Vec<f64> = (0..=120).map(|k| WAY_S / 120.0 * f64::from(k)).collect();
     scene.cables[0].supports[1].motion = Some(Motion { points_m: times_s.iter().map(|t| way(*t)).collect(), times_s });
+    scene
+}
+
+#[test]
+fn a_wheel_that_goes_and_comes_back_carries_its_cable_again() {
+    let scene = to_and_fro();
     for (model, inertia, agrees) in [(Model::Fem, Inertia::Dynamic, 0.1), (Model::Auto, Inertia::QuasiStatic, 0.02)] {
         let found = pulls(scene.clone(), model, inertia, "first", &[0.0, 3.5, 9.0]);
         println!("{model:?} {inertia:?}: {found:.2?} N");
@@ -208,10 +214,7 @@ fn a_wheel_that_goes_and_comes_back_carries_its_cable_again() {
 /// cable.
 #[test]
 fn a_chain_of_springs_does_not_come_back_to_a_wheel() {
-    let mut scene = lowered(0.0);
-    let way = |t: f64| [3.0, -1.5 + 1.5 * (std::f64::consts::TAU * t / WAY_S).cos()];
-    let times_s: Vec<f64> = (0..=120).map(|k| WAY_S / 120.0 * f64::from(k)).collect();
-    scene.cables[0].supports[1].motion = Some(Motion { points_m: times_s.iter().map(|t| way(*t)).collect(), times_s });
+    let scene = to_and_fro();
     let told = try_pulls(scene, Model::MassSpring, Inertia::Dynamic, "first", &[9.0]).unwrap_err();
     assert!(told.contains("comes back to the moving wheel of `first`"), "{told}");
 }
@@ -268,6 +271,17 @@ fn a_hand_leads_a_wheel_back_under_its_cable() {
         wheel.x_m, wheel.y_m, wheel.reaction_y_n
     );
     assert!((wheel.y_m - 0.8).abs() < 1e-6 && wheel.reaction_y_n < -1.0, "{wheel:?}");
+    // It goes down again from where it is, at the speed of a hand, and leaves the cable.
+    sim.drag_support(0, 2, cable_core::Vec2::new(4.0, 0.0));
+    let mut at_m = 0.8;
+    for _ in 0..(1.0 * HZ) as usize {
+        sim.step(1.0 / HZ).unwrap();
+        let next_m = sim.answers()[0].supports[2].y_m;
+        assert!((at_m - next_m).abs() < 2.1 / HZ, "from {at_m} m to {next_m} m in one step");
+        at_m = next_m;
+    }
+    let wheel = &sim.answers()[0].supports[2];
+    assert!(wheel.y_m.abs() < 1e-6 && wheel.reaction_y_n == 0.0, "{wheel:?}");
 }
 
 #[test]

@@ -73,6 +73,16 @@ enum Start<'a> {
     Rest(&'a CableSolution, f64),
 }
 
+impl<'a> Start<'a> {
+    /// From the present state of a model, or its answer without motion.
+    fn of(inertia: Inertia, state: &'a State, answer: &'a CableSolution) -> Self {
+        match inertia {
+            Inertia::Dynamic => Self::Motion(state),
+            Inertia::QuasiStatic => Self::Rest(answer, state.time_s),
+        }
+    }
+}
+
 /// Distance of a point from a bar, m.
 fn distance(point: Vec2, from: Vec2, to: Vec2) -> f64 {
     (from + (to - from) * nearest_fraction(point, from, to) - point).norm()
@@ -148,9 +158,8 @@ impl LeavableWheels {
 
     /// Returns whether a wheel that was left moves to a place (m) clear of the cable.
     fn goes_clear(&self, support: usize, to: Vec2) -> bool {
-        let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
         let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
-        let (Some(wheel), Some(radius)) = (wheel, radius) else { return false };
+        let (Some(wheel), Some(radius)) = (self.wheel_left(support), radius) else { return false };
         let state = self.inner.state();
         state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
     }
@@ -165,6 +174,11 @@ impl LeavableWheels {
             (Some(inner), SupportMove::Pulled(at)) => self.inner.pull_support(inner, at),
             (None, _) => {}
         }
+    }
+
+    /// A wheel that was left.
+    fn wheel_left(&self, support: usize) -> Option<&WheelLeft> {
+        self.left.iter().flat_map(|left| &left.wheels).find(|wheel| wheel.support == support)
     }
 
     /// The wheels that were left and have been led from where they are, with their targets, m.
@@ -207,9 +221,7 @@ impl LeavableWheels {
     /// # Errors Those of the model without it.
     fn move_led(&mut self, dt_s: f64) -> Result<(), SolveError> {
         let led = self.led_away();
-        let is_post = |support: usize| {
-            self.left.iter().flat_map(|left| &left.wheels).any(|w| w.support == support && w.post.is_some())
-        };
+        let is_post = |support: usize| self.wheel_left(support).is_some_and(|wheel| wheel.post.is_some());
         if led.iter().any(|(support, _)| is_post(*support)) {
             let left = self.without(&self.replaced(), Inertia::Dynamic);
             if !left.as_ref().is_some_and(|left| self.goes_on(left.clone())) {
@@ -219,8 +231,8 @@ impl LeavableWheels {
         }
         let most = self.settings.hand_speed_m_per_s * dt_s;
         for (support, to) in led {
-            let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
-            let Some(from) = self.places[support].or(wheel.map(|w| w.center)) else { continue };
+            let center = self.wheel_left(support).map(|wheel| wheel.center);
+            let Some(from) = self.places[support].or(center) else { continue };
             let way = to - from;
             let part = if way.norm() > most { most / way.norm() } else { 1.0 };
             self.places[support] = Some(if part < 1.0 { from + way * part } else { to });
@@ -237,11 +249,11 @@ impl LeavableWheels {
         true
     }
 
-    /// Records the present places of wheels that a hand leads and the cable leaves.
+    /// Records the present places of wheels that a hand leads and the cable leaves now.
     fn note_places(&mut self, replaced: &[bool]) {
-        let answer = self.outer_solution(self.inner.solution());
+        let (answer, before) = (self.outer_solution(self.inner.solution()), self.replaced());
         for (k, support) in answer.supports.iter().enumerate() {
-            if replaced.get(k) == Some(&true) && self.places[k].is_none() && self.led[k].is_some() {
+            if replaced[k] && !before[k] && self.led[k].is_some() {
                 self.places[k] = Some(Vec2::new(support.x_m, support.y_m));
             }
         }
@@ -319,11 +331,9 @@ impl LeavableWheels {
     /// Lets the wheels go that the cable leaves by this error, in the model that holds the state;
     /// returns whether it can do so.
     fn let_go_of(&mut self, error: &SolveError, inertia: Inertia) -> bool {
-        if let Some(replaced) = self.also_left(self.replaced(), error) {
-            self.note_places(&replaced);
-        }
-        let left = self.also_left(self.replaced(), error).and_then(|replaced| self.without(&replaced, inertia));
-        left.is_some_and(|left| self.goes_on(left))
+        let Some(replaced) = self.also_left(self.replaced(), error) else { return false };
+        self.note_places(&replaced);
+        self.without(&replaced, inertia).is_some_and(|left| self.goes_on(left))
     }
 
     /// Goes on with wheels that let go or hold again, in the model that holds the state; returns
@@ -353,10 +363,7 @@ impl LeavableWheels {
                 continue;
             }
             let (from_s, state, answer) = (self.inner.time_s(), self.inner.state(), self.inner.solution());
-            let start = match inertia {
-                Inertia::Dynamic => Start::Motion(&state),
-                Inertia::QuasiStatic => Start::Rest(&answer, from_s),
-            };
+            let start = Start::of(inertia, &state, &answer);
             let run = |inner: &mut dyn Mechanics| inner.advance_gauged(end_s - from_s, inertia, gauge);
             return self.run_without(&error, &start, inertia, run).ok_or(error);
         }
@@ -400,11 +407,7 @@ impl LeavableWheels {
         }
         let left = self.without(&replaced, inertia);
         let answer = self.inner.solution();
-        let start = match inertia {
-            Inertia::Dynamic => Start::Motion(&state),
-            Inertia::QuasiStatic => Start::Rest(&answer, state.time_s),
-        };
-        let inner = self.built(left.as_ref(), &start)?;
+        let inner = self.built(left.as_ref(), &Start::of(inertia, &state, &answer))?;
         self.continue_with(inner, left);
         Ok(())
     }
