@@ -26,6 +26,12 @@ pub struct Outline {
 }
 
 impl Outline {
+    /// Returns whether both start at the same pose with the same corners and the same hitch.
+    #[must_use]
+    pub(crate) fn is_shaped_like(&self, other: &Self) -> bool {
+        self.corners == other.corners && self.hitch == other.hitch && self.placement == other.placement
+    }
+
     /// An outline, given by its corners and its hitch in its own axes (m); `None` if the corners
     /// enclose no area.
     #[must_use]

@@ -141,6 +141,20 @@ pub trait Mechanics: Send {
     /// the model cannot continue from inside an obstacle.
     fn set_state(&mut self, state: &State) -> Result<(), SolveError>;
 
+    /// All that the model needs to continue from here after an edit of the scene, beside the
+    /// problem, in a type that it alone knows: its mesh, history and friction. None if
+    /// [`Self::state`] holds it all.
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        None
+    }
+
+    /// Continues from where a model of the same kind was before an edit of the scene (see
+    /// [`Self::continuation`]). Returns false, without a change, if the edit does not allow it:
+    /// then [`Self::set_state`] lays the state on a mesh of its own.
+    fn continue_from(&mut self, _before: &(dyn Any + Send)) -> bool {
+        false
+    }
+
     /// Continues from an answer of the same cable, by this model or another: as
     /// [`Self::set_state`], and with the friction of the answer if the model can adopt it.
     ///

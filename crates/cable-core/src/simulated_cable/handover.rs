@@ -4,12 +4,18 @@ use super::SimulatedCable;
 use super::piece::CablePiece;
 use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
-use crate::model::{Model, ModelSource, Settings};
+use crate::model::{Mechanics, Model, ModelSource, Settings};
 use crate::problem::Problem;
 use crate::state::State;
 
 /// Part of a piece's length by which the places of a break and of a support differ by rounding.
 const SAME_PLACE: f64 = 1e-6;
+
+/// Lets a model continue with all that another one remembers of the same cable; returns whether it
+/// does.
+pub(super) fn continues(mechanics: &mut dyn Mechanics, before: &dyn Mechanics) -> bool {
+    before.continuation().is_some_and(|before| mechanics.continue_from(&*before))
+}
 
 impl SimulatedCable {
     /// Returns the same cable by another model: in its present state, or on its route where no time
@@ -88,11 +94,28 @@ impl SimulatedCable {
         parts.into_iter().zip(state.pieces()).map(own).collect()
     }
 
+    /// Goes on from where the same whole cable was before an edit: as it is if the model can, else
+    /// from its state.
+    fn go_on_from(&mut self, before: &CablePiece) -> Result<(), SolveError> {
+        let state = before.mechanics.state();
+        self.leaves_reach |= self.problem.is_beyond_reach(&state.position_m);
+        self.add_obstacles_in_reach()?;
+        if let [whole] = self.pieces.as_mut_slice()
+            && continues(whole.mechanics.as_mut(), before.mechanics.as_ref())
+        {
+            whole.gauge.forget();
+            whole.refresh_answer();
+            self.peaks = None;
+            return Ok(());
+        }
+        self.set_state(&state)
+    }
+
     /// Continues from where `old`, the same cable before an edit, is: broken where that one broke.
     pub fn continue_from(&mut self, old: &Self) -> Result<(), SolveError> {
         let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
-            self.set_state(&first.mechanics.state())?;
+            self.go_on_from(first)?;
             let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
             if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
                 own.gauge.clone_from(&first.gauge);

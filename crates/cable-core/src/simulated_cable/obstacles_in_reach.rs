@@ -6,6 +6,7 @@
 //! or stretched beyond that, may come to them.
 
 use super::SimulatedCable;
+use super::handover::continues;
 use crate::error::SolveError;
 use crate::math::larger;
 
@@ -19,7 +20,7 @@ impl SimulatedCable {
     }
 
     /// Gives a cable that may leave its reach all obstacles of the scene. It touches none of the
-    /// new ones yet, so that a new model continues from the state of the old one.
+    /// new ones yet, so that a new model continues where the old one is.
     pub(super) fn add_obstacles_in_reach(&mut self) -> Result<(), SolveError> {
         if !self.leaves_reach {
             return Ok(());
@@ -31,7 +32,9 @@ impl SimulatedCable {
         for k in 0..self.pieces.len() {
             let mut mechanics = self.source.build(problem.clone(), self.settings)?;
             self.targets.tell(&self.pieces[k].part, mechanics.as_mut());
-            mechanics.set_state(&self.pieces[k].mechanics.state())?;
+            if !continues(mechanics.as_mut(), self.pieces[k].mechanics.as_ref()) {
+                mechanics.set_state(&self.pieces[k].mechanics.state())?;
+            }
             self.pieces[k].mechanics = mechanics;
         }
         // Not before: a cable that could not go on among them is asked again.

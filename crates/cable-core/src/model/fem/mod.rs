@@ -40,6 +40,7 @@ mod tests;
 mod time;
 mod transfer;
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::error::SolveError;
@@ -163,6 +164,13 @@ impl FemModel {
         Some(finer)
     }
 
+    /// Estimates the errors of the steps without inertia that follow on an answer of another model.
+    pub(super) fn estimate_errors_from(&mut self, answer: &CableSolution) {
+        if self.present == PresentPart::Stepper {
+            self.meshes.continue_beside(&self.problem, self.settings, &self.stepper, answer, &self.dragged);
+        }
+    }
+
     /// A copy for rollback. It has the obstacles of the scene; those with the robot's moving
     /// outline stay with this model.
     pub(super) fn copy_for_rollback(&self) -> Self {
@@ -265,6 +273,23 @@ impl Mechanics for FemModel {
             PresentPart::Statics => self.statics.set_state(state),
             PresentPart::Stepper => self.stepper.set_state(state),
         }
+    }
+
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        let continues = self.present == PresentPart::Stepper && self.elastica_answer.is_none() && self.time_s() > 0.0;
+        continues.then(|| Box::new(self.stepper.clone()) as Box<dyn Any + Send>)
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        let continues = before.downcast_ref().is_some_and(|before| self.stepper.continue_from(before, &self.dragged));
+        if continues {
+            (self.present, self.meshes) = (PresentPart::Stepper, TwoMeshes::default());
+            (self.elastica_answer, self.bending_error) = (None, None);
+            if let Some(pose) = self.robot_pose {
+                self.set_robot_pose(pose);
+            }
+        }
+        continues
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
@@ -387,7 +412,7 @@ impl Mechanics for FemModel {
 
     fn lend(&mut self) -> Option<OwnedResources> {
         Some(OwnedResources {
-            memory: self.stepper.solver.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
+            memory: self.stepper.solver.memory.0.take().map(|memory| memory as Box<dyn Any + Send>),
             problem: self.stepper.cable.problem.clone(),
         })
     }

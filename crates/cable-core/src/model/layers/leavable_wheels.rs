@@ -8,6 +8,7 @@
 //! on if it can, with its history: its wheel lets go. Else a model without the wheel takes over its
 //! state, or its answer with the friction.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use super::Layer;
@@ -506,6 +507,15 @@ impl Layer for LeavableWheels {
             }
         }
         self.inner.set_state(state)
+    }
+
+    /// The cable of a scene whose wheels all hold it.
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        self.inner.continuation().filter(|_| self.left.is_none())
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        self.left.is_none() && self.inner.continue_from(before)
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {

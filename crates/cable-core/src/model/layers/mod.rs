@@ -12,6 +12,7 @@ pub(in crate::model) mod leavable_wheels;
 pub(in crate::model) mod natural_scale;
 pub(in crate::model) mod spans_then_fem;
 
+use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -65,6 +66,16 @@ pub(in crate::model) trait Layer: Send + Sized + 'static {
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.inner_mut().set_state(state)
+    }
+
+    /// See [`Mechanics::continuation`].
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        self.inner().continuation()
+    }
+
+    /// See [`Mechanics::continue_from`].
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        self.inner_mut().continue_from(before)
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
@@ -184,6 +195,16 @@ impl<L: Layer> Mechanics for Layered<L> {
         let outcome = self.0.set_state(&state);
         self.0.observe();
         outcome.map_err(|e| self.0.outer_error(e))
+    }
+
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        self.0.continuation()
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        let continues = self.0.continue_from(before);
+        self.0.observe();
+        continues
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {

@@ -4,6 +4,7 @@
 //! Barrier reach, elastic slip and gaps are absolute lengths in the solvers, tuned on cables of 1
 //! to 100 m. Instead of scaling each of them, the whole scene is scaled.
 
+use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -28,6 +29,12 @@ pub struct ScaledModel {
     /// The reason that the inner model gives, at this scale.
     reason: Option<ModelReason>,
     refusal: Option<SolveError>,
+}
+
+/// What a model of the copy continues from after an edit of the scene.
+struct ScaledContinuation {
+    by: Similarity,
+    inner: Box<dyn Any + Send>,
 }
 
 impl ScaledModel {
@@ -167,6 +174,16 @@ impl Layer for ScaledModel {
             sum.warnings = report.warnings;
         }
         Ok(sum)
+    }
+
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        let inner = self.inner.continuation()?;
+        Some(Box::new(ScaledContinuation { by: self.by, inner }))
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        let before = before.downcast_ref().filter(|before: &&ScaledContinuation| before.by == self.by);
+        before.is_some_and(|before| self.inner.continue_from(&*before.inner))
     }
 
     fn warm_start(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {

@@ -8,6 +8,7 @@
 //! time to time an answer of `fem` without inertia is offered back; `spans` takes over if its own
 //! answer there is practically the same.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::error::{SolveError, Unsupported};
@@ -62,6 +63,13 @@ pub struct SwitchingModel {
     max_work: Option<usize>,
 }
 
+/// What `fem` continues from after an edit of the scene.
+struct FemContinuation {
+    fem: Box<dyn Any + Send>,
+    reason: Option<ModelReason>,
+    interval: [usize; 2],
+}
+
 impl SwitchingModel {
     /// Builds it at the route.
     ///
@@ -92,7 +100,11 @@ impl SwitchingModel {
         let fem = match self.fem.take() {
             Some(fem) => fem,
             None => {
-                let fem = self.hand_over_to_fem()?;
+                let inertia = match why {
+                    Some(ModelReason::Inertia) => Inertia::Dynamic,
+                    _ => Inertia::QuasiStatic,
+                };
+                let fem = self.hand_over_to_fem(inertia)?;
                 self.reason = why;
                 self.interval[0] = self.interval[1];
                 fem
@@ -101,7 +113,8 @@ impl SwitchingModel {
         Ok(self.fem.insert(fem))
     }
 
-    fn hand_over_to_fem(&self) -> Result<FemModel, SolveError> {
+    /// `fem` from where `spans` is, for steps with or without inertia.
+    fn hand_over_to_fem(&self, inertia: Inertia) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
         let is_buried = || self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes);
@@ -116,11 +129,26 @@ impl SwitchingModel {
                 fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
             }
             fem.warm_start(&answer, self.spans.time_s())?;
+            if inertia == Inertia::QuasiStatic {
+                fem.estimate_errors_from(&self.known_answer());
+            }
         } else if self.spans.time_s() > 0.0 {
             fem.set_state(&self.spans.state())?;
         }
         self.draw_supports(&mut fem);
         Ok(fem)
+    }
+
+    /// The answer of `spans`, with the errors that its friction remembers.
+    fn known_answer(&self) -> CableSolution {
+        let answer = self.spans.solution();
+        match self.remembered {
+            Some(errors) => {
+                let errors = answer.errors.plus(&errors);
+                answer.known_to(errors)
+            }
+            None => answer,
+        }
     }
 
     /// `fem` along the route, with the robot at its pose.
@@ -369,6 +397,23 @@ impl Mechanics for SwitchingModel {
         Ok(())
     }
 
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        let fem = self.fem.as_ref()?.continuation()?;
+        Some(Box::new(FemContinuation { fem, reason: self.reason.clone(), interval: self.interval }))
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        let Some(FemContinuation { fem: before, reason, interval }) = before.downcast_ref() else { return false };
+        let fem = self.new_fem().ok().and_then(|mut fem| fem.continue_from(&**before).then_some(fem));
+        let continues = fem.is_some();
+        if let Some(mut fem) = fem {
+            self.draw_supports(&mut fem);
+            (self.fem, self.adopted, self.remembered) = (Some(fem), None, None);
+            (self.reason, self.interval) = (reason.clone(), *interval);
+        }
+        continues
+    }
+
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         self.adopted = None;
         self.remembered = Some(answer.errors).filter(|_| sticks_anywhere(answer));
@@ -452,7 +497,11 @@ impl Mechanics for SwitchingModel {
         if let Some(fem) = &mut self.fem {
             return fem.fall_back(why);
         }
-        let fresh = if self.spans.time_s() > 0.0 { self.hand_over_to_fem() } else { self.new_fem_with_hands() };
+        let fresh = if self.spans.time_s() > 0.0 {
+            self.hand_over_to_fem(Inertia::QuasiStatic)
+        } else {
+            self.new_fem_with_hands()
+        };
         self.fem = fresh.ok();
         self.reason = self.fem.is_some().then(|| ModelReason::Unsound(Box::new(why.clone())));
         self.fem.is_some()
@@ -465,15 +514,9 @@ impl Mechanics for SwitchingModel {
     fn solution(&self) -> CableSolution {
         self.fem.as_ref().map_or_else(
             || {
-                let mut answer = self.spans.solution();
+                let mut answer = self.known_answer();
                 answer.assumptions.self_contact = self.problem.cable.self_contact;
-                match self.remembered {
-                    Some(errors) => {
-                        let errors = answer.errors.plus(&errors);
-                        answer.known_to(errors)
-                    }
-                    None => answer,
-                }
+                answer
             },
             Mechanics::solution,
         )

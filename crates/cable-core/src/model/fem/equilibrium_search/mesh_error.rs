@@ -140,6 +140,27 @@ impl TwoMeshes {
         }
     }
 
+    /// Begins to follow a cable that continues without inertia from an answer of another model: a
+    /// mesh of bars twice as long continues from it, too.
+    pub fn continue_beside(
+        &mut self,
+        problem: &Arc<Problem>,
+        settings: Settings,
+        fine: &Stepper,
+        answer: &CableSolution,
+        dragged: &[Option<Vec2>],
+    ) {
+        *self = Self::default();
+        let bars = fine.cable.meshing.even_bars;
+        if problem.outline.is_some() || problem.cable.self_contact || bars < LEAST_BARS {
+            return;
+        }
+        if let Some(coarse) = at_rest_with_bars(problem, settings, fine, bars / 2, answer, dragged) {
+            self.errors = answer.errors.plus(&ErrorEstimates::between(&coarse.solution(), &fine.solution()));
+            self.coarse = Some(Box::new(coarse));
+        }
+    }
+
     /// The relative difference of an answer from that of the coarser mesh beside it.
     pub fn halving_error(&self, answer: &CableSolution) -> Option<f64> {
         ErrorEstimates::between(&self.coarse.as_ref()?.solution(), answer).relative(answer)

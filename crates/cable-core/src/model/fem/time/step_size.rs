@@ -40,6 +40,13 @@ impl StepSizeController {
         Self { seen: [0.0; 3], step: longest, longest, solvable: longest, most_iterations: 0, refused: false }
     }
 
+    /// Continues from what another controller observed, with this one's upper limit.
+    pub(in crate::model::fem) fn continue_from(&mut self, other: &Self) {
+        if self.longest == other.longest {
+            self.clone_from(other);
+        }
+    }
+
     /// Forgets the observed motion.
     pub(in crate::model::fem) fn forget(&mut self) {
         *self = Self::new(self.longest);

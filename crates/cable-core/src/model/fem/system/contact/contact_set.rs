@@ -295,6 +295,13 @@ impl ContactSet {
         self.search.lists.clear();
     }
 
+    /// Continues among other obstacles: `change` gives the obstacle and the feature of a feature
+    /// there, None if it is gone.
+    pub(in crate::model::fem) fn change_features(&mut self, change: impl Fn(usize) -> Option<(usize, usize)>) {
+        self.friction_contacts.clear();
+        self.memory.change_features(change);
+    }
+
     /// Renumbers the friction memory: `change` gives the new number of a node, None if it was
     /// removed.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {

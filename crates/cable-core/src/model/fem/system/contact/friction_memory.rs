@@ -119,6 +119,18 @@ impl FrictionMemory {
         }
     }
 
+    /// Renumbers the obstacles: `change` gives the obstacle and the feature of a feature, None if
+    /// it is gone.
+    pub fn change_features(&mut self, change: impl Fn(usize) -> Option<(usize, usize)>) {
+        self.contacts.retain_mut(|contact| {
+            let changed = change(contact.feature);
+            if let Some((obstacle, feature)) = changed {
+                (contact.obstacle, contact.feature) = (obstacle, feature);
+            }
+            changed.is_some()
+        });
+    }
+
     /// Renumbers the nodes: `change` gives the new number of a node, None if it was removed.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
         let old = std::mem::take(&mut self.contacts);

@@ -1,0 +1,176 @@
+//! This module continues a cable after an edit of its scene, on the same mesh and with all that it
+//! remembers: its history, its loss, and its friction.
+//!
+//! A mesh of its own, on which the cable would be laid anew, has nodes elsewhere and bars of other
+//! strains: an edit of nothing pulled a cable drawn over a beam with 83 N for 108 N, and one round
+//! posts with 10 N for 18 N.
+
+use crate::contact::geometry::{Body, Geometry};
+use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
+use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::state::{CableState, renew_input};
+use crate::problem::{PointLoad, Problem, SupportPoint};
+
+/// Greatest way that a sliding node is moved with its corner, in even bars: farther away the cable
+/// is laid on the edited scene anew.
+const MAX_WAY_BARS: f64 = 1.0;
+
+/// The obstacles before and after an edit.
+struct EditedObstacles<'a> {
+    before: &'a Geometry,
+    after: &'a Geometry,
+}
+
+impl<'a> EditedObstacles<'a> {
+    /// The obstacle and the feature after the edit that a feature was before; None if the obstacle
+    /// is gone, or is drawn with another number of points.
+    fn feature(&self, feature: usize) -> Option<(usize, usize)> {
+        let old = self.before.body_of(feature)?;
+        let of_name = |geometry: &'a Geometry| geometry.bodies().iter().filter(|body| body.name == old.name);
+        let place = of_name(self.before).position(|body| body.first == old.first)?;
+        let new = of_name(self.after).nth(place)?;
+        let same = new.edges.len() == old.edges.len() && new.moves() == old.moves();
+        same.then(|| (new.obstacle, feature - old.first + new.first))
+    }
+
+    /// True if every obstacle of the scene after the edit was there, in the same place.
+    fn adds_nothing(&self) -> bool {
+        let same = |a: &Body, b: &Body| {
+            let edge = |k: usize| (a.edges[k].from, a.edges[k].to) == (b.edges[k].from, b.edges[k].to);
+            a.center == b.center
+                && a.offset == b.offset
+                && a.edges.len() == b.edges.len()
+                && (0..a.edges.len()).all(edge)
+        };
+        self.after.bodies().iter().all(|new| new.moves() || self.before.bodies().iter().any(|old| same(old, new)))
+    }
+}
+
+/// True if two cables are divided at the same places of supports and loads, which hold them alike.
+fn are_divided_alike(a: &CableState, b: &CableState) -> bool {
+    let [p, q] = [&a.problem, &b.problem];
+    let now = b.motion.time;
+    let support = |(s, t): (&SupportPoint, &SupportPoint)| {
+        s.kind == t.kind
+            && s.arc_length == t.arc_length
+            && s.side == t.side
+            && s.departure == t.departure
+            && s.holds_from(now) == t.holds_from(now)
+    };
+    let load = |(s, t): (&PointLoad, &PointLoad)| s.arc_length == t.arc_length;
+    p.length == q.length
+        && a.meshing.even_bars == b.meshing.even_bars
+        && p.supports.len() == q.supports.len()
+        && p.supports.iter().zip(&q.supports).all(support)
+        && p.loads.len() == q.loads.len()
+        && p.loads.iter().zip(&q.loads).all(load)
+}
+
+/// True if the mesh of the cable `b` can serve for `a`: its mass is lumped if that of `a` is, and
+/// both have bending or none, contact with themselves or none, and the same outline of a robot.
+fn can_share_a_mesh(a: &CableState, b: &CableState) -> bool {
+    (b.mesh.spread.is_lumped() || !a.mesh.spread.is_lumped())
+        && a.mesh.is_flexible() == b.mesh.is_flexible()
+        && a.problem.cable.self_contact == b.problem.cable.self_contact
+        && have_same_outline(&a.problem, &b.problem)
+        && a.problem.floor_friction.is_some() == b.problem.floor_friction.is_some()
+}
+
+/// True if the robots of two problems have the same outline, or none.
+fn have_same_outline(a: &Problem, b: &Problem) -> bool {
+    match (&a.outline, &b.outline) {
+        (Some(a), Some(b)) => a.is_shaped_like(b),
+        (None, None) => true,
+        _ => false,
+    }
+}
+
+/// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
+/// its mesh, or an obstacle now stands where the cable is.
+pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState) -> Option<CableState> {
+    if !are_divided_alike(new, old) || !can_share_a_mesh(new, old) || old.mesh.breaks().next().is_some() {
+        return None;
+    }
+    let mut cable = old.clone();
+    cable.problem = new.problem.clone();
+    cable.loss = new.loss.clone();
+    if new.loss != old.loss {
+        cable.mesh.branch_forces.clear();
+        cable.mesh.branch_moments.clear();
+    }
+    adopt_material(&mut cable, new);
+    if let (Some(outline), Some(edited)) = (&mut cable.outline, &new.outline) {
+        outline.obstacle = edited.obstacle;
+        outline.shape.clone_from(&edited.shape);
+    }
+    place_outline(&mut cable);
+    let edited = EditedObstacles { before: old.problem.world.geometry(), after: new.problem.world.geometry() };
+    cable.contacts.change_features(|feature| edited.feature(feature));
+    for k in 0..cable.mesh.nodes() {
+        let Some(node) = cable.mesh.sliding[k] else { continue };
+        let moved = on_edited_obstacle([old, &cable], node, &edited);
+        if let Some(moved) = moved {
+            let way = moved.position() - node.position();
+            if way.norm() > MAX_WAY_BARS * cable.even() {
+                return None;
+            }
+            cable.motion.shift(k, way);
+        }
+        cable.mesh.sliding[k] = moved;
+    }
+    let check = IntersectionCheck::of(&cable);
+    if !edited.adds_nothing() && (check.refuse_buried().is_err() || !check.cuts_nothing()) {
+        return None;
+    }
+    let x = std::mem::take(&mut cable.motion.positions);
+    cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
+    cable.motion.positions = x;
+    renew_input(&mut cable);
+    Some(cable)
+}
+
+/// Gives a cable the material, the supports and the loads of `new`.
+fn adopt_material(cable: &mut CableState, new: &CableState) {
+    let mesh = &mut cable.mesh;
+    mesh.tuning.clone_from(&new.mesh.tuning);
+    (mesh.axial_stiffness, mesh.bending_stiffness) = (new.mesh.axial_stiffness, new.mesh.bending_stiffness);
+    if mesh.thermal_stretch != new.mesh.thermal_stretch {
+        let part = new.mesh.thermal_stretch / mesh.thermal_stretch;
+        mesh.rest_length.iter_mut().for_each(|length| *length *= part);
+        mesh.thermal_stretch = new.mesh.thermal_stretch;
+    }
+    let (meshing, edited) = (&mut cable.meshing, &new.meshing);
+    (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
+    meshing.bar_weight = edited.bar_weight;
+    for (load, edited) in meshing.loads.iter_mut().zip(&edited.loads) {
+        load.1.clone_from(&edited.1);
+    }
+    cable.contacts.tuning = new.contacts.tuning;
+    cable.contacts.search.lists.clear();
+    cable.contacts.self_contacts.shape.diameter = new.contacts.self_contacts.shape.diameter;
+    cable.contacts.self_contacts.friction = new.contacts.self_contacts.friction;
+    cable.input.stopping = new.input.stopping;
+}
+
+/// A sliding node after an edit; None if its obstacle is gone: then it is a node of the material.
+fn on_edited_obstacle(
+    [old, cable]: [&CableState; 2],
+    node: SlidingNode,
+    edited: &EditedObstacles<'_>,
+) -> Option<SlidingNode> {
+    let feature = match node.slide_over {
+        SlideOver::Obstacle { feature, .. } => feature,
+        SlideOver::Pulley(support) => {
+            let [before, after] = [old, cable].map(|c| c.problem.supports.get(support));
+            let (before, after) = (before?, after?);
+            let radius = node.end.radius + (after.wheel_radius - before.wheel_radius);
+            return Some(SlidingNode { end: BarEnd { radius, ..node.end }, friction: after.friction, ..node });
+        }
+    };
+    let (obstacle, after) = edited.feature(feature)?;
+    let (center, radius) = round_of(edited.after, after, 0.0, 0.0)?;
+    let clearance = node.end.radius - round_of(edited.before, feature, 0.0, 0.0)?.1;
+    let friction = edited.after.body_of(after)?.friction;
+    let slide_over = SlideOver::Obstacle { obstacle, feature: after };
+    Some(SlidingNode { end: BarEnd { center, radius: radius + clearance, ..node.end }, friction, slide_over, ..node })
+}
