@@ -260,6 +260,11 @@ pub struct StepTuning {
     /// Normal speed below which a contact gets no plastic impulse, m/s. Smaller: useless work on
     /// resting contacts. Larger: slow impacts rebound.
     pub plastic_speed_m_per_s: f64,
+    /// Energy that the remembered pull of bars which became slack gives the cable in a step beyond
+    /// what they held, as a fraction of its kinetic energy and stretch, above which the step is
+    /// balanced again without that pull. Smaller: more steps are balanced twice. Larger: cables
+    /// that recoil gain energy.
+    pub least_recoil: f64,
     /// Gap that a support keeps from an obstacle against which it is driven, in reaches. The bar
     /// beside it presses there with hardly a lever. Smaller: its normal force, 1e14 N at 1e-8 m,
     /// dominates Newton's method. Larger: the support stops short.
@@ -293,6 +298,7 @@ impl Default for StepTuning {
             friction_change: 0.05,
             grip_tolerance: 2e-4,
             plastic_speed_m_per_s: 0.05,
+            least_recoil: 1e-2,
             support_gap_reaches: 0.2,
             kept_support_gap_fraction: 0.2,
             stand_off_tries: 4,

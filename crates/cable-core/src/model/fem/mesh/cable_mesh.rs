@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
-use crate::model::fem::mesh::branch_forces::BranchForces;
+use crate::model::fem::mesh::bar_memory::BarMemory;
 use crate::model::fem::mesh::branch_moments::BranchMoments;
 use crate::model::fem::mesh::mass_matrix::{MassMatrix, Spread};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
@@ -48,7 +48,9 @@ pub struct Mesh {
     /// Difference of its mass matrix from the lumped one.
     pub spread: Spread,
     /// Forces in the relaxation branches of its bars.
-    pub(in crate::model::fem) branch_forces: BranchForces,
+    pub(in crate::model::fem) branch_forces: BarMemory,
+    /// Impulse (N s) of each bar in the last step with inertia, as the integrator remembers it.
+    pub(in crate::model::fem) remembered_impulses: BarMemory,
     /// Moments in the relaxation branches of its bends.
     pub(in crate::model::fem) branch_moments: BranchMoments,
 }
@@ -82,7 +84,8 @@ impl Mesh {
                 MassMatrix::Spread => Spread::of(&stretches),
                 MassMatrix::Lumped => Spread::default(),
             },
-            branch_forces: BranchForces::default(),
+            branch_forces: BarMemory::default(),
+            remembered_impulses: BarMemory::default(),
             branch_moments: BranchMoments::default(),
         }
     }
@@ -117,6 +120,7 @@ impl Mesh {
         self.spread.copy_from(spread);
         self.branch_forces.copy_from(branch_forces);
         self.branch_moments.copy_from(branch_moments);
+        self.remembered_impulses.copy_from(&other.remembered_impulses);
         self.thermal_stretch = other.thermal_stretch;
         self.axial_stiffness = other.axial_stiffness;
         self.bending_stiffness = other.bending_stiffness;
@@ -330,6 +334,7 @@ impl Mesh {
         let (a, b) = (self.arc_length[k - 1], self.arc_length[k]);
         self.spread.clear();
         self.branch_forces.divide(k - 1);
+        self.remembered_impulses.divide(k - 1);
         self.branch_moments.insert_node(k, (arc_length - a) / (b - a));
         self.arc_length.insert(k, arc_length);
         self.rest_length[k - 1] = self.thermal_stretch * (arc_length - a);
@@ -342,6 +347,7 @@ impl Mesh {
     pub(in crate::model::fem) fn break_at(&mut self, k: usize) {
         self.arc_length.insert(k + 1, self.arc_length[k]);
         self.branch_forces.insert_break(k);
+        self.remembered_impulses.insert_break(k);
         self.branch_moments.break_at(k);
         self.rest_length.insert(k, 0.0);
         self.held.insert(k + 1, false);
@@ -351,7 +357,9 @@ impl Mesh {
     /// Removes node `k`.
     pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
         self.spread.clear();
-        self.branch_forces.merge(k - 1, self.material_between(k - 1, k) / self.material_between(k - 1, k + 1));
+        let part = self.material_between(k - 1, k) / self.material_between(k - 1, k + 1);
+        self.branch_forces.merge(k - 1, part);
+        self.remembered_impulses.merge(k - 1, part);
         self.branch_moments.remove_node(k);
         self.arc_length.remove(k);
         self.rest_length.remove(k);

@@ -4,7 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `cable_mesh.rs` | `Mesh`: nodes, bars, clamps, sliding nodes, masses and stiffnesses |
-//! | `branch_forces.rs` | forces in the relaxation branches of bars, through changes of the mesh |
+//! | `bar_memory.rs` | forces and impulses that bars remember, through changes of the mesh |
 //! | `branch_moments.rs` | moments in those of bends, through changes of the mesh |
 //! | `mass_matrix.rs` | mean of lumped and consistent mass matrix, fourth order in the frequencies |
 //! | `bar_count.rs` | number of bars, given by the user or by length and surroundings |
@@ -12,7 +12,7 @@
 //! | `tangent_path.rs` | path of a bar, straight or tangent to the rounds at its ends; derivatives |
 
 pub(in crate::model::fem) mod bar_count;
-pub(in crate::model::fem) mod branch_forces;
+pub(in crate::model::fem) mod bar_memory;
 pub(in crate::model::fem) mod branch_moments;
 pub(in crate::model::fem) mod cable_mesh;
 pub(in crate::model::fem) mod mass_matrix;

@@ -84,6 +84,7 @@ impl CableState {
         self.answers.stepped = None;
         self.motion.forget(&self.mesh.arc_length);
         self.mesh.branch_forces.clear();
+        self.mesh.remembered_impulses.clear();
         self.mesh.branch_moments.clear();
     }
 

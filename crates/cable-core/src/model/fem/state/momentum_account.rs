@@ -81,6 +81,11 @@ impl MomentumSums {
         self.last[CONTACTS] -= forgotten;
     }
 
+    /// Records an impulse of supports in the last step (N s) that does not enter the history.
+    pub(in crate::model::fem) fn forget_support(&mut self, impulse: Vec2) {
+        self.last[SUPPORTS] -= impulse;
+    }
+
     /// Records an impulse (N s) of the history that material takes with it when it joins or leaves
     /// a round.
     pub(in crate::model::fem) fn take_history(&mut self, slide_over: SlideOver, impulse: Vec2) {

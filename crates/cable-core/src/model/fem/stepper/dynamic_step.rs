@@ -9,7 +9,8 @@ use crate::model::fem::results;
 use crate::model::fem::state::{MovingMass, kinetic_energy, kinetic_energy_of_step, stored_energy};
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::{
-    Weights, account_for_step, forces_in_step, hands, keep_balanced_tensions, loss_memory, plastic_impact, work_in_step,
+    Weights, account_for_step, forces_in_step, forget_slack_impulses, hands, keep_balanced_tensions, loss_memory,
+    plastic_impact, remember_impulses, set_inertia, work_in_step,
 };
 use crate::solution::Energy;
 
@@ -22,7 +23,13 @@ impl Stepper {
     ) -> Result<Converged, Failure> {
         let before = self.accounts_energy.then(|| self.begin_energy_account());
         let weights = self.begin_step(h, dragged);
-        let (unknowns, done) = self.minimise_step(h)?;
+        let (mut unknowns, mut done) = self.minimise_step(h)?;
+        if forget_slack_impulses(&mut self.cable, weights, &unknowns.positions) {
+            set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
+            let before = done.iterations;
+            (unknowns, done) = self.minimise_step(h)?;
+            done.iterations += before;
+        }
         self.accept_step(unknowns, weights, h, before);
         self.take_off_rebounds(weights, h);
         self.remesh_after_step(done.residual)?;
@@ -81,6 +88,7 @@ impl Stepper {
             self.cable.motion.energies.add(&work.between(*before, after), after);
         }
         results::gauge_tension(&mut self.cable);
+        remember_impulses(&mut self.cable, weights);
         let cable = &self.cable;
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.cable.motion.note_step(h, smooth);

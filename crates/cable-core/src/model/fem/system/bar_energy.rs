@@ -91,6 +91,12 @@ impl PlainBar {
         Self { taut_from, pull_there: if folded > 0.0 { folded * slopes[1] } else { 0.0 }, slopes, flexible }
     }
 
+    /// Length at which it becomes taut or slack, m.
+    #[must_use]
+    pub fn taut_from(&self) -> f64 {
+        self.taut_from
+    }
+
     /// Its branch at a length, m.
     #[inline]
     #[must_use]

@@ -14,6 +14,7 @@
 //! | `step_impulses.rs` | impulse of each kind of force in a step, for the momentum account |
 //! | `step_work.rs` | work of each kind of force in a step, for the energy account |
 //! | `rollback.rs` | checkpoint of the state, restored if a step fails |
+//! | `slack_recoil.rs` | impulses of bars that became slack, taken out of the history |
 //! | `sleeping.rs` | a cable at rest is frozen until its loads or supports change |
 
 pub(in crate::model::fem) mod bdf2;
@@ -21,6 +22,7 @@ pub(in crate::model::fem) mod hands;
 pub(in crate::model::fem) mod loss_memory;
 pub(in crate::model::fem) mod plastic_impact;
 pub(in crate::model::fem) mod rollback;
+pub(in crate::model::fem) mod slack_recoil;
 pub(in crate::model::fem) mod sleeping;
 pub(in crate::model::fem) mod sliding_tensions;
 pub(in crate::model::fem) mod step_impulses;
@@ -34,6 +36,7 @@ pub(in crate::model::fem) use hands::HandDrive;
 #[cfg(test)]
 pub(in crate::model::fem) use plastic_impact::land_on_itself;
 pub(in crate::model::fem) use rollback::Rollback;
+pub(in crate::model::fem) use slack_recoil::{forget_slack_impulses, remember_impulses};
 pub(in crate::model::fem) use sleeping::Sleep;
 pub(in crate::model::fem) use sliding_tensions::keep_balanced_tensions;
 pub(in crate::model::fem) use step_impulses::{account_for_step, forces_in_step};

@@ -25,6 +25,8 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     let rubs = cable.can_rub();
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
+    input.inertial.coupling.clear();
+    input.inertial.hands.clear();
     for k in 0..m.positions.len() {
         input.inertial.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
         input.inertial.stiffness[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;

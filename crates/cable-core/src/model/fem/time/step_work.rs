@@ -21,7 +21,9 @@ use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight::{self};
-use crate::model::fem::system::{ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns};
+use crate::model::fem::system::{
+    BarBranch, ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns,
+};
 use crate::scene::SupportKind;
 use crate::solution::Energy;
 
@@ -194,6 +196,36 @@ impl BalancedStep<'_> {
         }
     }
 
+    /// Work of the loss of a bar whose length changes from one to another (m) in the step, J. What
+    /// the bar pulls with beside its stretch goes evenly from its value at the start to that at the
+    /// end while the bar is taut. Where it is slack nothing but its folds pulls: its material then
+    /// recovers by itself from the strain at which its tension ended, and the energy of that strain
+    /// is lost.
+    fn loss_work(&self, e: usize, bar: &PlainBar, [from, to]: [f64; 2]) -> f64 {
+        let mesh = self.mesh();
+        let (l, ea, remembered) = (mesh.rest_length[e], mesh.axial_stiffness, mesh.branch_forces.sum(e));
+        let pull = |p: f64| bar_energy::stiffness(mesh, !(p < l)) / l * (p - l);
+        let stored = |p: f64| 0.5 * pull(p) * (p - l);
+        let at_end = bar.pull(bar.branch(to), to).0 - pull(to);
+        let folds = at_end + pull(to);
+        let was_taut = !mesh.is_flexible() || !(from < l * (1.0 - remembered / ea));
+        let turns_at = bar.taut_from();
+        match (was_taut, bar.branch(to)) {
+            (true, BarBranch::Taut) if remembered == 0.0 => -at_end * (to - from),
+            (true, BarBranch::Taut) => -0.5 * (remembered + at_end) * (to - from),
+            (false, BarBranch::Slack) => stored(to) - stored(from) - folds * (to - from),
+            (true, BarBranch::Slack) => {
+                stored(to)
+                    - stored(turns_at)
+                    - 0.5 * (remembered - pull(turns_at)) * (turns_at - from)
+                    - folds * (to - turns_at)
+            }
+            (false, BarBranch::Taut) => {
+                stored(turns_at) - stored(from) - 0.5 * (at_end - pull(turns_at)) * (to - turns_at)
+            }
+        }
+    }
+
     /// Adds the damping work of a bar without sliding nodes. Returns the work of stretch at the end
     /// of the step and the energy that it stores then, J.
     #[inline]
@@ -209,11 +241,10 @@ impl BalancedStep<'_> {
         let bar = PlainBar::of(mesh, input, e);
         let loss = bar.pull(bar.branch(p), p).0 - pull;
         let along = if p > 0.0 { d.dot(&way) / p } else { way.x };
-        if loss != 0.0 {
-            let was = mesh.branch_forces.sum(e);
-            let mean = if was == 0.0 { loss } else { 0.5 * (loss + was) };
-            let longer = p - (d - way).norm();
-            note(&mut works.material, &mut works.numerical, [-mean * longer, -loss * along]);
+        let lengths = [(d - way).norm(), p];
+        let mean = self.loss_work(e, &bar, lengths);
+        if loss != 0.0 || mean != 0.0 {
+            note(&mut works.material, &mut works.numerical, [mean, -loss * along]);
         }
         [-pull * along, 0.5 * pull * (p - l)]
     }
