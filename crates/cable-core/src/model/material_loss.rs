@@ -86,6 +86,13 @@ pub(in crate::model) struct MaterialLoss {
     pub(in crate::model) viscous: f64,
 }
 
+impl MaterialLoss {
+    /// Stiffness of motion so fast that no branch relaxes, of that of slow motion: 1 + Σ y.
+    pub(in crate::model) fn unrelaxed_ratio(&self) -> f64 {
+        1.0 + self.branches.iter().map(|b| b.part).sum::<f64>()
+    }
+}
+
 /// The loss of a cable's material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model) struct Loss {
