@@ -175,10 +175,7 @@ fn issue_017_a_pipe_that_is_never_touched_does_not_change_a_slow_pull() {
         let SlowPull { seconds, damping_ratio, .. } = pull;
         println!("{seconds} s, ratio {damping_ratio}: {alone:.1} N alone, {beside:.1} N beside a pipe");
         // The branches of both are fitted to the same loss, to some hundredths of it.
-        assert!(
-            (beside - alone).abs() < 0.05 * pull.by_loss(alone),
-            "{beside} N beside a pipe, {alone} N without it"
-        );
+        assert!((beside - alone).abs() < 0.05 * pull.by_loss(alone), "{beside} N beside a pipe, {alone} N without it");
     }
 }
 
@@ -189,6 +186,27 @@ fn both_models_lose_alike_in_a_slow_pull() {
         let [fem, springs] = [Model::Fem, Model::MassSpring].map(|model| pull.most(pull.scene(), model));
         let SlowPull { seconds, damping_ratio, .. } = pull;
         println!("{seconds} s, ratio {damping_ratio}: {fem:.1} N by fem, {springs:.1} N by mass-spring");
+        assert!((springs - fem).abs() < 0.05 * pull.by_loss(fem), "{springs} N by mass-spring, {fem} N by fem");
+    }
+}
+
+/// The same over a smooth wheel, both legs of which share their tension.
+#[test]
+fn both_models_lose_alike_in_a_slow_pull_over_a_wheel() {
+    for pull in SLOW_PULLS {
+        let mut scene = pull.scene();
+        let cable = &mut scene.cables[0];
+        (cable.bending_stiffness_n_m2, cable.length_m) = (0.0, 8.4);
+        // From the left end over the wheel to a right end on the same height.
+        let leg = 17f64.sqrt();
+        let end = ((cable.length_m * (1.0 + pull.strain) - leg).powi(2) - 1.0).sqrt();
+        let right = cable.supports.pop().expect("two supports");
+        let motion = Some(Motion { times_s: vec![0.0, pull.seconds], points_m: vec![[4.0, 3.0], [end, 3.0]] });
+        cable.supports.push(Support { friction: Some(0.0), ..Support::pulley("wheel", [0.0, 4.0]) });
+        cable.supports.push(Support { motion, ..right });
+        let [fem, springs] = [Model::Fem, Model::MassSpring].map(|model| pull.most(scene.clone(), model));
+        let SlowPull { seconds, damping_ratio, .. } = pull;
+        println!("{seconds} s, ratio {damping_ratio}: {fem:.1} N by fem, {springs:.1} N by mass-spring over a wheel");
         assert!((springs - fem).abs() < 0.05 * pull.by_loss(fem), "{springs} N by mass-spring, {fem} N by fem");
     }
 }

@@ -133,9 +133,8 @@ fn stable_step(mesh: &Mesh) -> f64 {
         let spring = |e: Option<usize>| e.and_then(|e| mesh.rest_length.get(e)).map_or(0.0, |l| 1.0 / l);
         let (before, after) = (spring(n.checked_sub(1)), spring(Some(n)));
         let tighter = if before > after { before } else { after };
-        let row = |stretching: f64, bending: f64| {
-            2.0 * stretching * (before + after) + 16.0 * bending * tighter.powi(3)
-        };
+        let row =
+            |stretching: f64, bending: f64| 2.0 * stretching * (before + after) + 16.0 * bending * tighter.powi(3);
         let (k, c) = (row(ea, ei), row(stretching, bending));
         let mass = mesh.wheels.at(n).map_or(mesh.mass[n], |k| k.mass);
         stable = smaller(stable, ((c * c + 4.0 * k * mass).sqrt() - c) / k);

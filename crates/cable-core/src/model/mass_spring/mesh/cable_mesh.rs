@@ -3,14 +3,13 @@
 use std::sync::Arc;
 
 use crate::error::SolveError;
-use crate::math::{Vec2, smaller};
+use crate::math::Vec2;
 use crate::model::mass_spring::mesh::node_placement::{
     SAME_PLACE_FRACTION, even_nodes, first_shape, separate_supports,
 };
 use crate::model::mass_spring::mesh::pulley::{ElementGeometry, Pulley, Wheels};
-use crate::model::mass_spring::mesh::relaxation_memory::RelaxationMemory;
+use crate::model::mass_spring::mesh::relaxation_memory::{RelaxationMemory, memories};
 use crate::model::mass_spring::settings::Tuning;
-use crate::model::material_loss::Loss;
 use crate::problem::Problem;
 use crate::state::State;
 
@@ -117,7 +116,7 @@ impl Mesh {
             let node = support_node[p.support];
             p.place_on(node, arc_length[node]);
         }
-        let [spring_memory, bend_memory] = memories(&problem, &tuning, problem.length / segments as f64, count);
+        let [spring_memory, bend_memory] = memories(&problem, &tuning.mesh, problem.length / segments as f64, count);
         Self {
             position: first_shape(&problem, &arc_length, &support_node),
             velocity: vec![Vec2::zeros(); count],
@@ -236,17 +235,4 @@ impl Mesh {
             self.wheels.pulleys[k].mass = density * (self.half_straight_length(i) + on_wheel);
         }
     }
-}
-
-/// The memory of the loss of a cable of even springs of length `spring` (m) between so many nodes.
-fn memories(problem: &Problem, tuning: &Tuning, spring: f64, nodes: usize) -> [RelaxationMemory; 2] {
-    let rubs = std::env::var("MS_RUB").is_ok() && !problem.world.is_empty();
-    let Loss { mut stretching, bending } = Loss::of(problem, spring, rubs);
-    // The time constant that is critical to the fastest axial mode, 2√(EA/ρ)/l.
-    let critical = spring / (problem.axial_stiffness / problem.linear_density).sqrt();
-    stretching.viscous = smaller(stretching.viscous, tuning.mesh.max_mode_damping * critical);
-    let slots = if problem.bending_stiffness > 0.0 { 2 * nodes } else { 0 };
-    let springs = RelaxationMemory::new(stretching, problem.axial_stiffness, nodes - 1)
-        .with_impact_loss(tuning.mesh.min_mode_damping * critical);
-    [springs, RelaxationMemory::new(bending, problem.bending_stiffness, slots)]
 }

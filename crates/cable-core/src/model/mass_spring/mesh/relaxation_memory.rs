@@ -9,11 +9,16 @@
 //! with K = EA and the strain, or EI and the curvature, and τ the time constant of a viscous part.
 //!
 //! A spring cannot push. Where σ would be negative it is slack, and its material has the strain at
-//! which its tension ends, σ = 0, from which it recovers with the times of the branches.
+//! which its tension ends, σ = 0, from which it recovers with the times of the branches. In the
+//! sub-step in which it becomes taut it has a viscous loss beside (see
+//! [`MeshTuning::impact_damping`]).
 
 use std::sync::Arc;
 
-use crate::model::material_loss::MaterialLoss;
+use crate::math::smaller;
+use crate::model::mass_spring::settings::MeshTuning;
+use crate::model::material_loss::{Loss, MaterialLoss};
+use crate::problem::Problem;
 
 part! {
     /// The branches of all springs or of all bends.
@@ -46,9 +51,24 @@ part! {
     }
 }
 
+/// The memory of the springs and of the bends of a cable of even springs of length `spring` (m)
+/// between so many nodes.
+pub(super) fn memories(problem: &Problem, tuning: &MeshTuning, spring: f64, nodes: usize) -> [RelaxationMemory; 2] {
+    let Loss { mut stretching, mut bending } = Loss::of(problem, spring, false);
+    // Time constants whose damping of the fastest modes, 2√(EA/ρ)/l and 4√(EI/ρ)/l², is critical.
+    let critical = spring / (problem.axial_stiffness / problem.linear_density).sqrt();
+    let critical_in_bending = 0.5 * spring * spring / (problem.bending_stiffness / problem.linear_density).sqrt();
+    stretching.viscous = smaller(stretching.viscous, tuning.max_mode_damping * critical);
+    bending.viscous = smaller(bending.viscous, tuning.max_mode_damping * critical_in_bending);
+    let slots = if problem.bending_stiffness > 0.0 { 2 * nodes } else { 0 };
+    let springs = RelaxationMemory::new(stretching, problem.axial_stiffness, nodes - 1);
+    let impact_time_s = tuning.impact_damping * critical;
+    [RelaxationMemory { impact_time_s, ..springs }, RelaxationMemory::new(bending, problem.bending_stiffness, slots)]
+}
+
 impl RelaxationMemory {
     /// Nothing is remembered in so many slots.
-    pub(super) fn new(loss: MaterialLoss, stiffness: f64, slots: usize) -> Self {
+    fn new(loss: MaterialLoss, stiffness: f64, slots: usize) -> Self {
         let branches = loss.branches.len();
         Self {
             loss: Arc::new(loss),
@@ -64,12 +84,6 @@ impl RelaxationMemory {
             kept: vec![0.0; slots],
             change: vec![0.0; slots],
         }
-    }
-
-    /// The same of springs that have a viscous loss in the step in which they become taut, of a time
-    /// constant `impact_time_s` (s).
-    pub(super) fn with_impact_loss(self, impact_time_s: f64) -> Self {
-        Self { impact_time_s, ..self }
     }
 
     /// Begins a step of `h` (s). With none a motion begins, and the branches are at rest.
@@ -103,8 +117,8 @@ impl RelaxationMemory {
         }
     }
 
-    /// The tension of the spring in a slot with a strain, N, after `last` (N) in the sub-step before.
-    /// The branches take note of it.
+    /// The tension of the spring in a slot with a strain, N, after `last` (N) in the sub-step
+    /// before. The branches take note of it.
     #[inline]
     pub(in crate::model::mass_spring) fn tension(&mut self, slot: usize, strain: f64, last: f64) -> f64 {
         let known = self.strain[slot];
@@ -228,5 +242,62 @@ impl RelaxationMemory {
     /// lengths have changed.
     fn begin_curvature(&mut self, nodes: std::ops::Range<usize>) {
         self.strain[2 * nodes.start..2 * nodes.end].fill(f64::NAN);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::problems;
+    use crate::scene::catalog;
+
+    fn springs(count: usize) -> RelaxationMemory {
+        let mut scene = catalog::hanging_span();
+        scene.cables[0].damping_ratio = 0.05;
+        let problem = problems(&scene).unwrap().remove(0);
+        let [springs, _] = memories(&problem, &MeshTuning::default(), 0.1, count + 1);
+        springs
+    }
+
+    /// Stretches every spring of a memory in a step of `h` (s).
+    fn stretch(memory: &mut RelaxationMemory, h: f64, strains: &[f64]) -> Vec<f64> {
+        memory.begin_step(h);
+        let tensions = strains.iter().enumerate().map(|(e, strain)| memory.tension(e, *strain, 1.0)).collect();
+        memory.end_step();
+        tensions
+    }
+
+    #[test]
+    fn parts_of_a_spring_have_its_forces_and_a_merged_spring_has_their_mean() {
+        let mut memory = springs(2);
+        stretch(&mut memory, 0.0, &[1e-3, 1e-3]);
+        stretch(&mut memory, 1e-4, &[1e-3, 3e-3]);
+        let [first, second] = [memory.held(0), memory.held(1)];
+        assert!(first == 0.0 && second > 0.0, "{first} {second}");
+        memory.divide(1);
+        assert_eq!([memory.held(0), memory.held(1), memory.held(2)], [first, second, second]);
+        memory.merge(0, 0.75);
+        assert!((memory.held(0) / second - 0.25).abs() < 1e-12 && memory.held(1) == second);
+        assert_eq!(memory.strain, [1.5e-3, 3e-3]);
+    }
+
+    /// A spring that is let go at once after a long stretch is slack while it is longer than at
+    /// rest, and recovers; held still it loses nothing.
+    #[test]
+    fn a_slack_spring_has_the_strain_at_which_its_tension_ended() {
+        let mut memory = springs(1);
+        let ea = memory.stiffness;
+        stretch(&mut memory, 0.0, &[1e-2]);
+        assert_eq!(stretch(&mut memory, 1e3, &[1e-2]), [ea * 1e-2]);
+        assert_eq!(stretch(&mut memory, 1e-6, &[0.0]), [0.0]);
+        let left = memory.strain[0];
+        assert!(left > 1e-4 && (ea * left + memory.held(0)).abs() < 1e-9 * ea, "{left}");
+        let mut last = left;
+        for _ in 0..20 {
+            stretch(&mut memory, 0.1, &[0.0]);
+            assert!(memory.strain[0] >= 0.0 && memory.strain[0] < last, "{} after {last}", memory.strain[0]);
+            last = memory.strain[0];
+        }
+        assert_eq!(stretch(&mut memory, 1e-6, &[0.9 * last]), [0.0]);
     }
 }
