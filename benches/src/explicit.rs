@@ -19,7 +19,7 @@ const DENSITY: f64 = 1.0;
 const EA_N: f64 = 1e4;
 const STRETCH: f64 = 1.05;
 /// A step that is many of those of the bar, s.
-const LONG_S: f64 = 20.0;
+const LONG_S: f64 = 1.0;
 /// Springs of the bar. The fastest mode of so many is 8e-4 below ω.
 pub const SPRINGS: usize = 40;
 
