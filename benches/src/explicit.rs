@@ -1,14 +1,14 @@
 //! This module takes explicit steps of `mass-spring` up to their stability limit and beyond.
 //!
 //! A bar of equal springs between two walls swings along itself at ω = 2√(EA/ρ)/l₀ at most, l₀ the
-//! length of a spring, and ζ is the damping ratio at that frequency. A leapfrog whose damping is
-//! that of the velocity half a step before is stable with dt·ω < 2(√(1+ζ²) − ζ): its error
-//! polynomial λ² − (2 − 2ζ dt·ω − (dt·ω)²)λ + 1 − 2ζ dt·ω has a root of −1 there.
+//! length of a spring, if its loss does not stiffen it. A material of the same loss factor 2ζ at
+//! every frequency has the modulus (iω/ω₀)^γ, γ = (2/π) atan 2ζ, above the lowest frequency ω₀ of
+//! the loss. A leapfrog is stable as long as dt ω √M < 2, M the modulus of the fastest motion.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_2_PI, PI};
 use std::sync::Arc;
 
-use cable_core::model::mass_spring::{MassSpringModel, MeshTuning, SubStepTuning, Tuning};
+use cable_core::model::mass_spring::{MassSpringModel, SubStepTuning, Tuning};
 use cable_core::model::{Mechanics, Stepping};
 use cable_core::scene::{Support, catalog};
 use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
@@ -18,13 +18,40 @@ const LENGTH_M: f64 = 20.0;
 const DENSITY: f64 = 1.0;
 const EA_N: f64 = 1e4;
 const STRETCH: f64 = 1.05;
+/// A step that is many of those of the bar, s.
+const LONG_S: f64 = 1.0;
 /// Springs of the bar. The fastest mode of so many is 8e-4 below ω.
 pub const SPRINGS: usize = 40;
 
-/// Returns the greatest dt·ω that is stable at a damping ratio, by theory.
+/// Lower end of the band of constant loss, rad/s: half of the distance of two relaxation branches
+/// below the first of them, at 0.1 Hz.
+const LOWEST_LOSS: f64 = 0.2;
+
+/// Returns the greatest dt·ω that is stable at a damping ratio of the material, by theory.
 #[must_use]
 pub fn limit_by_theory(damping: f64) -> f64 {
-    2.0 * ((1.0 + damping * damping).sqrt() - damping)
+    2.0 / modulus(damping, fastest()).sqrt()
+}
+
+/// Returns the greatest dt·ω that the model takes for stable at a damping ratio, as a long step of
+/// a bar at rest shows.
+///
+/// # Errors
+/// The model does not come to rest.
+pub fn limit_of_model(damping: f64) -> Result<f64, Error> {
+    let mut bar = Bar::with_fraction(Model::MassSpring, [1.0, LONG_S], damping)?;
+    bar.simulation.step(LONG_S)?;
+    Ok(bar.simulation.solution().cost.inner_step_s * fastest())
+}
+
+/// Greatest frequency of the bar without loss, rad/s.
+fn fastest() -> f64 {
+    2.0 * (EA_N / DENSITY).sqrt() / (LENGTH_M / SPRINGS as f64)
+}
+
+/// Stiffness at a frequency (rad/s), of that of slow motion.
+fn modulus(damping: f64, omega: f64) -> f64 {
+    (omega / LOWEST_LOSS).powf(FRAC_2_PI * (2.0 * damping).atan())
 }
 
 /// The bar at rest, and the steps that it takes.
@@ -32,8 +59,7 @@ pub struct Bar {
     simulation: Simulation,
     /// Step, s.
     step_s: f64,
-    /// Greatest frequency, rad/s.
-    omega: f64,
+    /// Damping ratio of the material.
     damping: f64,
 }
 
@@ -44,20 +70,22 @@ impl Bar {
     /// # Errors
     /// The model does not come to rest.
     pub fn new(model: Model, dt_omega: f64, damping: f64) -> Result<Self, Error> {
+        let wanted_s = dt_omega / fastest();
+        // The model takes a part of its own limit.
+        let stable_fraction = dt_omega / limit_of_model(damping)?;
+        Self::with_fraction(model, [stable_fraction, wanted_s], damping)
+    }
+
+    /// Makes the bar, in steps of `step_s` (s) up to a part of the limit of `mass-spring`.
+    fn with_fraction(model: Model, [stable_fraction, step_s]: [f64; 2], damping: f64) -> Result<Self, Error> {
         let supports = vec![Support::fixed("a", [0.0, 0.0]), Support::fixed("b", [STRETCH * LENGTH_M, 0.0])];
         let mut scene = catalog::cable_alone([LENGTH_M, DENSITY, EA_N], supports);
         scene.environment.gravity_m_per_s2 = 0.0;
         for cable in &mut scene.cables {
-            // The ratio of the first mode.
-            cable.damping_ratio = damping * (0.5 * PI / SPRINGS as f64).sin();
+            cable.damping_ratio = damping;
             cable.segments = Some(SPRINGS);
         }
-        let omega = 2.0 * (EA_N / DENSITY).sqrt() / (LENGTH_M / SPRINGS as f64);
-        let step_s = dt_omega / omega;
-        // The model takes a part of its own limit.
-        let stable_fraction = dt_omega / limit_by_theory(damping);
         let tuning = Arc::new(Tuning {
-            mesh: MeshTuning { min_mode_damping: damping, max_mode_damping: damping, ..MeshTuning::default() },
             sub_step: SubStepTuning { stable_fraction, ..SubStepTuning::default() },
             ..Tuning::default()
         });
@@ -77,7 +105,7 @@ impl Bar {
             other => Simulation::with_settings(scene, other, settings)?,
         };
         simulation.settle()?;
-        Ok(Self { simulation, step_s, omega, damping })
+        Ok(Self { simulation, step_s, damping })
     }
 
     /// Moves all of it along itself: by the first mode and the fastest, each so far (m).
@@ -135,8 +163,9 @@ impl Bar {
     /// The model refuses a step.
     pub fn swing(&mut self, mut look: impl FnMut(&Simulation)) -> Result<f64, SolveError> {
         let swing = 1e-2 * LENGTH_M;
-        let part = (0.5 * PI / SPRINGS as f64).sin();
-        let (omega, zeta) = (self.omega * part, self.damping * part);
+        let relaxed = fastest() * (0.5 * PI / SPRINGS as f64).sin();
+        let omega = relaxed * modulus(self.damping, relaxed).sqrt();
+        let zeta = self.damping;
         self.pluck([swing, 1e-3 * swing])?;
         // A few steps in each look, the last of them at the end of the period.
         let steps = (2.0 * PI / (omega * self.step_s)).round() as u32;

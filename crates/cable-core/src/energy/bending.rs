@@ -48,7 +48,7 @@ pub fn turn(a: Vec2, b: Vec2) -> f64 {
 }
 
 /// ∇ angle(v), 1/m; 0 for the zero vector.
-fn angle_gradient(v: Vec2) -> Vec2 {
+pub(crate) fn angle_gradient(v: Vec2) -> Vec2 {
     let square = v.norm_squared();
     if square > 0.0 { Vec2::new(-v.y, v.x) / square } else { Vec2::zeros() }
 }
@@ -102,7 +102,7 @@ impl Energy<3> for BendingEnergy {
 }
 
 /// ∂ψ/∂xᵢ of the turn between `a` = x₁ − x₀ and `b` = x₂ − x₁.
-fn turn_gradient(a: Vec2, b: Vec2) -> [Vec2; 3] {
+pub(crate) fn turn_gradient(a: Vec2, b: Vec2) -> [Vec2; 3] {
     let (ga, gb) = (angle_gradient(a), angle_gradient(b));
     [ga, -ga - gb, gb]
 }

@@ -26,11 +26,12 @@
 //!
 //! A bar of a flexible cable that goes slack buckles between its nodes. Its material keeps the
 //! strain at which its tension ends and recovers from it (`fem/time/loss_memory.rs`), so that the
-//! branches give back only energy that was put in.
+//! branches give back only energy that was put in. `mass_spring` has the same law in each spring
+//! and bend (`mass_spring/mesh/relaxation_memory.rs`).
 //!
-//! In stretching a cable that can rub has branches up to the frequency at which its viscous loss,
-//! which keeps impacts resolved, is as great as the loss that is asked for. In bending it has the
-//! loss that is asked for, and no other.
+//! In stretching a cable of `fem` that can rub has branches up to the frequency at which its
+//! viscous loss, which keeps impacts resolved, is as great as the loss that is asked for. In
+//! bending it has the loss that is asked for, and no other.
 
 use crate::math::{bounded, smaller};
 use crate::problem::Problem;
@@ -84,6 +85,13 @@ pub(in crate::model) struct MaterialLoss {
     pub(in crate::model) branches: Vec<RelaxationBranch>,
     /// Time constant of the viscous part of the loss, s.
     pub(in crate::model) viscous: f64,
+}
+
+impl MaterialLoss {
+    /// Stiffness of motion so fast that no branch relaxes, of that of slow motion: 1 + Σ y.
+    pub(in crate::model) fn unrelaxed_ratio(&self) -> f64 {
+        1.0 + self.branches.iter().map(|b| b.part).sum::<f64>()
+    }
 }
 
 /// The loss of a cable's material.

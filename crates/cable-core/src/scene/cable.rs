@@ -28,21 +28,20 @@ pub struct Cable {
     pub diameter_m: f64,
     /// Material damping in stretching, fraction of critical: half of the loss factor.
     ///
-    /// `fem` has it at every frequency from 0.1 Hz to the highest of its bars where the cable can
-    /// touch nothing and slides over nothing. A constant loss stiffens with frequency: the axial
-    /// stiffness is that of slow motion, and grows by three times this ratio from decade to decade
-    /// beyond 0.1 Hz. What is asked beyond 0.1, `fem` where something can be touched, and
-    /// `mass_spring` have a viscous loss, which is of this ratio at the first axial mode of the
-    /// cable and in proportion to the frequency; a `fem` cable that can touch something has a time
-    /// constant of at least 1 ms.
+    /// `mass_spring` has it at every frequency from 0.1 Hz to the highest of its springs, and so
+    /// has `fem` where the cable can touch nothing and slides over nothing. A constant loss
+    /// stiffens with frequency: the axial stiffness is that of slow motion, and grows by three
+    /// times this ratio from decade to decade beyond 0.1 Hz. What is asked beyond 0.1 is viscous:
+    /// of this ratio at the first axial mode of the cable and in proportion to the frequency. A
+    /// `fem` cable that can touch something has a viscous loss with a time constant of at least 1
+    /// ms, and the constant loss up to the frequency at which that is as great.
     #[serde(default)]
     pub damping_ratio: f64,
     /// Material damping in bending, fraction of critical: half of the loss factor; left out, it is
     /// that in stretching.
     ///
-    /// `fem` has it from 0.1 Hz to the highest frequency at which its bars bend, and what is asked
-    /// beyond 0.1 as a viscous loss at the first axial mode. `mass_spring` has no loss of its own
-    /// in bending.
+    /// `fem` and `mass_spring` have it from 0.1 Hz to the highest frequency at which their bars
+    /// bend, and what is asked beyond 0.1 as a viscous loss at the first axial mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending_damping_ratio: Option<f64>,
     /// Thermal expansion, 1/K.

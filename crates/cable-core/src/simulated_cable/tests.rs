@@ -378,13 +378,15 @@ fn an_edit_keeps_pieces_that_can_touch_each_other() {
     }
 }
 
-/// Over a pulley between two tight spans: where it breaks, the part with the pulley slips off it
-/// and falls.
+/// Over a pulley between two tight spans: where it breaks at one end and is let go at the other,
+/// the part with the pulley slips off it and falls. (Held at the other end it falls into that with
+/// 3 kN, by its wave impedance, and is caught by the pulley or not.)
 #[test]
 fn a_broken_cable_runs_off_its_pulleys() {
     let mut scene = span(9.81, [8.0, 0.0]);
     scene.cables[0].supports.insert(1, Support::pulley("eye", [4.0, 2.5]));
-    (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (500.0, 1e3);
+    (scene.cables[0].service_tension_n, scene.cables[0].breaking_tension_n) = (150.0, 300.0);
+    scene.cables[0].supports[0].release_s = Some(0.2);
     moved(&mut scene, 2, vec![0.0, 0.5], vec![[8.0, 0.0], [9.5, -0.5]]);
     let (sim, answer) = run(&scene, Model::MassSpring, 4.0);
     let cable = &sim.cables()[0];

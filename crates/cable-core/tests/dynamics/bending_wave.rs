@@ -2,8 +2,11 @@
 //! at (1.8751/L)² √(EI/ρ). Its loss takes ζω of the amplitude a second at every frequency, with a
 //! damping ratio of its own in bending, whether or not there is anything that it could touch.
 
+use cable_core::Model;
 use cable_core::scene::{Obstacle, Shape, Support, SupportKind};
+use cable_core::state::State;
 
+use super::mass_spring;
 use super::measure::{Ring, cable, masses, ring, sampled, started};
 
 const LENGTH: f64 = 10.0;
@@ -57,18 +60,22 @@ impl Beam {
 
 /// Circular frequency and decay of the beam's free swing beside obstacles, of damping ratios in
 /// stretching and in bending. Steps are a hundredth of the swing.
-fn rings(beam: Beam, [stretching, bending]: [f64; 2], obstacles: &[Obstacle]) -> Ring {
+fn rings(model: Model, beam: Beam, [stretching, bending]: [f64; 2], obstacles: &[Obstacle]) -> Ring {
     let mut scene = cable([LENGTH, DENSITY, 1e5], 48, beam.supports());
     scene.environment.gravity_m_per_s2 = 0.0;
     let own = &mut scene.cables[0];
     (own.bending_stiffness_n_m2, own.damping_ratio) = (EI, stretching);
     own.bending_damping_ratio = (bending != stretching).then_some(bending);
     scene.obstacles = obstacles.to_vec();
-    let mut sim = started(&scene, |state| {
+    let plucked = |state: &mut State| {
         for (p, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
             p.y += 1e-4 * beam.shape(*s);
         }
-    });
+    };
+    let mut sim = match model {
+        Model::MassSpring => mass_spring::started(&scene, plucked),
+        _ => started(&scene, plucked),
+    };
     let mass = masses(&scene, &sim.states()[0]);
     let h = std::f64::consts::TAU / beam.omega() / 100.0;
     let samples = sampled(&mut sim, (h, 20), 60, |state| {
@@ -89,17 +96,23 @@ const BEAMS: [Beam; 6] =
 /// 0.63 rad/s.
 #[test]
 fn a_beam_rings_down_by_its_damping_ratio_in_bending_at_every_frequency() {
+    for model in [Model::Fem, Model::MassSpring] {
+        ring_down_in_bending_by(model);
+    }
+}
+
+fn ring_down_in_bending_by(model: Model) {
     for ratios in [[0.005, 0.005], [0.02, 0.02], [0.0, 0.02], [0.05, 0.01]] {
         for beam in BEAMS {
             let [_, ratio] = ratios;
-            let Ring { omega, decay } = rings(beam, ratios, &[]);
+            let Ring { omega, decay } = rings(model, beam, ratios, &[]);
             let (found, faster) = (decay / omega / ratio, omega / beam.omega() - 1.0);
             let stiffened = 2.0 * ratio / std::f64::consts::PI * (beam.omega() / 0.628).ln();
             println!(
-                "ratios {ratios:?}, {beam:?}, {:.2} rad/s: {found:.3} of what was asked, faster by {faster:.4} ({stiffened:.4})",
+                "{model}, ratios {ratios:?}, {beam:?}, {:.2} rad/s: {found:.3} of what was asked, faster by {faster:.4} ({stiffened:.4})",
                 beam.omega()
             );
-            assert!((found - 1.0).abs() < 0.2, "{found} of a damping ratio of {ratio}: {beam:?}");
+            assert!((found - 1.0).abs() < 0.2, "{model}: {found} of a damping ratio of {ratio}: {beam:?}");
         }
     }
 }
@@ -110,7 +123,7 @@ fn a_beam_rings_down_by_its_damping_ratio_in_bending_at_every_frequency() {
 fn a_stiff_cable_swings_alike_beside_a_post_that_it_never_touches() {
     for ratios in [[0.02, 0.02], [0.0, 0.0]] {
         for beam in BEAMS {
-            let [alone, beside] = [vec![], post()].map(|obstacles| rings(beam, ratios, &obstacles));
+            let [alone, beside] = [vec![], post()].map(|obstacles| rings(Model::Fem, beam, ratios, &obstacles));
             let [a, b] = [alone, beside].map(|ring| ring.decay / ring.omega);
             println!("ratio {}, {beam:?}: damped by {a:.5} alone, {b:.5} beside a post", ratios[1]);
             // Steps themselves take 6e-5 of critical where an obstacle is near.

@@ -117,13 +117,15 @@ fn links_come_to_calkin_and_march_as_their_fold_gets_narrow() {
     }
 }
 
-/// Springs that only pull rattle in the leg that falls without tension, and what keeps that from
-/// growing takes a hundredth of the energy: a chain of them is late by some thousandths.
+/// Springs that only pull rattle in the leg that falls without tension. With a loss of two
+/// hundredths that takes a hundredth of the energy, and the chain falls as links do. (Without loss
+/// it is early by 5 to 9 thousandths, with sub-steps an eighth as long too.)
 #[test]
 fn masses_and_springs_fall_nearly_as_rigid_links_do() {
     let links = by_links(21);
     for ea in [2.5e6, 1e7, 4e7] {
-        let scene = scene(ea, 21);
+        let mut scene = scene(ea, 21);
+        scene.cables[0].damping_ratio = 0.02;
         let mut sim = mass_spring::started(&scene, fold);
         let (h, start) = (1.0 / 960.0, energy(&scene, &sim.states()[0]));
         let late = passed(h, || {

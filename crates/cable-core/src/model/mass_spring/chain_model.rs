@@ -103,7 +103,7 @@ impl ChainModel {
         let mut drives = SupportDrives::new(mesh.support_node.len());
         drives.place_nodes(&mut mesh, clock.time_s);
         even_out(&mut mesh, clock.time_s);
-        nodal::update(&mut mesh, clock.time_s);
+        nodal::update(&mut mesh, clock.time_s, 0.0);
         let contacts = ContactMemory::new(mesh.rest_length.len());
         let chain = ChainState { clock, mesh, drives, contacts, report: Report::default() };
         Self { settings, chain, has_shape: false, rollback: Rollback::default() }
@@ -140,7 +140,7 @@ impl ChainModel {
             mesh.wheels.pulleys[k].anchor = mesh.arc_length[i];
         }
         even_out(mesh, time_s);
-        nodal::update(mesh, time_s);
+        nodal::update(mesh, time_s, 0.0);
         next.chain.contacts = ContactMemory::new(next.chain.mesh.rest_length.len());
         Some(next)
     }

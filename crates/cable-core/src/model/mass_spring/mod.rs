@@ -20,9 +20,10 @@
 //! is of second order in the element; at equilibrium and without inertia it is estimated, in motion
 //! only for corners.
 //!
-//! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and
-//! the damping ratio ζ of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin,
-//! Physically based modeling, SIGGRAPH course notes, 1997, derive the undamped part). Equilibria
+//! Sub-steps keep below the stability limit of a chain of springs, dt < 2/ω_max with ω_max =
+//! 2√(EA(1 + Σ y)/(ρ l₀²)) (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
+//! 1997), in which no relaxation branch of the material's loss, of stiffness EA y each, relaxes; a
+//! viscous loss of damping ratio ζ at that mode makes it 2/ω_max · (√(1+ζ²) − ζ). Equilibria
 //! are found by Newton's method on the energy of springs, contacts and friction. They start from
 //! the equilibrium of [`crate::model::fem`] if there is one, so both models select the same of the
 //! many equilibria that a rough floor allows; the balance of forces is this model's own.

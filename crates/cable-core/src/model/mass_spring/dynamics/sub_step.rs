@@ -10,7 +10,7 @@ use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::supports::HandSettings;
 use crate::model::mass_spring::dynamics::{SubStep, floor_friction, hands, impacts};
 use crate::model::mass_spring::forces::{nodal, tension};
-use crate::model::mass_spring::mesh::{Mesh, lifted_wheel, release_pulleys};
+use crate::model::mass_spring::mesh::{Mesh, RelaxationMemory, lifted_wheel, release_pulleys};
 use crate::model::tension_gauge::TensionGauge;
 use crate::problem::Problem;
 
@@ -83,7 +83,7 @@ fn sub_step(
     let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
     chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
     hands::follow(&mut chain.drives, mesh, hand_settings, h);
-    nodal::update(mesh, chain.clock.time_s);
+    nodal::update(mesh, chain.clock.time_s, 2.0 * chain.clock.behind_s);
     record(mesh, gauge, points, chain.clock.time_s);
     // Velocities go with the middle of a sub-step: from that of the last one to that of
     // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
@@ -123,25 +123,23 @@ fn runaway(chain: &ChainState, h: f64, fastest: f64) -> SolveError {
 
 /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁,
 /// k₂ swings no faster than ω² = 2(k₁ + k₂)/m, and bending adds 16 EI/(m l³) (its row is 1, −4,
-/// 6, −4, 1).
+/// 6, −4, 1). With k = mω² of all branches that have not relaxed, and c that of the viscous parts
+/// times their time constants, it is stable up to h² k + 2 h c = 4 m.
 fn stable_step(mesh: &Mesh) -> f64 {
-    let p = &mesh.problem;
-    let mut fastest = 0.0;
+    let [ea, ei] = [&mesh.spring_memory, &mesh.bend_memory].map(RelaxationMemory::unrelaxed_stiffness);
+    let [stretching, bending] = [&mesh.spring_memory, &mesh.bend_memory].map(RelaxationMemory::viscosity);
+    let mut stable = f64::INFINITY;
     for n in 0..mesh.position.len() {
         let spring = |e: Option<usize>| e.and_then(|e| mesh.rest_length.get(e)).map_or(0.0, |l| 1.0 / l);
         let (before, after) = (spring(n.checked_sub(1)), spring(Some(n)));
         let tighter = if before > after { before } else { after };
-        let stiffness = 2.0 * p.axial_stiffness * (before + after) + 16.0 * p.bending_stiffness * tighter.powi(3);
+        let row =
+            |stretching: f64, bending: f64| 2.0 * stretching * (before + after) + 16.0 * bending * tighter.powi(3);
+        let (k, c) = (row(ea, ei), row(stretching, bending));
         let mass = mesh.wheels.at(n).map_or(mesh.mass[n], |k| k.mass);
-        let square = stiffness / mass;
-        if square > fastest {
-            fastest = square;
-        }
+        stable = smaller(stable, ((c * c + 4.0 * k * mass).sqrt() - c) / k);
     }
-    let omega = f64::sqrt(fastest);
-    // τ = 2ζ/ω for this mode.
-    let zeta = 0.5 * mesh.damping_time_s * omega;
-    mesh.tuning.sub_step.stable_fraction * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+    mesh.tuning.sub_step.stable_fraction * stable
 }
 
 /// Length of a sub-step of `h` (s) that ends where a support lets go in it, s.

@@ -25,7 +25,7 @@ pub(in crate::model::mass_spring) fn find_equilibrium(
     let iterations = match solver.solve() {
         Ok(iterations) => iterations,
         Err(error) => {
-            nodal::update(&mut chain.mesh, time_s);
+            nodal::update(&mut chain.mesh, time_s, 0.0);
             return Err(left_wheel(&chain.mesh).unwrap_or(error));
         }
     };
@@ -36,7 +36,7 @@ pub(in crate::model::mass_spring) fn find_equilibrium(
     chain.report.cost.iterations = iterations.count;
     chain.report.cost.residual_n = iterations.residual_n;
     chain.report.cost.inner_step_s = 0.0;
-    nodal::update(&mut chain.mesh, time_s);
+    nodal::update(&mut chain.mesh, time_s, 0.0);
     chain.mesh.non_finite(time_s).or_else(|| left_wheel(&chain.mesh)).map_or(Ok(()), Err)
 }
 

@@ -3,7 +3,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `nodal.rs` | all forces on nodes but supports and contacts: springs, damping, weight, wind |
+//! | `nodal.rs` | all forces on nodes but supports and contacts: springs, weight, wind |
 //! | `bending.rs` | bending and clamp forces on nodes |
 //! | `pulley.rs` | tensions beside pulleys and the force that slides material over them |
 //! | `reactions.rs` | force of the cable on supports; share of the ground under a supported end |

@@ -4,36 +4,31 @@ use crate::math::Vec2;
 use crate::model::mass_spring::forces::{bending, pulley};
 use crate::model::mass_spring::mesh::Mesh;
 
-/// Computes the tensions, and all forces but those of supports and contacts.
-pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, time_s: f64) {
-    let (ea, thermal) = (mesh.problem.axial_stiffness, mesh.problem.thermal_stretch);
+/// Computes the tensions, and all forces but those of supports and contacts, at a time `since_s`
+/// (s) after they were last computed in this motion; 0 where none has begun.
+pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, time_s: f64, since_s: f64) {
     set_loads(mesh, time_s);
+    mesh.spring_memory.begin_step(since_s);
     for e in 0..mesh.rest_length.len() {
-        let l0 = mesh.rest_length[e];
-        let (length, t, shortening) = if mesh.wheels.is_beside(e) {
+        let (length, t) = if mesh.wheels.is_beside(e) {
             let r = mesh.element(e);
-            let rate = |n: usize| mesh.wheels.at(n).map_or(0.0, |k| k.sliding_speed);
-            (r.length, r.direction, (rate(e + 1) - rate(e)) * thermal)
+            (r.length, r.direction)
         } else {
             let d = mesh.position[e + 1] - mesh.position[e];
             let l = d.norm();
-            (l, if l > 0.0 { d / l } else { Vec2::zeros() }, 0.0)
+            (l, if l > 0.0 { d / l } else { Vec2::zeros() })
         };
-        let strain = length / l0 - 1.0;
-        let rate = (t.dot(&(mesh.velocity[e + 1] - mesh.velocity[e])) - shortening * (1.0 + strain)) / l0;
-        // A cable cannot push: neither its elasticity nor its damping. (NaN falls through to
-        // the result.)
-        let pull = ea * (strain + mesh.damping_time_s * rate);
-        let tension = if strain < 0.0 || pull < 0.0 { 0.0 } else { pull };
+        let tension = mesh.spring_memory.tension(e, length / mesh.rest_length[e] - 1.0, mesh.tension[e]);
         mesh.tension[e] = tension;
         mesh.force[e] += t * tension;
         mesh.force[e + 1] -= t * tension;
     }
-    bending::add_forces(mesh);
+    mesh.spring_memory.end_step();
+    bending::add_forces(mesh, since_s);
     pulley::update_all(mesh, time_s);
 }
 
-/// Computes the forces of the tensions as they are, without damping and bending.
+/// Computes the forces of the tensions as they are, without bending.
 pub(in crate::model::mass_spring) fn update_from_tensions(mesh: &mut Mesh, time_s: f64) {
     set_loads(mesh, time_s);
     for e in 0..mesh.rest_length.len() {

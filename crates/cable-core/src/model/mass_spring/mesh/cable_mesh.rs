@@ -8,7 +8,7 @@ use crate::model::mass_spring::mesh::node_placement::{
     SAME_PLACE_FRACTION, even_nodes, first_shape, separate_supports,
 };
 use crate::model::mass_spring::mesh::pulley::{ElementGeometry, Pulley, Wheels};
-use crate::model::mass_spring::mesh::spring_damping::damping_time;
+use crate::model::mass_spring::mesh::relaxation_memory::{RelaxationMemory, memories};
 use crate::model::mass_spring::settings::Tuning;
 use crate::problem::Problem;
 use crate::state::State;
@@ -50,8 +50,11 @@ part! {
         support_node: Vec<usize>,
         /// Node of each load.
         load_node: Vec<usize>,
-        /// Time constant of the material's loss, s.
-        damping_time_s: f64,
+        /// The material's loss in springs, a slot each.
+        spring_memory: RelaxationMemory,
+        /// The material's loss in bends, two slots at each node: a free bend has the first, a clamp
+        /// bends the halves of the springs before and after it.
+        bend_memory: RelaxationMemory,
         /// The pulleys.
         wheels: Wheels,
     }
@@ -113,6 +116,7 @@ impl Mesh {
             let node = support_node[p.support];
             p.place_on(node, arc_length[node]);
         }
+        let [spring_memory, bend_memory] = memories(&problem, &tuning.mesh, problem.length / segments as f64, count);
         Self {
             position: first_shape(&problem, &arc_length, &support_node),
             velocity: vec![Vec2::zeros(); count],
@@ -125,7 +129,8 @@ impl Mesh {
             tension: vec![0.0; elements],
             even_length: problem.length / segments as f64,
             load_node: problem.loads.iter().map(|l| nearest(l.arc_length)).collect(),
-            damping_time_s: damping_time(&problem, &tuning.mesh, &rest_length),
+            spring_memory,
+            bend_memory,
             wheels: Wheels::new(pulleys, count),
             problem,
             tuning,

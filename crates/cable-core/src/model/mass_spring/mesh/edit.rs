@@ -191,6 +191,9 @@ fn spread_length(mesh: &mut Mesh, e: usize, more: f64) {
 }
 
 fn remove_node(mesh: &mut Mesh, n: usize) {
+    let [before, after] = [mesh.material_length[n - 1], mesh.material_length[n]];
+    mesh.spring_memory.merge(n - 1, before / (before + after));
+    mesh.bend_memory.remove_node(n);
     for list in [&mut mesh.arc_length, &mut mesh.mass, &mut mesh.point_mass] {
         list.remove(n);
     }
@@ -207,6 +210,8 @@ fn remove_node(mesh: &mut Mesh, n: usize) {
 
 fn insert_node(mesh: &mut Mesh, e: usize, s: f64, x: Vec2, v: Vec2) {
     let n = e + 1;
+    mesh.spring_memory.divide(e);
+    mesh.bend_memory.insert_node(n);
     mesh.arc_length.insert(n, s);
     mesh.mass.insert(n, 0.0);
     mesh.point_mass.insert(n, 0.0);

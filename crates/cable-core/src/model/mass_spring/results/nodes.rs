@@ -59,7 +59,8 @@ impl NodeReader<'_> {
         let (b, a) = (self.mesh.element(p.node - 1), self.mesh.element(p.node));
         let jump = (p.tension[1] - p.tension[0]).abs() > TENSION_JUMP_TOLERANCE * p.tension[0];
         let count = arc_nodes::parts(p.radius, p.turn, self.mesh.problem.radius);
-        let strain = |f: f64| p.tension_at(f) / self.mesh.problem.axial_stiffness;
+        let by_branches = self.branch_tension(p.node);
+        let strain = |f: f64| (p.tension_at(f) - by_branches) / self.mesh.problem.axial_stiffness;
         let material = arc_nodes::material(count, strain);
         for k in usize::from(p.radius == 0.0 && !jump)..=count {
             let share = k.checked_sub(1).and_then(|k| material.get(k)).copied().unwrap_or(0.0);
@@ -92,7 +93,7 @@ impl NodeReader<'_> {
                 vx_m_per_s: v.x,
                 vy_m_per_s: v.y,
                 tension_n,
-                strain: tension_n / self.mesh.problem.axial_stiffness,
+                strain: strain(f),
                 stress_pa: tension_n / self.mesh.problem.cable.area_m2(),
                 curvature_per_m: if p.radius > 0.0 { -p.sense / p.radius } else { 0.0 },
                 force_n: match k {
@@ -130,12 +131,21 @@ impl NodeReader<'_> {
             vx_m_per_s: self.mesh.velocity[i].x,
             vy_m_per_s: self.mesh.velocity[i].y,
             tension_n,
-            strain: tension_n / self.mesh.problem.axial_stiffness,
+            strain: (tension_n - self.branch_tension(i)) / self.mesh.problem.axial_stiffness,
             stress_pa: tension_n / self.mesh.problem.cable.area_m2(),
             curvature_per_m,
             force_n: self.internal_force(i).into(),
             ..Node::default()
         }
+    }
+
+    /// Tension that relaxation branches add to that of the strain at a node, N: the mean of the
+    /// springs beside it.
+    fn branch_tension(&self, i: usize) -> f64 {
+        let beside = i.saturating_sub(1)..(i + 1).min(self.mesh.tension.len());
+        let count = beside.len() as f64;
+        let of = |e: usize| if self.mesh.tension[e] > 0.0 { self.mesh.spring_memory.held(e) } else { 0.0 };
+        beside.map(of).sum::<f64>() / count
     }
 
     /// True if a support or a point load acts on a node.
@@ -171,9 +181,16 @@ impl NodeReader<'_> {
         if !(self.mesh.problem.bending_stiffness > 0.0 && d.norm_squared() > 0.0) {
             return pull;
         }
-        let moment =
-            |i: usize| self.mesh.problem.bending_stiffness * self.node_curvature(i) / self.mesh.problem.thermal_stretch;
+        let stiffness = self.mesh.problem.bending_stiffness / self.mesh.problem.thermal_stretch;
+        let moment = |i: usize| stiffness * self.node_curvature(i) + self.branch_moment(i, e);
         pull + perp(d) * ((moment(e) - moment(e + 1)) / d.norm_squared())
+    }
+
+    /// Moment in the relaxation branches of the bend at a node, on the side of element `e`, N·m.
+    fn branch_moment(&self, i: usize, e: usize) -> f64 {
+        let clamped = bending::clamp_at(self.mesh, i).is_some();
+        let slot = if clamped && e == i { 2 * i + 1 } else { 2 * i };
+        self.mesh.bend_memory.held(slot)
     }
 
     fn node_curvature(&self, i: usize) -> f64 {
