@@ -50,7 +50,7 @@ fn compared(run: &Simulation, scene: Scene, inertia: Inertia) -> [Vec<f64>; 2] {
 fn issue_016_an_edit_that_does_not_concern_the_cable_changes_nothing() {
     for (name, scene) in catalog::all() {
         for (model, inertia) in
-            [(Model::Auto, Inertia::Dynamic), (Model::Fem, Inertia::Dynamic), (Model::Fem, Inertia::QuasiStatic)]
+            [(Model::Auto, Inertia::Dynamic), (Model::MassSpring, Inertia::Dynamic), (Model::Fem, Inertia::QuasiStatic)]
         {
             let Some(run) = run(scene.clone(), model, inertia, 0.5) else { continue };
             for edited in [scene.clone(), with_a_post_far_away(scene.clone())] {

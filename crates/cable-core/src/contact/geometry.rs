@@ -164,6 +164,14 @@ impl<L: Iterator<Item = u32>, M: Iterator<Item = usize>> Iterator for Candidates
 }
 
 impl Body {
+    /// Returns whether both have the same boundary in the same place, as the cable meets it.
+    #[must_use]
+    pub(crate) fn is_where(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Edge, &Edge)| (a.from, a.to) == (b.from, b.to);
+        (self.center, self.offset, self.edges.len()) == (other.center, other.offset, other.edges.len())
+            && self.edges.iter().zip(other.edges.iter()).all(same)
+    }
+
     /// Indices of the edges whose boxes meet the given box.
     pub fn candidates(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = usize> {
         self.candidates_where(move |n, x| n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y)

@@ -265,6 +265,9 @@ pub struct StepTuning {
     /// balanced again without that pull. Smaller: more steps are balanced twice. Larger: cables
     /// that recoil gain energy.
     pub least_recoil: f64,
+    /// Speed of the whole cable whose kinetic energy is added to that: a slower recoil does not
+    /// count. Smaller and larger: as for `least_recoil`, of cables that hardly move.
+    pub slow_recoil_m_per_s: f64,
     /// Gap that a support keeps from an obstacle against which it is driven, in reaches. The bar
     /// beside it presses there with hardly a lever. Smaller: its normal force, 1e14 N at 1e-8 m,
     /// dominates Newton's method. Larger: the support stops short.
@@ -299,6 +302,7 @@ impl Default for StepTuning {
             grip_tolerance: 2e-4,
             plastic_speed_m_per_s: 0.05,
             least_recoil: 1e-2,
+            slow_recoil_m_per_s: 0.5,
             support_gap_reaches: 0.2,
             kept_support_gap_fraction: 0.2,
             stand_off_tries: 4,

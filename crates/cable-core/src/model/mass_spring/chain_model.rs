@@ -4,6 +4,7 @@
 
 use std::sync::Arc;
 
+use crate::contact::geometry::Body;
 use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
@@ -262,6 +263,31 @@ impl ChainModel {
         buried_nodes::refuse_buried(&next.chain.mesh)?;
         *self = next;
         Ok(())
+    }
+
+    /// Continues from where `before`, the same chain before an edit of its scene, is, with the loss
+    /// and the contacts that it remembers. Returns false, without a change, if the edit concerns
+    /// its nodes or its material, or an obstacle now stands where it is.
+    pub fn continue_from(&mut self, before: &Self) -> bool {
+        let edited = &self.chain.mesh;
+        if !before.chain.mesh.is_divided_like(edited, before.chain.clock.time_s) {
+            return false;
+        }
+        let mut chain = before.chain.clone();
+        chain.mesh.problem = edited.problem.clone();
+        chain.mesh.tuning = edited.tuning.clone();
+        let [old, new] = [&before.chain.mesh, edited].map(|mesh| mesh.problem.world.geometry().bodies());
+        let same = |(a, b): (&Body, &Body)| (a.first, a.friction) == (b.first, b.friction) && a.is_where(b);
+        if old.len() != new.len() || !old.iter().zip(new).all(same) {
+            chain.contacts = ContactMemory::new(chain.mesh.rest_length.len());
+        }
+        chain.drives.take_drags(&self.chain.drives);
+        chain.report = Report::default();
+        if buried_nodes::refuse_buried(&chain.mesh).is_err() {
+            return false;
+        }
+        (self.chain, self.has_shape) = (chain, true);
+        true
     }
 
     /// Its answer, with these errors.

@@ -63,6 +63,7 @@ mod results;
 mod settings;
 mod xpbd;
 
+use std::any::Any;
 use std::sync::Arc;
 
 use crate::error::SolveError;
@@ -139,6 +140,18 @@ impl Mechanics for MassSpringModel {
         self.cable.set_state(state)?;
         self.estimate = Estimate::default();
         Ok(())
+    }
+
+    fn continuation(&self) -> Option<Box<dyn Any + Send>> {
+        (self.time_s() > 0.0).then(|| Box::new(self.cable.clone()) as Box<dyn Any + Send>)
+    }
+
+    fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
+        let continues = before.downcast_ref().is_some_and(|before| self.cable.continue_from(before));
+        if continues {
+            self.estimate = Estimate::default();
+        }
+        continues
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {

@@ -378,7 +378,9 @@ mod tests {
             assert_eq!(cost.halved_steps, 0);
         }
         println!("{whole} iterations, {long} steps of a dozen or more");
-        assert!(long < 34 && whole < 660, "{whole} {long}");
+        // Since the recoil of the cable that is let go gains no energy, 692 and 26 (590 and 26):
+        // one step of it is balanced twice, and the cable lands with other folds.
+        assert!(long < 34 && whole < 760, "{whole} {long}");
     }
 
     /// Chance decides which steps the undamped Newton method does not solve, so the test counts
@@ -399,8 +401,10 @@ mod tests {
         println!("{whole} iterations, {long} steps left to the minimiser");
         // Measured: 13 444 and 250, because slack bars give way: where the nodes of a landing front
         // are thrown together, the minimiser finds which bars buckle. With slack bars that resisted
-        // like taut ones: 7087 and 10.
-        assert!(whole < 16_000 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
+        // like taut ones: 7087 and 10. Since the recoil of a cable that is let go gains no energy,
+        // 17 369 and 264: 16 steps of eight drops are balanced twice, and the cables land with
+        // other folds.
+        assert!(whole < 18_500 && long < 290, "{whole} iterations, {long} steps left to the minimiser");
     }
 
     proptest! {

@@ -23,12 +23,13 @@ impl Stepper {
     ) -> Result<Converged, Failure> {
         let before = self.accounts_energy.then(|| self.begin_energy_account());
         let weights = self.begin_step(h, dragged);
-        let (mut unknowns, mut done) = self.minimise_step(h)?;
+        let predicted = self.solver.predicted_unknowns(&self.cable, h);
+        let (mut unknowns, mut done) = self.minimise_step(predicted)?;
         if forget_slack_impulses(&mut self.cable, weights, &unknowns.positions) {
             set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
-            let before = done.iterations;
-            (unknowns, done) = self.minimise_step(h)?;
-            done.iterations += before;
+            let first = done.iterations;
+            (unknowns, done) = self.minimise_step(unknowns)?;
+            done.iterations += first;
         }
         self.accept_step(unknowns, weights, h, before);
         self.take_off_rebounds(weights, h);
@@ -36,13 +37,12 @@ impl Stepper {
         Ok(done)
     }
 
-    /// Predicts the unknowns of a step of `h` (s) and minimises its incremental potential.
+    /// Minimises the incremental potential of a step, from the unknowns that are predicted.
     ///
     /// # Errors The reason why no minimum was found, or `CornerPulls` if a corner or a wheel would
     /// have to pull.
-    fn minimise_step(&mut self, h: f64) -> Result<(Unknowns, Converged), Failure> {
-        let (mut unknowns, exact) =
-            (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.stopping.tolerance);
+    fn minimise_step(&mut self, mut unknowns: Unknowns) -> Result<(Unknowns, Converged), Failure> {
+        let exact = self.cable.input.stopping.tolerance;
         self.cable.contacts.prepare_step(
             &self.cable.problem,
             &self.cable.mesh,

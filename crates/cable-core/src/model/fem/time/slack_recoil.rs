@@ -5,6 +5,9 @@
 //! From a bar that becomes slack that is a pull without a bar: a span let go at one end had 1.12
 //! times the energy that was put in, and its end flew twice as fast as the cable. What is forgotten
 //! is the same at both ends of the bar, so the momentum is kept.
+//!
+//! Where the cable touches something, bars become slack in nearly every step, and impacts take such
+//! energy off ([`super::plastic_impact`]): there the history stays.
 
 use crate::linalg::{TridiagonalRow, solve_tridiagonal};
 use crate::math::{Vec2, larger};
@@ -30,6 +33,9 @@ pub(in crate::model::fem) fn forget_slack_impulses(cable: &mut CableState, weigh
         cable.mesh.remembered_impulses.clear();
         return false;
     }
+    if !cable.meshing.was_contact_free {
+        return false;
+    }
     let mut memory = std::mem::take(&mut cable.mesh.remembered_impulses);
     let impulses = memory.of_all(bars, 1);
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
@@ -47,9 +53,7 @@ pub(in crate::model::fem) fn forget_slack_impulses(cable: &mut CableState, weigh
             slack.push(e);
         }
     }
-    let stretched = |e: usize| bar_energy::stretch_energy(mesh, [(x[e + 1] - x[e]).norm(), mesh.rest_length[e]]);
-    let held = || kinetic_energy(cable) + (0..bars).map(stretched).sum::<f64>();
-    let ends = !slack.is_empty() && excess > mesh.tuning.step.least_recoil * held();
+    let ends = !slack.is_empty() && excess > mesh.tuning.step.least_recoil * energy(cable);
     // The impulse that each node forgets, N s.
     let mut forgotten = vec![Vec2::zeros(); if ends { bars + 1 } else { 0 }];
     for e in slack.into_iter().filter(|_| ends) {
@@ -76,6 +80,15 @@ pub(in crate::model::fem) fn forget_slack_impulses(cable: &mut CableState, weigh
         m.previous_positions[k] -= change * (0.5 * step_before);
     }
     true
+}
+
+/// The energy of motion and stretch of a cable, J, and of a motion so slow that it does not count.
+fn energy(cable: &CableState) -> f64 {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let stretched = |e: usize| bar_energy::stretch_energy(mesh, [(x[e + 1] - x[e]).norm(), mesh.rest_length[e]]);
+    let speed = mesh.tuning.step.slow_recoil_m_per_s;
+    let slow = 0.5 * cable.problem.linear_density * cable.problem.length * speed * speed;
+    kinetic_energy(cable) + (0..mesh.rest_length.len()).map(stretched).sum::<f64>() + slow
 }
 
 /// The velocities (m/s) that impulses (N s) give the free nodes of a mesh.

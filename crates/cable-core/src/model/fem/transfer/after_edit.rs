@@ -35,14 +35,8 @@ impl<'a> EditedObstacles<'a> {
 
     /// True if every obstacle of the scene after the edit was there, in the same place.
     fn adds_nothing(&self) -> bool {
-        let same = |a: &Body, b: &Body| {
-            let edge = |k: usize| (a.edges[k].from, a.edges[k].to) == (b.edges[k].from, b.edges[k].to);
-            a.center == b.center
-                && a.offset == b.offset
-                && a.edges.len() == b.edges.len()
-                && (0..a.edges.len()).all(edge)
-        };
-        self.after.bodies().iter().all(|new| new.moves() || self.before.bodies().iter().any(|old| same(old, new)))
+        let was_there = |new: &Body| self.before.bodies().iter().any(|old| old.is_where(new));
+        self.after.bodies().iter().all(|new| new.moves() || was_there(new))
     }
 }
 

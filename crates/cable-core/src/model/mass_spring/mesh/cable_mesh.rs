@@ -10,7 +10,7 @@ use crate::model::mass_spring::mesh::node_placement::{
 use crate::model::mass_spring::mesh::pulley::{ElementGeometry, Pulley, Wheels};
 use crate::model::mass_spring::mesh::relaxation_memory::{RelaxationMemory, memories};
 use crate::model::mass_spring::settings::Tuning;
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
 use crate::state::State;
 
 part! {
@@ -72,6 +72,32 @@ impl Mesh {
         let separated = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
         let nodes = even_nodes(&problem, segments, &separated);
         Self::on_nodes(problem, tuning, segments, &separated, nodes)
+    }
+
+    /// Returns whether the nodes and springs of this mesh, at a time (s), can serve for another
+    /// cable: of the same material, with the same supports and loads at the same places of it.
+    pub(in crate::model::mass_spring) fn is_divided_like(&self, other: &Self, time_s: f64) -> bool {
+        let [p, q] = [&self.problem, &other.problem];
+        let material = |p: &Problem| {
+            let stiffness = (p.axial_stiffness, p.bending_stiffness);
+            (
+                p.length,
+                p.linear_density,
+                p.thermal_stretch,
+                stiffness,
+                p.cable.damping_ratio,
+                p.cable.bending_damping_ratio,
+            )
+        };
+        let support = |s: &SupportPoint| {
+            let wheel = (s.wheel_radius, s.side, s.friction, s.departure);
+            (s.kind, s.arc_length, s.mass, wheel, s.holds_from(time_s))
+        };
+        let loads = |p: &Problem| p.loads.iter().map(|l| l.arc_length).collect::<Vec<_>>();
+        material(p) == material(q)
+            && self.even_length == other.even_length
+            && p.supports.iter().map(support).eq(q.supports.iter().map(support))
+            && loads(p) == loads(q)
     }
 
     /// Puts nodes at given arc lengths (m).
