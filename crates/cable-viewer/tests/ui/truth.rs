@@ -332,8 +332,8 @@ fn a_reset_can_be_undone_and_starts_the_robots_task_again() {
     assert!(answer(&harness).robot.unwrap().x_m > from + 0.05);
 }
 
-/// A support that was moved after a pause began the run anew: the cable was laid on another mesh, and
-/// came to rest no more. It goes on from where it is.
+/// A support that was moved after a pause began the run anew: the cable was laid on another mesh,
+/// and came to rest no more. It goes on from where it is.
 #[test]
 fn a_support_that_is_moved_after_a_pause_goes_on_with_the_run() {
     let scene = catalog::tank();
