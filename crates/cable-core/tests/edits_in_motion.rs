@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::model::{Inertia, Question};
-use cable_core::scene::{Obstacle, Scene, Shape, catalog};
+use cable_core::scene::{Obstacle, Scene, Shape, SupportKind, catalog};
 use cable_core::{Model, Settings, Simulation};
 
 const FRAME_S: f64 = 1.0 / 60.0;
@@ -106,4 +106,17 @@ fn a_cable_falls_when_its_post_is_taken_away() {
     let farthest = from.iter().zip(&to).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(farthest > 1e-4 && farthest < 0.2, "{farthest} m in a frame");
     assert!(edited.max_tension().tension_n < 1.1 * before, "{} N for {before} N", edited.max_tension().tension_n);
+}
+
+/// What a wheel pulls with after it was put elsewhere is of the order of what it carries, not of a
+/// wheel that goes there within a step.
+#[test]
+fn a_wheel_that_is_put_elsewhere_does_not_take_its_cable_there_in_a_step() {
+    let mut scene = catalog::pulley_waypoints();
+    let run = run(scene.clone(), Model::Fem, Inertia::Dynamic, 0.5).unwrap();
+    let wheel = scene.cables[0].supports.iter_mut().find(|s| s.kind == SupportKind::Pulley).unwrap();
+    wheel.at_m.as_mut().unwrap()[1] += 0.1;
+    let mut edited = run.with_scene(scene, run.settings()).unwrap();
+    let most = tensions(&mut edited, Inertia::Dynamic, 6).into_iter().fold(0.0, f64::max);
+    assert!(most < 10.0 * run.max_tension().tension_n, "{most} N");
 }

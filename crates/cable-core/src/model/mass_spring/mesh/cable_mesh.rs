@@ -90,7 +90,8 @@ impl Mesh {
             )
         };
         let support = |s: &SupportPoint| {
-            let wheel = (s.wheel_radius, s.side, s.friction, s.departure);
+            let place = s.place_at(time_s).filter(|_| s.arc_length.is_none());
+            let wheel = (s.wheel_radius, s.side, s.friction, s.departure, place);
             (s.kind, s.arc_length, s.mass, wheel, s.holds_from(time_s))
         };
         let loads = |p: &Problem| p.loads.iter().map(|l| l.arc_length).collect::<Vec<_>>();
