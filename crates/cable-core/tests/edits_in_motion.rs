@@ -108,8 +108,7 @@ fn a_cable_falls_when_its_post_is_taken_away() {
     assert!(edited.max_tension().tension_n < 1.1 * before, "{} N for {before} N", edited.max_tension().tension_n);
 }
 
-/// What a wheel pulls with after it was put elsewhere is of the order of what it carries, not of a
-/// wheel that goes there within a step.
+/// A wheel that went there within a step pulled with 3412 N for 73 N.
 #[test]
 fn a_wheel_that_is_put_elsewhere_does_not_take_its_cable_there_in_a_step() {
     let mut scene = catalog::pulley_waypoints();

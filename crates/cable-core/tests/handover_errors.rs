@@ -41,7 +41,7 @@ fn scene(number: u64) -> Scene {
     scene
 }
 
-/// What the errors of a history are.
+/// A count of the errors that histories state.
 #[derive(Debug, Default)]
 struct Seen {
     /// Instants at which `fem` answers, after another model.

@@ -31,7 +31,7 @@ pub struct ScaledModel {
     refusal: Option<SolveError>,
 }
 
-/// What a model of the copy continues from after an edit of the scene.
+/// The memory of a model of the copy, from which it continues after an edit of the scene.
 struct ScaledContinuation {
     by: Similarity,
     inner: Box<dyn Any + Send>,

@@ -63,7 +63,7 @@ pub struct SwitchingModel {
     max_work: Option<usize>,
 }
 
-/// What `fem` continues from after an edit of the scene.
+/// The memory of `fem`, from which it continues after an edit of the scene.
 struct FemContinuation {
     fem: Box<dyn Any + Send>,
     reason: Option<ModelReason>,

@@ -1,5 +1,5 @@
-//! What every bar of a mesh remembers from step to step: the forces in its relaxation branches, the
-//! memory of material loss in stretching (`model/material_loss.rs`), or the impulse that the
+//! Every bar of a mesh remembers values from step to step: the forces in its relaxation branches,
+//! the memory of material loss in stretching (`model/material_loss.rs`), or the impulse that the
 //! integrator remembers (`time/slack_recoil.rs`).
 //!
 //! It belongs to the bars. A bar that is divided gives it to both parts, and one bar that takes the

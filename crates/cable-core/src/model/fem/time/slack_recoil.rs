@@ -6,8 +6,8 @@
 //! times the energy that was put in, and its end flew twice as fast as the cable. What is forgotten
 //! is the same at both ends of the bar, so the momentum is kept.
 //!
-//! Where the cable touches something, bars become slack in nearly every step, and impacts take such
-//! energy off ([`super::plastic_impact`]): there the history stays.
+//! The history stays as long as the cable touches something: then bars become slack in nearly every
+//! step, and impacts take such energy off ([`super::plastic_impact`]).
 
 use crate::linalg::{TridiagonalRow, solve_tridiagonal};
 use crate::math::{Vec2, larger};

@@ -11,8 +11,9 @@ use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
 use crate::model::fem::state::{CableState, renew_input};
 use crate::problem::{PointLoad, Problem, SupportPoint};
 
-/// Greatest way that a sliding node is moved with its corner, in even bars: farther away the cable
-/// is laid on the edited scene anew.
+/// Greatest way that a sliding node is moved with its corner, in even bars: beyond it the cable is
+/// laid on the edited scene anew. Smaller: more edits of obstacles forget the history; larger: a
+/// cable is stretched by a long way at once. A choice, tuned on no campaign.
 const MAX_WAY_BARS: f64 = 1.0;
 
 /// The obstacles before and after an edit.

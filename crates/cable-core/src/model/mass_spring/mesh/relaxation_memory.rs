@@ -42,9 +42,10 @@ part! {
         /// Strain or curvature of the material in each slot in the last sub-step; NaN where that of
         /// the next one begins it.
         strain: Vec<f64>,
-        /// What the branches hold, all slots of the first branch before those of the second.
+        /// Forces or moments in the branches, all slots of the first branch before those of the
+        /// second.
         forces: Vec<f64>,
-        /// What is left in each slot of the forces before the step.
+        /// Sum in each slot of what is left of them in the step.
         kept: Vec<f64>,
         /// Change of the strain of each slot in the step.
         change: Vec<f64>,
@@ -160,7 +161,7 @@ impl RelaxationMemory {
         }
     }
 
-    /// What the branches of a slot hold, N or N·m.
+    /// The sum of the forces or moments in the branches of a slot, N or N·m.
     pub(in crate::model::mass_spring) fn held(&self, slot: usize) -> f64 {
         let count = self.strain.len().max(1);
         self.forces.iter().skip(slot).step_by(count).sum()
