@@ -2,6 +2,7 @@
 //! nothing, and one that does acts without a jolt.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+use cable_core::math::Vec2;
 use cable_core::model::{Inertia, Question};
 use cable_core::scene::{Obstacle, Scene, Shape, SupportKind, catalog};
 use cable_core::{Model, Settings, Simulation};
@@ -106,6 +107,126 @@ fn a_cable_falls_when_its_post_is_taken_away() {
     let farthest = from.iter().zip(&to).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(farthest > 1e-4 && farthest < 0.2, "{farthest} m in a frame");
     assert!(edited.max_tension().tension_n < 1.1 * before, "{} N for {before} N", edited.max_tension().tension_n);
+}
+
+/// The scenes in which an edit makes a jolt: spans, a wheel, a floor, a robot and a tank.
+const SCENES: [&str; 7] =
+    ["hanging-span", "steep-span", "pulley-waypoints", "slack-to-floor", "robot-drive", "tank-robot", "tank"];
+
+fn scene(name: &str) -> Scene {
+    catalog::all().into_iter().find(|(known, _)| *known == name).unwrap().1
+}
+
+/// A cable of 93 N that was let out by 1 % pulled with 1762 N when it was caught, and one hauled in
+/// by 1 % broke with 20 kN; at other segments it seemed to.
+#[test]
+fn issue_016_a_cable_changes_its_length_in_time() {
+    for name in SCENES {
+        for model in [Model::Auto, Model::MassSpring] {
+            let run = run(scene(name), model, Inertia::Dynamic, 1.0).unwrap();
+            for factor in [1.01, 0.99, 1.1] {
+                let mut scene = scene(name);
+                scene.cables[0].length_m *= factor;
+                let [alone, edited] = compared_for(&run, scene, 60);
+                let most = 4.0 * alone.max(100.0);
+                assert!(edited < most, "{name} {model:?} ×{factor}: {edited:.1} N for {alone:.1} N");
+            }
+        }
+    }
+}
+
+/// Greatest tensions of the next frames of a run, left alone and edited, N.
+fn compared_for(run: &Simulation, scene: Scene, frames: usize) -> [f64; 2] {
+    let mut edited = run.with_scene(scene, run.settings()).unwrap();
+    [&mut run.clone(), &mut edited].map(|run| {
+        let all = tensions(run, Inertia::Dynamic, frames);
+        assert_eq!(all.len(), frames);
+        all.into_iter().fold(run.max_tension().tension_n, f64::max)
+    })
+}
+
+/// Unstretched length of the first cable, m, from the places and tensions of its nodes: as long as
+/// the scene says once the edit has taken effect.
+fn unstretched_length_m(run: &Simulation, stiffness_n: f64) -> f64 {
+    let nodes = &run.solution().cables[0].nodes;
+    let bar = |pair: &[cable_core::solution::Node]| {
+        let length = (pair[1].x_m - pair[0].x_m).hypot(pair[1].y_m - pair[0].y_m);
+        length / (1.0 + 0.5 * (pair[0].tension_n + pair[1].tension_n) / stiffness_n)
+    };
+    nodes.windows(2).map(bar).sum()
+}
+
+#[test]
+fn a_cable_gets_the_length_and_the_temperature_of_its_scene() {
+    for model in [Model::Fem, Model::MassSpring] {
+        let run = run(scene("hanging-span"), model, Inertia::Dynamic, 1.0).unwrap();
+        let mut scene = scene("hanging-span");
+        let cable = &mut scene.cables[0];
+        (cable.length_m, cable.thermal_expansion_per_k) = (1.01 * cable.length_m, 1e-5);
+        scene.environment.temperature_change_k = 50.0;
+        let (length_m, stiffness_n) = (scene.cables[0].length_m * (1.0 + 5e-4), scene.cables[0].axial_stiffness_n);
+        let mut edited = run.with_scene(scene, run.settings()).unwrap();
+        let _ = tensions(&mut edited, Inertia::Dynamic, 120);
+        let is = unstretched_length_m(&edited, stiffness_n);
+        assert!((is / length_m - 1.0).abs() < 2e-5, "{model:?}: {is} m for {length_m} m");
+    }
+}
+
+/// Without inertia the edited cable is where a run of the edited scene is.
+#[test]
+fn without_inertia_an_edited_length_is_there_in_a_step() {
+    for name in ["hanging-span", "pulley-waypoints", "slack-to-floor"] {
+        let run = run(scene(name), Model::Auto, Inertia::QuasiStatic, 0.5).unwrap();
+        let mut scene = scene(name);
+        scene.cables[0].length_m *= 1.01;
+        let mut edited = run.with_scene(scene.clone(), run.settings()).unwrap();
+        edited.step_quasi_static(FRAME_S).unwrap();
+        let mut anew = Simulation::new(scene, Model::Auto).unwrap();
+        anew.settle().unwrap();
+        let [is, should] = [&edited, &anew].map(|run| run.max_tension().tension_n);
+        assert!((is / should - 1.0).abs() < 5e-3, "{name}: {is} N for {should} N");
+    }
+}
+
+/// An end that was moved by 10 mm went there within a step, and pulled with 4098 N for 93 N; by
+/// 0.3 m the cable broke.
+#[test]
+fn issue_016_a_support_that_is_put_elsewhere_goes_there_in_time() {
+    for name in SCENES {
+        for model in [Model::Auto, Model::MassSpring] {
+            let run = run(scene(name), model, Inertia::Dynamic, 1.0).unwrap();
+            for by in [[0.0, 0.01], [0.0, 0.3]] {
+                let mut scene = scene(name);
+                let at_m = scene.cables[0].supports[0].at_m.as_mut().unwrap();
+                (at_m[0], at_m[1]) = (at_m[0] + by[0], at_m[1] + by[1]);
+                let to = *at_m;
+                let mut edited = run.with_scene(scene, run.settings()).unwrap();
+                let all = tensions(&mut edited, Inertia::Dynamic, 60);
+                let (most, alone) = (all.iter().copied().fold(0.0, f64::max), run.max_tension().tension_n);
+                assert!(all.len() == 60 && most < 9.0 * alone, "{name} {model:?} {by:?}: {most:.1} N for {alone:.1} N");
+                let answer = edited.solution();
+                let now = &answer.cables[0].supports[0];
+                assert!(
+                    (now.x_m - to[0]).hypot(now.y_m - to[1]) < 1e-3 && answer.cables[0].breaks.is_empty(),
+                    "{name} {model:?}: {now:?}"
+                );
+            }
+        }
+    }
+}
+
+/// A stiff chain whose springs did not push was laid together by a clamp that came nearer at 2 m/s:
+/// 233 kN for 102 N, and twenty breaks.
+#[test]
+fn issue_016_a_stiff_chain_pushes() {
+    let most = [Model::Fem, Model::MassSpring].map(|model| {
+        let scene = scene("clamped-stiff");
+        let mut run = run(scene.clone(), model, Inertia::Dynamic, 0.5).unwrap();
+        let at_m = scene.cables[0].supports[1].at_m.unwrap();
+        run.drag_support(0, 1, Vec2::new(at_m[0] - 0.3, at_m[1]));
+        tensions(&mut run, Inertia::Dynamic, 60).into_iter().fold(0.0, f64::max)
+    });
+    assert!(most.iter().all(|most| *most > 50.0 && *most < 150.0), "{most:?} N");
 }
 
 /// A wheel that went there within a step pulled with 3412 N for 73 N.

@@ -8,7 +8,7 @@
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs` | the choice of a model |
 //! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
-//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `arc_nodes.rs`, `material_loss.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `length_change.rs`, `arc_nodes.rs`, `material_loss.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: the equilibrium of a cable ([`Mechanics::settle`]), and
@@ -23,6 +23,7 @@ pub mod fem;
 pub mod hand;
 pub(crate) mod initial_equilibrium;
 mod layers;
+mod length_change;
 pub mod mass_spring;
 mod material_loss;
 pub(crate) mod mechanics;

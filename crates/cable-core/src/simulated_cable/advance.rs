@@ -46,6 +46,7 @@ impl SimulatedCable {
             return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
         }
         let before = self.breaks.len();
+        self.place_supports(dt_s, inertia);
         if inertia == Inertia::QuasiStatic {
             self.former_energy = None;
         }

@@ -2,14 +2,21 @@
 
 use super::SimulatedCable;
 use super::piece::CablePiece;
+use super::support_targets::{SupportGrip, SupportTarget};
 use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
+use crate::math::{Vec2, larger};
 use crate::model::{Mechanics, Model, ModelSource, Settings};
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
+use crate::scene::SupportKind;
 use crate::state::State;
 
-/// Part of a piece's length by which the places of a break and of a support differ by rounding.
+/// Part of a cable's length by which the places of a break and of a support, or two of a support,
+/// differ by rounding.
 const SAME_PLACE: f64 = 1e-6;
+/// Speed below which a cable lies still, m/s. Larger: an edit stops slow motion; smaller: one of a
+/// cable that trembles leaves its bars out of balance.
+const STILL_M_PER_S: f64 = 1e-3;
 
 /// Lets a model continue with all that another one remembers of the same cable; returns whether it
 /// does.
@@ -108,13 +115,44 @@ impl SimulatedCable {
             self.peaks = None;
             return Ok(());
         }
-        self.set_state(&state)
+        self.set_state(&state)?;
+        // On another mesh bars have other strains. Those of a cable that lies still are balanced at
+        // once; it cannot get another length in motion.
+        let fastest = state.velocity_m_per_s.iter().map(|v| v.norm()).fold(0.0, larger);
+        let other_length =
+            state.arc_length_m.last().is_some_and(|length| (length - self.problem.length).abs() > SAME_PLACE * length);
+        if state.time_s > 0.0 && (fastest < STILL_M_PER_S || other_length) {
+            let laid = self.pieces.clone();
+            if self.settle().is_err() {
+                self.pieces = laid;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the supports that the scene holds elsewhere than they are go to their places in time:
+    /// within a step, an end moved by 10 mm pulled with 4 kN.
+    fn lead_moved_supports(&mut self, old: &Self) {
+        let problem = self.problem.clone();
+        let same_number = problem.supports.len() == old.problem.supports.len();
+        for (k, (support, before)) in problem.supports.iter().zip(&old.problem.supports).enumerate() {
+            let stands = |s: &SupportPoint| s.motion.is_none() && s.kind != SupportKind::Robot;
+            let same = same_number && support.kind == before.kind && stands(support) && stands(before);
+            let now = old.reaction(k);
+            let now = Vec2::new(now.x_m, now.y_m);
+            if let (Some(to), true) = (support.at, same)
+                && (to - now).norm() > SAME_PLACE * problem.length
+            {
+                self.draw_support(k, SupportTarget { place_m: now, grip: SupportGrip::Placed { to_m: to } });
+            }
+        }
     }
 
     /// Continues from where `old`, the same cable before an edit, is: broken where that one broke.
     pub fn continue_from(&mut self, old: &Self) -> Result<(), SolveError> {
-        let (Some(own), Some(first)) = (self.pieces.first(), old.pieces.first()) else { return Ok(()) };
+        let (false, Some(first)) = (self.pieces.is_empty(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
+            self.lead_moved_supports(old);
             self.go_on_from(first)?;
             let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
             if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
@@ -122,7 +160,7 @@ impl SimulatedCable {
             }
             return Ok(());
         }
-        let model = own.mechanics.model();
+        let model = self.model();
         let names = |s: &Self| s.problem.supports.iter().map(|s| s.name.clone()).collect::<Vec<_>>();
         if names(self) != names(old)
             || self.problem.length != old.problem.length
@@ -138,6 +176,7 @@ impl SimulatedCable {
         }
         self.pieces = pieces;
         self.breaks.clone_from(&old.breaks);
+        self.lead_moved_supports(old);
         Ok(())
     }
 }

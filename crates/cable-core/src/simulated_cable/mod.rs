@@ -46,7 +46,7 @@ use crate::error::{SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2, smaller};
 use crate::model::hand::default_hand_stiffness;
 use crate::model::tension_gauge::TensionGauge;
-use crate::model::{Model, ModelSource, OwnedResources, RobotContact, Settings};
+use crate::model::{Inertia, Model, ModelSource, OwnedResources, RobotContact, Settings};
 use crate::problem::Problem;
 use crate::solution::{ModelReason, TensionPeaks};
 
@@ -159,6 +159,15 @@ impl SimulatedCable {
         for piece in &mut self.pieces {
             if let Some(own) = piece.part.supports.iter().position(|k| *k == Some(support)) {
                 target.draw(piece.mechanics.as_mut(), own);
+            }
+        }
+    }
+
+    /// Sends supports that an edit placed elsewhere on, for `dt_s`.
+    fn place_supports(&mut self, dt_s: f64, inertia: Inertia) {
+        for k in 0..self.targets.supports.len() {
+            if let Some(next) = self.targets.supports.get(k).copied().flatten().and_then(|t| t.after(dt_s, inertia)) {
+                self.draw_support(k, next);
             }
         }
     }

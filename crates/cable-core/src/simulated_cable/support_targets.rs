@@ -3,7 +3,12 @@
 
 use crate::breakage::CablePart;
 use crate::math::{RigidPose, Vec2};
-use crate::model::Mechanics;
+use crate::model::{Inertia, Mechanics};
+
+/// Greatest speed at which a support goes to a place that an edit gives it, m/s. Larger: a taut
+/// cable is jerked, and one of 93 N pulled with 1118 N at 2 m/s; smaller: an edit takes long to
+/// show.
+const PLACING_SPEED: f64 = 0.5;
 
 /// The place to which a support is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -13,10 +18,12 @@ pub(super) struct SupportTarget {
 }
 
 /// The connection of a support with the target that draws it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SupportGrip {
     /// The support goes where it is sent.
     Rigid,
+    /// An edit placed the support elsewhere: it is sent ever nearer to there.
+    Placed { to_m: Vec2 },
     /// A spring pulls it there.
     Spring,
 }
@@ -25,9 +32,19 @@ impl SupportTarget {
     /// Has a model draw one of its supports there.
     pub fn draw(self, mechanics: &mut dyn Mechanics, support: usize) {
         match self.grip {
-            SupportGrip::Rigid => mechanics.drag_support(support, self.place_m),
+            SupportGrip::Rigid | SupportGrip::Placed { .. } => mechanics.drag_support(support, self.place_m),
             SupportGrip::Spring => mechanics.pull_support(support, self.place_m),
         }
+    }
+
+    /// The target of a support that an edit placed elsewhere, `dt_s` later: without inertia it is
+    /// there at once. None if it stays.
+    pub fn after(self, dt_s: f64, inertia: Inertia) -> Option<Self> {
+        let SupportGrip::Placed { to_m } = self.grip else { return None };
+        let (way, most) = (to_m - self.place_m, PLACING_SPEED * dt_s);
+        let arrives = inertia == Inertia::QuasiStatic || way.norm() <= most;
+        let grip = if arrives { SupportGrip::Rigid } else { self.grip };
+        Some(Self { place_m: if arrives { to_m } else { self.place_m + way * (most / way.norm()) }, grip })
     }
 }
 

@@ -137,7 +137,7 @@ impl ChainModel {
             // The arc length of a support is that of the middle of the arc, σ is that of the mark.
             let i = mesh.wheels.pulleys[k].node;
             let ahead = mesh.element(i - 1).arc[0] - mesh.element(i).arc[1];
-            mesh.arc_length[i] += 0.5 * ahead / mesh.problem.thermal_stretch;
+            mesh.arc_length[i] += 0.5 * ahead / mesh.thermal_stretch;
             mesh.wheels.pulleys[k].anchor = mesh.arc_length[i];
         }
         even_out(mesh, time_s);
@@ -189,6 +189,7 @@ impl ChainModel {
         if !self.has_shape {
             self.start_from_fem();
         }
+        self.chain.mesh.approach_length(1.0);
         let found = find_equilibrium(&mut self.chain, Anchors::Forgotten);
         if found.is_err() {
             *self = before;
@@ -274,14 +275,13 @@ impl ChainModel {
             return false;
         }
         let mut chain = before.chain.clone();
-        chain.mesh.problem = edited.problem.clone();
-        chain.mesh.tuning = edited.tuning.clone();
+        chain.mesh.become_cable_of(edited);
         let [old, new] = [&before.chain.mesh, edited].map(|mesh| mesh.problem.world.geometry().bodies());
         let same = |(a, b): (&Body, &Body)| (a.first, a.friction) == (b.first, b.friction) && a.is_where(b);
         if old.len() != new.len() || !old.iter().zip(new).all(same) {
             chain.contacts = ContactMemory::new(chain.mesh.rest_length.len());
         }
-        chain.drives.take_drags(&self.chain.drives);
+        chain.drives.continue_to(&self.chain.drives);
         chain.report = Report::default();
         if buried_nodes::refuse_buried(&chain.mesh).is_err() {
             return false;

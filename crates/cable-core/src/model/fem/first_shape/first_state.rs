@@ -135,6 +135,7 @@ fn motion_at_rest(problem: &Problem, mesh: &Mesh, positions: Vec<Vec2>) -> Nodal
         slide_rates: vec![0.0; n],
         previous_slide_rates: vec![0.0; n],
         followers: vec![None; problem.supports.len()],
+        length_change: None,
         hands: vec![None; problem.supports.len()],
         placement: problem.outline.as_ref().map(|o| o.placement),
         ..NodalMotion::default()

@@ -126,6 +126,21 @@ impl Mesh {
         self.bending_stiffness = other.bending_stiffness;
     }
 
+    /// Changes the unstretched length of a metre of arc length.
+    pub(in crate::model::fem) fn change_thermal_stretch(&mut self, stretch: f64) {
+        let part = stretch / self.thermal_stretch;
+        self.rest_length.iter_mut().for_each(|length| *length *= part);
+        self.thermal_stretch = stretch;
+    }
+
+    /// Gives the nodes the arc lengths of a cable that is longer by a factor, and as long
+    /// unstretched as now.
+    pub(in crate::model::fem) fn scale_arc_lengths(&mut self, factor: f64) {
+        let Spread { more, coupling } = &mut self.spread;
+        self.arc_length.iter_mut().chain(more).chain(coupling).for_each(|length| *length *= factor);
+        self.thermal_stretch /= factor;
+    }
+
     /// Number of nodes.
     #[inline]
     #[must_use]

@@ -111,6 +111,31 @@ impl CableState {
         }));
     }
 
+    /// Changes the unstretched length for `dt_s` towards that of the scene.
+    pub(in crate::model::fem) fn follow_length(&mut self, dt_s: f64) {
+        if let Some(change) = &mut self.motion.length_change {
+            let to = self.problem.thermal_stretch;
+            let length = change.follow(to * self.problem.length, dt_s);
+            let arrived = length == to * self.problem.length;
+            self.set_thermal_stretch(if arrived { to } else { length / self.problem.length });
+        }
+    }
+
+    /// Changes the unstretched length by a fraction of what it differs from that of the scene.
+    pub(in crate::model::fem) fn approach_length(&mut self, part: f64) {
+        if self.motion.length_change.is_some() {
+            let [now, to] = [self.mesh.thermal_stretch, self.problem.thermal_stretch];
+            self.set_thermal_stretch(if part < 1.0 - 1e-9 { now + (to - now) * part } else { to });
+        }
+    }
+
+    fn set_thermal_stretch(&mut self, stretch: f64) {
+        self.mesh.change_thermal_stretch(stretch);
+        if stretch == self.problem.thermal_stretch {
+            self.motion.length_change = None;
+        }
+    }
+
     pub(in crate::model::fem) fn refuse(&self) -> Result<(), SolveError> {
         let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.slide_over, SlideOver::Pulley(_)));
         if self.problem.cable.self_contact && pulleys {

@@ -5,6 +5,7 @@ use crate::math::{RigidPose, Vec2};
 use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::momentum_account::MomentumSums;
 use crate::model::hand::Hand;
+use crate::model::length_change::LengthChange;
 use crate::model::smoothed_target::SmoothedTarget;
 
 /// Relative difference of step lengths up to which steps count as even.
@@ -53,6 +54,8 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) followers: Vec<Option<SmoothedTarget>>,
     /// Hands that hold supports by springs.
     pub(in crate::model::fem) hands: Vec<Option<Hand>>,
+    /// The unstretched length after an edit, on its way to that of the scene.
+    pub(in crate::model::fem) length_change: Option<LengthChange>,
     pub(in crate::model::fem) time: f64,
     /// The pose of the robot's outline, if there is one.
     pub(in crate::model::fem) placement: Option<RigidPose>,
@@ -70,6 +73,12 @@ impl NodalMotion {
         if let Some(older) = self.older_positions.get_mut(k) {
             *older += way;
         }
+    }
+
+    /// The unstretched length in the present step, of that at its start and at those of the two
+    /// steps before.
+    pub(in crate::model::fem) fn growth(&self) -> [f64; 3] {
+        self.length_change.map_or([1.0; 3], |change| change.growth())
     }
 
     /// Becomes a copy of `other`, reusing its memory where possible.
@@ -101,6 +110,7 @@ impl NodalMotion {
         self.hands.clone_from(hands);
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         self.steps_without_history = other.steps_without_history;
+        self.length_change = other.length_change;
         (self.time, self.placement) = (other.time, other.placement);
         (self.account, self.energies) = (other.account, other.energies);
     }

@@ -21,6 +21,7 @@ impl Stepper {
         h: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
+        self.cable.follow_length(h);
         let before = self.accounts_energy.then(|| self.begin_energy_account());
         let weights = self.begin_step(h, dragged);
         let predicted = self.solver.predicted_unknowns(&self.cable, h);
@@ -157,7 +158,9 @@ impl Stepper {
 
     /// Begins a step of the energy account; returns the energy of the cable.
     fn begin_energy_account(&mut self) -> Energy {
-        let may_differ = self.cable.motion.step_before == 0.0 || !self.cable.meshing.never_slides;
+        let motion = &self.cable.motion;
+        let may_differ =
+            motion.step_before == 0.0 || motion.length_change.is_some() || !self.cable.meshing.never_slides;
         let mut energies = self.cable.motion.energies;
         let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
         self.cable.motion.energies = energies;

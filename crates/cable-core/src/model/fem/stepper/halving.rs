@@ -131,7 +131,9 @@ impl Stepper {
         let start = self.cable.motion.time;
         let to = start + piece;
         let mut hand_targets = std::mem::take(&mut self.hand_drive.hand_targets);
-        self.cable.interpolate_targets(&mut hand_targets, request.dragged, piece / (request.due - start));
+        let part = piece / (request.due - start);
+        self.cable.interpolate_targets(&mut hand_targets, request.dragged, part);
+        self.cable.approach_length(part);
         // The cable balances at the end of the piece, without the supports that release it on the
         // way.
         lay_down_released(&mut self.cable, [start, to]);

@@ -86,7 +86,8 @@ impl Sleep {
         to: f64,
         dragged: &[Option<Vec2>],
     ) -> bool {
-        if cable.outline.as_ref().is_some_and(MovingOutline::moves) || wheels_act(cable, to) {
+        let outline_moves = cable.outline.as_ref().is_some_and(MovingOutline::moves);
+        if outline_moves || wheels_act(cable, to) || cable.motion.length_change.is_some() {
             self.asleep = false;
         }
         if !self.asleep {

@@ -70,24 +70,30 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     for (loss, l) in input.losses.bars.iter_mut().zip(&mesh.rest_length) {
         *loss = [taut, folds * l * l.sqrt()];
     }
+    // Lengths of earlier steps count as those of a bar that was as long unstretched as now.
+    let growth = m.growth();
     for e in 0..mesh.rest_length.len() {
         input.losses.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-            mesh.path(e, &m.positions).length
+            mesh.path(e, &m.positions).length * growth[0]
         } else {
-            let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+            let length = |x: &[Vec2], growth: f64| (x[e + 1] - x[e]).norm() * growth;
             // The material of a slack bar has its own length. A bar that has just become taut did
             // not come from its folded length, and one that is slack is not yet stretched.
             let (own, flexible) = (mesh.rest_length[e], mesh.is_flexible());
-            let present = length(&m.positions);
+            let present = length(&m.positions, growth[0]);
             let slack = flexible && present < own;
-            let past_length = |x: &[Vec2]| if flexible && !slack { larger(length(x), own) } else { length(x) };
-            let older = if weights.older > 0.0 { past_length(&m.older_positions) * weights.older } else { 0.0 };
-            let predicted = present * now - past_length(&m.previous_positions) * past + older;
+            let past_length = |x: &[Vec2], growth: f64| {
+                let length = length(x, growth);
+                if flexible && !slack { larger(length, own) } else { length }
+            };
+            let older =
+                if weights.older > 0.0 { past_length(&m.older_positions, growth[2]) * weights.older } else { 0.0 };
+            let predicted = present * now - past_length(&m.previous_positions, growth[1]) * past + older;
             if slack { smaller(predicted, own) } else { predicted }
         };
     }
     for &(bar, length) in &input.losses.lengths_at_wheels {
-        input.losses.predicted_length[bar] = length;
+        input.losses.predicted_length[bar] = length * growth[0];
     }
     loss_memory::add(cable, h, rate, decay);
     loss_memory::add_to_bends(cable, h, decay);

@@ -6,15 +6,41 @@
 //! posts with 10 N for 18 N.
 
 use crate::contact::geometry::{Body, Geometry};
+use crate::math::Vec2;
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
-use crate::model::fem::state::{CableState, renew_input};
+use crate::model::fem::state::{CableState, NodalMotion, renew_input};
+use crate::model::length_change::LengthChange;
+use crate::model::smoothed_target::SmoothedTarget;
 use crate::problem::{PointLoad, Problem, SupportPoint};
 
 /// Greatest way that a sliding node is moved with its corner, in even bars: beyond it the cable is
 /// laid on the edited scene anew. Smaller: more edits of obstacles forget the history; larger: a
 /// cable is stretched by a long way at once. A choice, tuned on no campaign.
 const MAX_WAY_BARS: f64 = 1.0;
+/// Part of the cable's length by which the places of a support differ by rounding.
+const SAME_PLACE_FRACTION: f64 = 1e-9;
+
+/// What draws a support.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::fem) enum Drag {
+    Nothing,
+    /// It goes where it is sent.
+    Rigid,
+    /// A hand pulls it by a spring.
+    Spring,
+}
+
+impl Drag {
+    /// That of a support with a target, or none.
+    pub(in crate::model::fem) fn of(target: Option<Vec2>, by_spring: bool) -> Self {
+        match (target, by_spring) {
+            (None, _) => Self::Nothing,
+            (Some(_), false) => Self::Rigid,
+            (Some(_), true) => Self::Spring,
+        }
+    }
+}
 
 /// The obstacles before and after an edit.
 struct EditedObstacles<'a> {
@@ -45,18 +71,25 @@ impl<'a> EditedObstacles<'a> {
 fn are_divided_alike(a: &CableState, b: &CableState) -> bool {
     let [p, q] = [&a.problem, &b.problem];
     let now = b.motion.time;
+    // A longer cable is longer everywhere.
+    let longer = p.length / q.length;
+    let same_place = |s: f64, t: f64| (s - t * longer).abs() <= SAME_PLACE_FRACTION * p.length;
     let support = |(s, t): (&SupportPoint, &SupportPoint)| {
         s.kind == t.kind
-            && s.arc_length == t.arc_length
+            && match (s.arc_length, t.arc_length) {
+                (Some(s), Some(t)) => same_place(s, t),
+                // A wheel that was moved is led there, if it has no motion of its own.
+                (None, None) => s.motion.is_none() && t.motion.is_none() || s.place_at(now) == t.place_at(now),
+                _ => false,
+            }
             && s.side == t.side
-            // A wheel that was moved would carry its cable there within a step.
-            && (s.arc_length.is_some() || s.place_at(now) == t.place_at(now))
             && s.departure == t.departure
             && s.holds_from(now) == t.holds_from(now)
     };
-    let load = |(s, t): (&PointLoad, &PointLoad)| s.arc_length == t.arc_length;
-    p.length == q.length
-        && a.meshing.even_bars == b.meshing.even_bars
+    let load = |(s, t): (&PointLoad, &PointLoad)| same_place(s.arc_length, t.arc_length);
+    // Where nobody gives the number of bars it goes with the length.
+    let same_bars = a.meshing.even_bars == b.meshing.even_bars || longer != 1.0 && p.cable.segments == q.cable.segments;
+    same_bars
         && p.supports.len() == q.supports.len()
         && p.supports.iter().zip(&q.supports).all(support)
         && p.loads.len() == q.loads.len()
@@ -84,12 +117,14 @@ fn have_same_outline(a: &Problem, b: &Problem) -> bool {
 
 /// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
 /// its mesh, or an obstacle now stands where the cable is.
-pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState) -> Option<CableState> {
+pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<CableState> {
     if !are_divided_alike(new, old) || !can_share_a_mesh(new, old) || old.mesh.breaks().next().is_some() {
         return None;
     }
     let mut cable = old.clone();
     cable.problem = new.problem.clone();
+    drag_supports(&mut cable, drags);
+    change_length(&mut cable, old.problem.length);
     cable.loss = new.loss.clone();
     if new.loss != old.loss {
         cable.mesh.branch_forces.clear();
@@ -126,16 +161,44 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState) -> O
     Some(cable)
 }
 
+/// Lets supports that are drawn begin where they are, as fast as they are.
+fn drag_supports(cable: &mut CableState, drags: &[Drag]) {
+    for (k, drag) in drags.iter().enumerate() {
+        let begins = || {
+            let at = cable.support_position(k)?;
+            let held_by_hand = cable.motion.hands[k].and(cable.meshing.support_node[k]);
+            Some(match held_by_hand {
+                Some(node) => SmoothedTarget::moving(at, cable.motion.velocities[node]),
+                None => SmoothedTarget::at_rest(at),
+            })
+        };
+        let follower = cable.motion.followers[k].filter(|_| *drag != Drag::Nothing);
+        let follower = if *drag == Drag::Rigid { follower.or_else(begins) } else { follower };
+        cable.motion.followers[k] = follower;
+        cable.motion.hands[k] = cable.motion.hands[k].filter(|_| *drag == Drag::Spring);
+    }
+}
+
+/// Lets a cable that was `before_m` long (m) begin to change its length to that of its problem, and
+/// its temperature.
+fn change_length(cable: &mut CableState, before_m: f64) {
+    let longer = cable.problem.length / before_m;
+    if longer != 1.0 {
+        cable.mesh.scale_arc_lengths(longer);
+        let NodalMotion { previous_arc_length: before, slide_rates, previous_slide_rates, .. } = &mut cable.motion;
+        before.iter_mut().chain(slide_rates).chain(previous_slide_rates).for_each(|s| *s *= longer);
+    }
+    if cable.mesh.thermal_stretch != cable.problem.thermal_stretch {
+        let begins = || LengthChange::from(cable.mesh.thermal_stretch * cable.problem.length);
+        cable.motion.length_change = Some(cable.motion.length_change.unwrap_or_else(begins));
+    }
+}
+
 /// Gives a cable the material, the supports and the loads of `new`.
 fn adopt_material(cable: &mut CableState, new: &CableState) {
     let mesh = &mut cable.mesh;
     mesh.tuning.clone_from(&new.mesh.tuning);
     (mesh.axial_stiffness, mesh.bending_stiffness) = (new.mesh.axial_stiffness, new.mesh.bending_stiffness);
-    if mesh.thermal_stretch != new.mesh.thermal_stretch {
-        let part = new.mesh.thermal_stretch / mesh.thermal_stretch;
-        mesh.rest_length.iter_mut().for_each(|length| *length *= part);
-        mesh.thermal_stretch = new.mesh.thermal_stretch;
-    }
     let (meshing, edited) = (&mut cable.meshing, &new.meshing);
     (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
     meshing.bar_weight = edited.bar_weight;

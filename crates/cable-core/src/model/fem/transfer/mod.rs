@@ -21,7 +21,7 @@ use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::remesh::change_wheels;
 use crate::model::fem::state::{renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::after_edit;
+use crate::model::fem::transfer::after_edit::{Drag, after_edit};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
@@ -105,13 +105,10 @@ impl Stepper {
     /// remembers; supports are dragged to the points `dragged` (m). Returns false, without a
     /// change, if the edit concerns the mesh.
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
-        let Some(cable) = after_edit(&old.cable, &self.cable) else { return false };
+        let pulled = &self.hand_drive.pulled;
+        let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
+        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else { return false };
         self.cable = cable;
-        let motion = &mut self.cable.motion;
-        for (k, (target, pulled)) in dragged.iter().zip(&self.hand_drive.pulled).enumerate() {
-            motion.followers[k] = motion.followers[k].filter(|_| target.is_some());
-            motion.hands[k] = motion.hands[k].filter(|_| target.is_some() && *pulled);
-        }
         self.cable.motion.restart_accounts();
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);

@@ -5,7 +5,7 @@ use crate::model::mass_spring::mesh::{Mesh, least_straight_length};
 
 /// Slides the material over all pulleys in a sub-step; friction stops it within the capstan's cone.
 pub(in crate::model::mass_spring) fn slide(mesh: &mut Mesh, SubStep { length_s: h, kick_s: kick }: SubStep) {
-    let (least, thermal) = (least_straight_length(mesh), mesh.problem.thermal_stretch);
+    let (least, thermal) = (least_straight_length(mesh), mesh.thermal_stretch);
     for k in 0..mesh.wheels.pulleys.len() {
         let p = &mut mesh.wheels.pulleys[k];
         let push = p.sliding_speed + p.sliding_force * kick / p.mass;

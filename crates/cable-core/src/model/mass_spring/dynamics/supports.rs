@@ -63,6 +63,17 @@ impl SupportDrives {
         self.hands.clone_from(&other.hands);
     }
 
+    /// From now on supports are dragged as in `other`, those that are dragged already as fast as
+    /// they are.
+    pub(in crate::model::mass_spring) fn continue_to(&mut self, other: &Self) {
+        self.targets.clone_from(&other.targets);
+        self.by_spring.clone_from(&other.by_spring);
+        for (k, target) in self.targets.iter().enumerate() {
+            self.smoothed[k] = self.smoothed[k].filter(|_| target.is_some());
+            self.hands[k] = self.hands[k].filter(|_| target.is_some());
+        }
+    }
+
     /// Sets the velocities that bring supported nodes to where their supports are at the end of a
     /// sub-step of `h` (s); a support that is dragged keeps to `max_speed_m_per_s`.
     pub(in crate::model::mass_spring) fn move_nodes(

@@ -48,9 +48,11 @@ pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut Equilib
 /// Adds the energy of the spring of element `e` and updates its tension; returns the value, J.
 pub(in crate::model::mass_spring) fn add_spring(mesh: &mut Mesh, system: &mut EquilibriumSystem, e: usize) -> f64 {
     let r = mesh.element(e);
-    let (l0, ea, lambda) = (mesh.rest_length[e], mesh.problem.axial_stiffness, mesh.problem.thermal_stretch);
+    let (l0, ea, lambda) = (mesh.rest_length[e], mesh.problem.axial_stiffness, mesh.thermal_stretch);
     let stretch = r.length - l0;
-    let (taut, lent) = (stretch > 0.0, system.initial_tension[e] * system.fade);
+    // A spring of a cable with bending stiffness pushes.
+    let taut = stretch > 0.0 || mesh.problem.bending_stiffness > 0.0;
+    let lent = system.initial_tension[e] * system.fade;
     let tension = if taut { ea * stretch / l0 } else { 0.0 };
     mesh.tension[e] = tension;
     if !taut && lent == 0.0 {

@@ -134,7 +134,7 @@ impl Contacts {
             let (sum, ea) = (p.tension[0] + p.tension[1], mesh.problem.axial_stiffness);
             let high = 0.5 * sum * (1.0 + p.friction_ratio());
             let low = sum - high;
-            p.friction_limit = mesh.problem.thermal_stretch * (high - low) * (1.0 + 0.5 * sum / ea);
+            p.friction_limit = mesh.thermal_stretch * (high - low) * (1.0 + 0.5 * sum / ea);
         }
         self.find_pairs(mesh, self.tuning.offset_m);
         self.friction.clear();

@@ -42,5 +42,5 @@ pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, k: usize, body: Vec
     }
     let ea = mesh.problem.axial_stiffness;
     let theta = |t: f64| t * (1.0 + 0.5 * t / ea);
-    p.sliding_force = mesh.problem.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));
+    p.sliding_force = mesh.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::length_change::LengthChange;
 use crate::model::mass_spring::mesh::node_placement::{
     SAME_PLACE_FRACTION, even_nodes, first_shape, separate_supports,
 };
@@ -20,6 +21,10 @@ part! {
         problem: Arc<Problem>,
         /// The tuned constants by which it is solved.
         tuning: Arc<Tuning>,
+        /// Unstretched length of a metre of arc length: 1 + αΔT, or on its way there.
+        thermal_stretch: f64,
+        /// The unstretched length after an edit, on its way to that of the scene.
+        length_change: Option<LengthChange>,
         /// Arc length of each node, m.
         arc_length: Vec<f64>,
         /// Position of each node, m.
@@ -75,30 +80,93 @@ impl Mesh {
     }
 
     /// Returns whether the nodes and springs of this mesh, at a time (s), can serve for another
-    /// cable: of the same material, with the same supports and loads at the same places of it.
+    /// cable, with the same supports and loads at the same places of it.
     pub(in crate::model::mass_spring) fn is_divided_like(&self, other: &Self, time_s: f64) -> bool {
         let [p, q] = [&self.problem, &other.problem];
-        let material = |p: &Problem| {
-            let stiffness = (p.axial_stiffness, p.bending_stiffness);
-            (
-                p.length,
-                p.linear_density,
-                p.thermal_stretch,
-                stiffness,
-                p.cable.damping_ratio,
-                p.cable.bending_damping_ratio,
-            )
-        };
+        // A longer cable is longer everywhere.
+        let longer = q.length / p.length;
         let support = |s: &SupportPoint| {
-            let place = s.place_at(time_s).filter(|_| s.arc_length.is_none());
+            // A wheel that was moved is led there, if it has no motion of its own.
+            let place = s.place_at(time_s).filter(|_| s.arc_length.is_none() && s.motion.is_some());
             let wheel = (s.wheel_radius, s.side, s.friction, s.departure, place);
-            (s.kind, s.arc_length, s.mass, wheel, s.holds_from(time_s))
+            (s.kind, s.mass, wheel, s.holds_from(time_s))
         };
-        let loads = |p: &Problem| p.loads.iter().map(|l| l.arc_length).collect::<Vec<_>>();
-        material(p) == material(q)
-            && self.even_length == other.even_length
+        let places = |p: &Problem, longer: f64| {
+            let supports = p.supports.iter().map(|s| s.arc_length.map(|at| at * longer));
+            supports.chain(p.loads.iter().map(|l| Some(l.arc_length * longer))).collect::<Vec<_>>()
+        };
+        let same_place = |(s, t): (&Option<f64>, &Option<f64>)| match (s, t) {
+            (Some(s), Some(t)) => (s - t).abs() <= SAME_PLACE_FRACTION * q.length,
+            _ => s == t,
+        };
+        let [before, after] = [places(p, longer), places(q, 1.0)];
+        let same_count = before.len() == after.len();
+        let same_kind = (p.bending_stiffness > 0.0) == (q.bending_stiffness > 0.0);
+        (self.even_length * longer - other.even_length).abs() <= SAME_PLACE_FRACTION * other.even_length
             && p.supports.iter().map(support).eq(q.supports.iter().map(support))
-            && loads(p) == loads(q)
+            && same_count
+            && same_kind
+            && before.iter().zip(&after).all(same_place)
+    }
+
+    /// Becomes the mesh of a cable after an edit of it: as long unstretched as before, it begins to
+    /// change that.
+    pub(in crate::model::mass_spring) fn become_cable_of(&mut self, edited: &Self) {
+        let material = |p: &Problem| {
+            let loss = (p.cable.damping_ratio, p.cable.bending_damping_ratio);
+            (p.linear_density, p.axial_stiffness, p.bending_stiffness, loss)
+        };
+        let other_material = material(&self.problem) != material(&edited.problem);
+        self.change_length(edited.problem.clone());
+        self.tuning.clone_from(&edited.tuning);
+        self.update_elements();
+        if other_material {
+            let nodes = self.position.len();
+            [self.spring_memory, self.bend_memory] =
+                memories(&self.problem, &self.tuning.mesh, self.even_length, nodes);
+        }
+    }
+
+    fn change_length(&mut self, problem: Arc<Problem>) {
+        let longer = problem.length / self.problem.length;
+        if longer != 1.0 {
+            let pulleys = self.wheels.pulleys.iter_mut().map(|p| &mut p.anchor);
+            self.arc_length.iter_mut().chain(pulleys).for_each(|s| *s *= longer);
+            self.even_length *= longer;
+            self.thermal_stretch /= longer;
+        }
+        self.problem = problem;
+        if self.thermal_stretch != self.problem.thermal_stretch {
+            let now = LengthChange::from(self.thermal_stretch * self.problem.length);
+            self.length_change = Some(self.length_change.unwrap_or(now));
+        }
+    }
+
+    /// Changes the unstretched length for `dt_s` towards that of the scene.
+    pub(in crate::model::mass_spring) fn follow_length(&mut self, dt_s: f64) {
+        if let Some(change) = &mut self.length_change {
+            let to = self.problem.thermal_stretch;
+            let length = change.follow(to * self.problem.length, dt_s);
+            let arrived = length == to * self.problem.length;
+            self.set_thermal_stretch(if arrived { to } else { length / self.problem.length });
+        }
+    }
+
+    /// Changes the unstretched length by a fraction of what it differs from that of the scene.
+    pub(in crate::model::mass_spring) fn approach_length(&mut self, part: f64) {
+        if self.length_change.is_some() {
+            let [now, to] = [self.thermal_stretch, self.problem.thermal_stretch];
+            self.set_thermal_stretch(if part < 1.0 { now + (to - now) * part } else { to });
+        }
+    }
+
+    fn set_thermal_stretch(&mut self, stretch: f64) {
+        let part = stretch / self.thermal_stretch;
+        self.rest_length.iter_mut().for_each(|length| *length *= part);
+        self.thermal_stretch = stretch;
+        if stretch == self.problem.thermal_stretch {
+            self.length_change = None;
+        }
     }
 
     /// Puts nodes at given arc lengths (m).
@@ -150,6 +218,8 @@ impl Mesh {
             force: vec![Vec2::zeros(); count],
             mass,
             point_mass,
+            thermal_stretch: problem.thermal_stretch,
+            length_change: None,
             supported: vec![false; count],
             support_acceleration: vec![Vec2::zeros(); count],
             straight_length: material_length.clone(),
@@ -222,7 +292,7 @@ impl Mesh {
     pub(in crate::model::mass_spring) fn update_elements(&mut self) {
         for e in 0..self.material_length.len() {
             self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
-            self.rest_length[e] = self.material_length[e] * self.problem.thermal_stretch;
+            self.rest_length[e] = self.material_length[e] * self.thermal_stretch;
             self.straight_length[e] = self.material_length[e];
         }
         let density = self.problem.linear_density;
@@ -238,7 +308,7 @@ impl Mesh {
             let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
                 self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
-                self.rest_length[e] = self.material_length[e] * self.problem.thermal_stretch;
+                self.rest_length[e] = self.material_length[e] * self.thermal_stretch;
             }
         }
         for k in 0..self.wheels.pulleys.len() {
@@ -246,8 +316,7 @@ impl Mesh {
             for e in [i - 1, i] {
                 let r = self.element(e);
                 // The arcs on wheels count as unstretched: σ then moves the straight part alone.
-                self.straight_length[e] =
-                    self.material_length[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
+                self.straight_length[e] = self.material_length[e] - (r.arc[0] + r.arc[1]) / self.thermal_stretch;
             }
         }
         let density = self.problem.linear_density;

@@ -8,10 +8,10 @@
 //! ```
 //! with K = EA and the strain, or EI and the curvature, and τ the time constant of a viscous part.
 //!
-//! A spring cannot push. Where σ would be negative it is slack, and its material has the strain at
-//! which its tension ends, σ = 0, from which it recovers with the times of the branches. In the
-//! sub-step in which it becomes taut it has a viscous loss beside (see
-//! [`MeshTuning::impact_damping`]).
+//! A spring of a cable without bending stiffness cannot push. Where σ would be negative it is
+//! slack, and its material has the strain at which its tension ends, σ = 0, from which it recovers
+//! with the times of the branches. In the sub-step in which it becomes taut it has a viscous loss
+//! beside (see [`MeshTuning::impact_damping`]).
 
 use std::sync::Arc;
 
@@ -27,6 +27,8 @@ part! {
         loss: Arc<MaterialLoss>,
         /// EA, N, or EI, N·m².
         stiffness: f64,
+        /// True if a spring can push, as that of a cable with bending stiffness.
+        pushes: bool,
         /// Time constant of the viscous loss of a spring in the step in which it becomes taut, s.
         impact_time_s: f64,
         /// The step of which the factors below are, s.
@@ -64,7 +66,11 @@ pub(super) fn memories(problem: &Problem, tuning: &MeshTuning, spring: f64, node
     let slots = if problem.bending_stiffness > 0.0 { 2 * nodes } else { 0 };
     let springs = RelaxationMemory::new(stretching, problem.axial_stiffness, nodes - 1);
     let impact_time_s = tuning.impact_damping * critical;
-    [RelaxationMemory { impact_time_s, ..springs }, RelaxationMemory::new(bending, problem.bending_stiffness, slots)]
+    let pushes = problem.bending_stiffness > 0.0;
+    [
+        RelaxationMemory { impact_time_s, pushes, ..springs },
+        RelaxationMemory::new(bending, problem.bending_stiffness, slots),
+    ]
 }
 
 impl RelaxationMemory {
@@ -74,6 +80,7 @@ impl RelaxationMemory {
         Self {
             loss: Arc::new(loss),
             stiffness,
+            pushes: false,
             impact_time_s: 0.0,
             step_s: 0.0,
             decay: vec![1.0; branches],
@@ -125,17 +132,17 @@ impl RelaxationMemory {
         let known = self.strain[slot];
         let before = if !known.is_nan() {
             known
-        } else if strain < 0.0 {
+        } else if strain < 0.0 && !self.pushes {
             0.0
         } else {
             strain
         };
-        let impact = if last > 0.0 { 0.0 } else { self.impact_stiffness };
+        let impact = if last > 0.0 || self.pushes { 0.0 } else { self.impact_stiffness };
         let damping = self.damping_stiffness + impact;
         let pull = self.stiffness * strain + self.kept[slot] + damping * (strain - before);
         // NaN passes on, and is detected later.
         let (material, tension) =
-            if pull < 0.0 { (strain - pull / (self.stiffness + damping), 0.0) } else { (strain, pull) };
+            if pull < 0.0 && !self.pushes { (strain - pull / (self.stiffness + damping), 0.0) } else { (strain, pull) };
         self.change[slot] = material - before;
         self.strain[slot] = material;
         tension

@@ -43,8 +43,7 @@ impl NodeReader<'_> {
     /// Internal force at the end of element `e` on a wheel, N: the force in its middle and the load
     /// from there to the end, which lies `arc` (m) on the wheel.
     fn beside_pulley(&self, e: usize, side: StrandSide, arc: f64) -> Vec2 {
-        let path =
-            self.mesh.material_length[e] - 0.5 * self.mesh.straight_length[e] - arc / self.mesh.problem.thermal_stretch;
+        let path = self.mesh.material_length[e] - 0.5 * self.mesh.straight_length[e] - arc / self.mesh.thermal_stretch;
         let sign = match side {
             StrandSide::Before => -1.0,
             StrandSide::Beyond => 1.0,
@@ -55,7 +54,7 @@ impl NodeReader<'_> {
     /// Adds the nodes on a wheel: the tension grows exponentially from one end of the arc to the
     /// other.
     fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
-        let [s0, s1] = p.material_on_wheel(&self.mesh.arc_length, self.mesh.problem.thermal_stretch);
+        let [s0, s1] = p.material_on_wheel(&self.mesh.arc_length, self.mesh.thermal_stretch);
         let (b, a) = (self.mesh.element(p.node - 1), self.mesh.element(p.node));
         let jump = (p.tension[1] - p.tension[0]).abs() > TENSION_JUMP_TOLERANCE * p.tension[0];
         let count = arc_nodes::parts(p.radius, p.turn, self.mesh.problem.radius);
@@ -181,7 +180,7 @@ impl NodeReader<'_> {
         if !(self.mesh.problem.bending_stiffness > 0.0 && d.norm_squared() > 0.0) {
             return pull;
         }
-        let stiffness = self.mesh.problem.bending_stiffness / self.mesh.problem.thermal_stretch;
+        let stiffness = self.mesh.problem.bending_stiffness / self.mesh.thermal_stretch;
         let moment = |i: usize| stiffness * self.node_curvature(i) + self.branch_moment(i, e);
         pull + perp(d) * ((moment(e) - moment(e + 1)) / d.norm_squared())
     }
@@ -258,7 +257,7 @@ impl NodeReader<'_> {
             reaction_x_n: force.x,
             reaction_y_n: force.y,
             arc_length_m: pulley.map_or(self.mesh.arc_length[i], |p| {
-                p.material_on_wheel(&self.mesh.arc_length, self.mesh.problem.thermal_stretch).iter().sum::<f64>() * 0.5
+                p.material_on_wheel(&self.mesh.arc_length, self.mesh.thermal_stretch).iter().sum::<f64>() * 0.5
             }),
             tension_before_n: pulley.map(|p| p.tension[0]),
             tension_after_n: pulley.map(|p| p.tension[1]),

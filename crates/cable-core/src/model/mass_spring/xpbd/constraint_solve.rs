@@ -158,7 +158,7 @@ impl ConstraintSolver {
 
     /// Sets the rows of springs beside pulleys.
     fn set_pulley_rows(&mut self, mesh: &Mesh, h: f64) {
-        let (theta, ea) = (mesh.problem.thermal_stretch, mesh.problem.axial_stiffness);
+        let (theta, ea) = (mesh.thermal_stretch, mesh.problem.axial_stiffness);
         for p in &mesh.wheels.pulleys {
             for e in [p.node - 1, p.node] {
                 // Its other node, unless that is a pulley, too, whose terms are added below.
@@ -189,12 +189,12 @@ impl ConstraintSolver {
         let PulleyFriction::Slides(sense) = friction else { return 0.0 };
         let (before, after) = (self.lambda[p.node - 1], self.lambda[p.node]);
         let pull = (after - before) + sense * p.friction_ratio() * (before + after);
-        predicted_slide(mesh, p, sense, h) + mesh.problem.thermal_stretch / p.mass * pull
+        predicted_slide(mesh, p, sense, h) + mesh.thermal_stretch / p.mass * pull
     }
 
     /// Sets the stick-slip states of pulleys from their tensions; returns true if any changed.
     fn update_friction(&mut self, mesh: &Mesh, h: f64) -> bool {
-        let (theta, least) = (mesh.problem.thermal_stretch, least_straight_length(mesh));
+        let (theta, least) = (mesh.thermal_stretch, least_straight_length(mesh));
         let mut any = false;
         for (k, p) in mesh.wheels.pulleys.iter().enumerate() {
             let i = p.node;
@@ -254,7 +254,7 @@ impl ConstraintSolver {
 /// Δσ⁰, m: the material that would slide without springs, but with friction in the given sense (0:
 /// without).
 fn predicted_slide(mesh: &Mesh, p: &Pulley, sense: f64, h: f64) -> f64 {
-    let friction = sense * mesh.problem.thermal_stretch * p.friction_ratio() * tension_excess(mesh, p);
+    let friction = sense * mesh.thermal_stretch * p.friction_ratio() * tension_excess(mesh, p);
     p.sliding_speed * h - friction * h * h / p.mass
 }
 
