@@ -27,6 +27,10 @@ impl SimulatedCable {
             peaks: self.peaks,
             momentum: self.account(),
             energy_account: self.energy_account(),
+            unstretched_length_m: match self.pieces.as_slice() {
+                [whole] => whole.answer.unstretched_length_m,
+                _ => None,
+            },
             ..CableSolution::default()
         };
         for piece in &self.pieces {

@@ -124,6 +124,10 @@ pub struct CableSolution {
     /// inertia, and where the model keeps no account of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub energy_account: Option<EnergyAccount>,
+    /// Its unstretched length, m, while it goes to that of the scene: an edit of the length or the
+    /// temperature of a moving cable takes effect in time. None otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unstretched_length_m: Option<f64>,
 }
 
 /// Balance of a cable's momentum in a step: what it had, and what each kind of force gave it, added

@@ -137,7 +137,10 @@ pub fn summary(scene: &Scene, cable: &Cable, answer: &CableSolution, time_s: f64
         greatest_tension: greatest,
         least_tension: least,
         length_m: cable.length_m,
-        stretched_length_m: stretched_length_m(answer, thermal_stretch(scene, cable)),
+        stretched_length_m: stretched_length_m(
+            answer,
+            answer.unstretched_length_m.map_or_else(|| thermal_stretch(scene, cable), |now| now / cable.length_m),
+        ),
         lying_m,
         suspended_m: cable.length_m - lying_m,
         touchdowns: shape::touchdowns(cable, answer),

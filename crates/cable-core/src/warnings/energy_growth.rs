@@ -7,6 +7,7 @@
 //! | what moves it | work at most |
 //! |---|---|
 //! | a support that is led, or held by a hand | greatest tension of the step, or its reaction if that is greater, times its way |
+//! | a change of the unstretched length | greatest tension times the change |
 //! | a load, wind, current | mean force of both ends of the step times the way, and half of how much it changed times the size of that |
 //! | the outline of a robot | its force before and after and the impulse of all contacts, at the greatest speed of the cable |
 //!
@@ -101,6 +102,8 @@ struct EnergySnapshot {
     supports: Vec<SupportState>,
     /// Position of each load, those at supports first, m.
     loads: Vec<Vec2>,
+    /// Unstretched length, m, where it changes.
+    unstretched_m: Option<f64>,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².
     moment: Vec2,
@@ -210,7 +213,8 @@ impl EnergySnapshot {
         let forms = [kinetic_j, gravity_j, stretch_j, bending_j];
         let energy_j = forms.iter().sum();
         let breaks = breaks.len();
-        (Self { time_s, energy_j, breaks, supports, loads, moment, outline_force, max_speed }, forms)
+        let unstretched_m = answer.unstretched_length_m;
+        (Self { time_s, energy_j, breaks, supports, loads, unstretched_m, moment, outline_force, max_speed }, forms)
     }
 }
 
@@ -233,7 +237,11 @@ fn work(observed: &Observed<'_>, before: &EnergySnapshot, now: &EnergySnapshot) 
     let (from, to) = (before.time_s, now.time_s);
     let dt = to - from;
     let greatest = super::tension::greatest(answer);
-    let mut sum = 0.0;
+    let length = |snapshot: &EnergySnapshot| snapshot.unstretched_m.unwrap_or(problem.length * problem.thermal_stretch);
+    let mut sum = match (before.unstretched_m, now.unstretched_m) {
+        (None, None) => 0.0,
+        _ => greatest * (length(now) - length(before)).abs(),
+    };
     for (s, (a, b)) in problem.supports.iter().zip(before.supports.iter().zip(&now.supports)) {
         use SupportState::Holds;
         let (Holds { at: from_at, speed: u, force: f }, Holds { at: to_at, speed: v, force: g }) = (a, b) else {

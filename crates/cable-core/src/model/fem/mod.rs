@@ -67,6 +67,12 @@ enum PresentPart {
     Stepper,
 }
 
+/// The memory of a model from which it goes on after an edit of the scene.
+struct Continuation {
+    stepper: stepper::Stepper,
+    errors: ErrorEstimates,
+}
+
 /// The finite element model of one cable.
 #[derive(Clone, Debug)]
 pub struct FemModel {
@@ -277,13 +283,15 @@ impl Mechanics for FemModel {
 
     fn continuation(&self) -> Option<Box<dyn Any + Send>> {
         let continues = self.present == PresentPart::Stepper && self.elastica_answer.is_none() && self.time_s() > 0.0;
-        continues.then(|| Box::new(self.stepper.clone()) as Box<dyn Any + Send>)
+        let continuation = || Continuation { stepper: self.stepper.clone(), errors: self.meshes.errors };
+        continues.then(|| Box::new(continuation()) as Box<dyn Any + Send>)
     }
 
     fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
-        let continues = before.downcast_ref().is_some_and(|before| self.stepper.continue_from(before, &self.dragged));
+        let Some(Continuation { stepper, errors }) = before.downcast_ref() else { return false };
+        let continues = self.stepper.continue_from(stepper, &self.dragged);
         if continues {
-            (self.present, self.meshes) = (PresentPart::Stepper, TwoMeshes::default());
+            (self.present, self.meshes) = (PresentPart::Stepper, TwoMeshes::after_edit(*errors));
             (self.elastica_answer, self.bending_error) = (None, None);
             if let Some(pose) = self.robot_pose {
                 self.set_robot_pose(pose);

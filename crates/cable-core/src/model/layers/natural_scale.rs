@@ -77,6 +77,7 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
         n.curvature_per_m /= l;
     }
     a.errors.scale_lengths(l);
+    a.unstretched_length_m = a.unstretched_length_m.map(|length| length * l);
     a.assumptions.bending_stiffness_n_m2 *= l * l;
     for s in &mut a.supports {
         put(&mut s.x_m, &mut s.y_m);

@@ -40,6 +40,8 @@ const ESTIMATES_PER_SEARCH: usize = 4;
 pub(in crate::model::fem) struct TwoMeshes {
     exact: Option<Box<SpansModel>>,
     coarse: Option<Box<Stepper>>,
+    /// True after an edit of the scene: the next step without inertia finds a coarser mesh again.
+    resumes: bool,
     /// The present error estimates.
     pub errors: ErrorEstimates,
 }
@@ -140,6 +142,11 @@ impl TwoMeshes {
         }
     }
 
+    /// Goes on after an edit of the scene of a cable with these errors.
+    pub fn after_edit(errors: ErrorEstimates) -> Self {
+        Self { errors, resumes: errors != ErrorEstimates::default(), ..Self::default() }
+    }
+
     /// Begins to follow a cable that continues without inertia from an answer of another model: a
     /// mesh of bars twice as long continues from it, too.
     pub fn continue_beside(
@@ -214,6 +221,12 @@ impl TwoMeshes {
                     .map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
+            (None, None) if before.resumes => {
+                let bars = fine.cable.meshing.even_bars;
+                let may = problem.outline.is_none() && !problem.cable.self_contact && bars >= LEAST_BARS;
+                let coarse = || at_rest_with_bars(problem, settings, fine, bars / 2, &answer, dragged);
+                if may { coarse().map(Box::new) } else { None }
+            }
             (None, None) => None,
         };
         let Some(coarse) = coarse else { return };

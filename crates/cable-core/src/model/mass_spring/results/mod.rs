@@ -34,6 +34,7 @@ pub(in crate::model::mass_spring) fn answer(
             ..Assumptions::default()
         },
         momentum: report.account.report(mesh),
+        unstretched_length_m: mesh.length_change.map(|_| mesh.thermal_stretch * mesh.problem.length),
         contacts: contact_reports::read(mesh, contacts, &report.cost)
             .into_iter()
             .map(|contact| contact.report)
