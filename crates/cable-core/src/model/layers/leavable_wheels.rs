@@ -64,6 +64,18 @@ impl SupportMove {
     }
 }
 
+/// The memory of a cable that had left some of its wheels, from which it goes on after an edit.
+struct ContinuationWithoutWheels {
+    /// For each support, true if it is such a wheel.
+    replaced: Vec<bool>,
+    /// As in [`LeavableWheels`].
+    let_go: bool,
+    /// Present places of those wheels, m.
+    centers: Vec<Option<Vec2>>,
+    time_s: f64,
+    inner: Box<dyn Any + Send>,
+}
+
 /// The way in which a model continues.
 enum Start<'a> {
     /// Along the route.
@@ -123,11 +135,50 @@ impl LeavableWheels {
         }
     }
 
+    /// Continues a cable that had left some of its wheels before an edit of the scene; returns
+    /// false, without a change, if that is impossible.
+    fn continue_without_wheels(&mut self, before: &ContinuationWithoutWheels) -> bool {
+        let are_wheels =
+            |replaced: &[bool]| replaced.iter().zip(&self.wheels.wheels).all(|(replaced, wheel)| !replaced || *wheel);
+        if self.left.is_some() || before.replaced.len() != self.led.len() || !are_wheels(&before.replaced) {
+            return false;
+        }
+        let places = before.centers.iter().zip(&self.led).map(|(center, led)| center.filter(|_| led.is_some()));
+        let kept = std::mem::replace(&mut self.places, places.collect());
+        let continued = self.without(&before.replaced, Inertia::Dynamic).and_then(|left| {
+            let going_on = || left.going_on(&self.problem, &self.problem, &self.places, before.time_s);
+            let problem = if before.let_go { going_on()? } else { left.problem.clone() };
+            let inner = (self.construct)(problem, self.settings).ok()?;
+            let mut next = Self { led: self.led.clone(), let_go: before.let_go, ..Self::empty(self, inner) };
+            next.left = Some(left);
+            if let Some(pose) = self.robot_pose {
+                next.inner.set_robot_pose(pose);
+            }
+            next.lead_all();
+            next.inner.continue_from(&*before.inner).then_some(next)
+        });
+        match continued {
+            Some(next) => (self.inner, self.left, self.let_go) = (next.inner, next.left, next.let_go),
+            None => self.places = kept,
+        }
+        self.left.is_some()
+    }
+
+    /// Moves all supports of the inner model that were moved.
+    fn lead_all(&mut self) {
+        for k in 0..self.led.len() {
+            if let Some(lead) = self.led[k] {
+                self.lead(k, lead);
+            }
+        }
+    }
+
     /// A model without the wheels that were left, with supports moved as in this one.
     fn built(&self, left: Option<&Arc<WheelsLeft>>, start: &Start<'_>) -> Result<Box<dyn Mechanics>, SolveError> {
         let problem = left.map_or(&self.problem, |left| &left.problem);
         let mut this =
             Self { left: left.cloned(), ..Self::empty(self, (self.construct)(problem.clone(), self.settings)?) };
+        this.led.clone_from(&self.led);
         if let Some(pose) = self.robot_pose {
             this.inner.set_robot_pose(pose);
         }
@@ -136,14 +187,7 @@ impl LeavableWheels {
             Start::Motion(state) => this.inner.set_state(state)?,
             Start::Rest(answer, time_s) => this.inner.warm_start(answer, *time_s)?,
         }
-        for (k, lead) in self.led.iter().enumerate() {
-            let Some(inner) = this.inner_index(k) else { continue };
-            match lead {
-                Some(SupportMove::Dragged(at)) => this.inner.drag_support(inner, *at),
-                Some(SupportMove::Pulled(at)) => this.inner.pull_support(inner, *at),
-                None => {}
-            }
-        }
+        this.lead_all();
         Ok(this.inner)
     }
 
@@ -509,13 +553,22 @@ impl Layer for LeavableWheels {
         self.inner.set_state(state)
     }
 
-    /// The cable of a scene whose wheels all hold it.
     fn continuation(&self) -> Option<Box<dyn Any + Send>> {
-        self.inner.continuation().filter(|_| self.left.is_none())
+        let inner = self.inner.continuation()?;
+        let Some(left) = &self.left else { return Some(inner) };
+        let mut centers = self.places.clone();
+        for wheel in &left.wheels {
+            centers[wheel.support].get_or_insert(wheel.center);
+        }
+        let (replaced, let_go, time_s) = (left.replaced.clone(), self.let_go, self.inner.time_s());
+        Some(Box::new(ContinuationWithoutWheels { replaced, let_go, centers, time_s, inner }))
     }
 
     fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
-        self.left.is_none() && self.inner.continue_from(before)
+        match before.downcast_ref::<ContinuationWithoutWheels>() {
+            Some(before) => self.continue_without_wheels(before),
+            None => self.left.is_none() && self.inner.continue_from(before),
+        }
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
