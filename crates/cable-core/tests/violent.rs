@@ -6,7 +6,7 @@
 //!
 //! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture`
 //! (five minutes); `FROM=100 TO=200` takes some of them, `TELL=friction NODES=1` tells what was
-//! found of a law.
+//! found of a law, `EDIT=3` makes all edits of one kind.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
@@ -76,6 +76,9 @@ fn scene(number: u64) -> Scene {
 #[derive(Debug, Default)]
 struct Found {
     steps: usize,
+    /// Edits, and those that were refused.
+    edits: usize,
+    refused: Vec<String>,
     halved: usize,
     broke: usize,
     /// First rests that were not found.
@@ -96,7 +99,60 @@ struct Found {
 
 const RATE: f64 = 240.0;
 
+/// Time between two edits of a scene, s.
+const EDITED_EVERY_S: f64 = 0.2;
+
+/// The scene after a random edit: a length, stiffness, density, friction, an end, the temperature,
+/// an obstacle that goes, comes or moves; None if it cannot be.
+fn edited(scene: &Scene, dice: &mut Dice) -> Option<Scene> {
+    let mut scene = scene.clone();
+    let cable = &mut scene.cables[0];
+    let which = (dice.unit() * 9.0) as usize;
+    let which = std::env::var("EDIT").ok().and_then(|e| e.parse().ok()).unwrap_or(which);
+    match which {
+        0 => cable.length_m *= dice.within(0.93, 1.1),
+        1 => cable.axial_stiffness_n *= 10f64.powf(dice.within(-0.3, 0.3)),
+        2 => cable.linear_density_kg_per_m *= dice.within(0.7, 1.4),
+        3 => cable.friction = dice.within(0.0, 1.0),
+        4 => {
+            let end = cable.supports.get_mut(dice.within(0.0, 2.0) as usize)?;
+            let at_m = end.at_m.as_mut().filter(|_| end.motion.is_none())?;
+            (at_m[0], at_m[1]) = (at_m[0] + dice.within(-0.4, 0.4), at_m[1] + dice.within(-0.4, 0.4));
+        }
+        5 => {
+            cable.thermal_expansion_per_k = 2e-5;
+            scene.environment.temperature_change_k = dice.within(-40.0, 40.0);
+        }
+        6 => {
+            let last = scene.obstacles.len().checked_sub(1).filter(|last| *last > 0)?;
+            scene.obstacles.remove(last);
+        }
+        7 => {
+            let shape = Shape::Circle { center_m: [dice.within(-3.0, 3.0), 6.0], radius_m: 0.2 };
+            scene.obstacles.push(Obstacle { name: "another".to_owned(), shape, friction: None });
+        }
+        _ => {
+            let by = [dice.within(-0.02, 0.02), dice.within(-0.02, 0.02)];
+            match &mut scene.obstacles.last_mut()?.shape {
+                Shape::Circle { center_m, .. } => {
+                    (center_m[0], center_m[1]) = (center_m[0] + by[0], center_m[1] + by[1]);
+                }
+                Shape::Polygon { points_m } => {
+                    points_m.iter_mut().for_each(|p| (p[0], p[1]) = (p[0] + by[0], p[1] + by[1]))
+                }
+                _ => return None,
+            }
+        }
+    }
+    scene.validate().is_ok().then_some(scene)
+}
+
 fn run(number: u64, seconds: f64, found: &mut Found) {
+    run_with(number, seconds, None, found);
+}
+
+/// Runs a scene, with random edits on the way if there are dice for them.
+fn run_with(number: u64, seconds: f64, mut edits: Option<Dice>, found: &mut Found) {
     let mut sim = Simulation::with_settings(scene(number), Model::Fem, Settings::default()).expect("a sound scene");
     if let Err(e) = sim.settle() {
         found.no_rest.push(format!("{number}: {e}"));
@@ -105,6 +161,17 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
     let mut before: Option<[f64; 2]> = None;
     for step in 0..(seconds * RATE) as usize {
         found.steps += 1;
+        if step > 0
+            && step % (EDITED_EVERY_S * RATE) as usize == 0
+            && let Some(dice) = &mut edits
+            && let Some(scene) = edited(sim.scene(), dice)
+        {
+            match sim.with_scene(scene, Settings::default()) {
+                Ok(next) => (sim, before, found.edits) = (next, None, found.edits + 1),
+                // A broken cable has no other length.
+                Err(e) => found.refused.push(format!("{number} at step {step}: {e}")),
+            }
+        }
         let stop = sim.step(1.0 / RATE);
         let answer = sim.solution();
         if let Err(e) = stop {
@@ -263,6 +330,38 @@ fn issue_016_no_step_ends_above_its_start() {
     let mut found = Found::default();
     run(20_330, 1.75, &mut found);
     assert!(found.grown.is_empty() && found.stopped.is_empty(), "{:?} {:?}", found.grown.first(), found.stopped);
+}
+
+/// Edits of a cable that is thrown about break no law.
+#[test]
+fn edited_scenes_obey_the_laws() {
+    edited_campaign(0..8, 1.0);
+}
+
+fn edited_campaign(scenes: std::ops::Range<u64>, seconds: f64) {
+    let mut found = Found::default();
+    for number in scenes {
+        run_with(number, seconds, Some(Dice(number + 99)), &mut found);
+    }
+    tell(&found);
+    println!("{} edits, {} refused", found.edits, found.refused.len());
+    for line in found.refused.iter().filter(|line| !line.contains("broken")) {
+        println!("  {line}");
+    }
+    assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0, "{:?}", found.broken);
+    assert!(found.grown.is_empty(), "{:?}", found.grown.first());
+    assert!((found.stopped.len() as f64) <= 1e-3 * found.steps as f64, "{:?}", found.stopped);
+    // While a length changes, nodes that stick are now and then beyond their cone.
+    assert!((count(&found, Law::Friction) as f64) < 1e-3 * found.steps as f64, "{:?}", found.broken);
+    let worst = found.imbalance.iter().map(|i| i.0).fold(0.0, f64::max);
+    assert!(worst < 1e-4, "momentum from nowhere: {worst:e}");
+}
+
+#[test]
+#[ignore = "minutes: random edits of violent scenes"]
+fn many_edited_scenes_obey_the_laws() {
+    let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
+    edited_campaign(number("FROM", 0)..number("TO", 200), 2.0);
 }
 
 #[test]

@@ -13,6 +13,7 @@ impl SimulatedCable {
     pub fn settle(&mut self) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         self.peaks = None;
+        self.place_supports(f64::INFINITY, Inertia::QuasiStatic);
         self.add_obstacles_in_reach()?;
         loop {
             for piece in &mut self.pieces {

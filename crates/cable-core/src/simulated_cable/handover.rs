@@ -1,5 +1,7 @@
 //! The same cable goes on in another state, by another model or after an edit.
 
+use std::sync::Arc;
+
 use super::SimulatedCable;
 use super::piece::CablePiece;
 use super::support_targets::{SupportGrip, SupportTarget};
@@ -14,6 +16,9 @@ use crate::state::State;
 /// Part of a cable's length by which the places of a break and of a support, or two of a support,
 /// differ by rounding.
 const SAME_PLACE: f64 = 1e-6;
+/// Depth, in radii of the cable, at which its middle counts as inside an obstacle: more than where
+/// it touches one, less than on its surface.
+const INSIDE_RADII: f64 = 0.9;
 /// Speed below which a cable lies still, m/s. Larger: an edit stops slow motion; smaller: one of a
 /// cable that trembles leaves its bars out of balance.
 const STILL_M_PER_S: f64 = 1e-3;
@@ -65,10 +70,28 @@ impl SimulatedCable {
         }
     }
 
+    /// A piece that goes on from one before an edit as it is; None if the model cannot.
+    fn continued_piece(&self, old: &CablePiece, state: &State) -> Option<CablePiece> {
+        let mut problem = old.part.problem(&self.problem, state);
+        problem.cable.segments = old.mechanics.problem().cable.segments;
+        let settings = Settings { segments: None, ..self.settings };
+        let mut mechanics = self.source.build(Arc::new(problem), settings).ok()?;
+        self.targets.tell(&old.part, mechanics.as_mut());
+        continues(mechanics.as_mut(), old.mechanics.as_ref()).then(|| {
+            let mut piece = CablePiece::new(mechanics, old.part.clone(), old.gauge.clone());
+            piece.unwatched_steps = old.unwatched_steps;
+            piece.unwatched_until_s.clone_from(&old.unwatched_until_s);
+            piece
+        })
+    }
+
     /// Builds a piece like one of another model: in one mesh if this model can break, else as what
     /// it broke into.
     fn rebuilt_piece(&self, old: &CablePiece) -> Result<Vec<CablePiece>, SolveError> {
         let state = old.mechanics.state();
+        if let Some(piece) = self.continued_piece(old, &state) {
+            return Ok(vec![piece]);
+        }
         let mut piece = self.build_piece(old.part.clone(), &state)?;
         if old.breaks.is_empty() {
             return Ok(vec![piece]);
@@ -101,6 +124,13 @@ impl SimulatedCable {
         parts.into_iter().zip(state.pieces()).map(own).collect()
     }
 
+    /// True if the middle of the cable is in an obstacle between two of its nodes.
+    fn runs_through_an_obstacle(&self) -> bool {
+        let (geometry, least) = (self.problem.world.geometry(), -INSIDE_RADII * self.problem.radius);
+        let mut nodes = self.pieces.iter().flat_map(|piece| piece.answer.nodes.windows(2));
+        nodes.any(|pair| !geometry.is_clear([pair[0].at(), pair[1].at()], least, [None; 2]))
+    }
+
     /// Goes on from where the same whole cable was before an edit: as it is if the model can, else
     /// from its state.
     fn go_on_from(&mut self, before: &CablePiece) -> Result<(), SolveError> {
@@ -115,15 +145,18 @@ impl SimulatedCable {
             self.peaks = None;
             return Ok(());
         }
-        self.set_state(&state)?;
-        // On another mesh bars have other strains. Those of a cable that lies still are balanced at
-        // once; it cannot get another length in motion.
+        // Bars of another mesh may cut corners, and a cable at rest is not led round them.
+        self.set_state(&State { in_motion: true, ..state.clone() })?;
+        // On another mesh bars have other strains, and what an obstacle moves would be struck. A
+        // cable that lies still is balanced at once, and so is one that has other obstacles or
+        // another length; one that moves keeps its motion on other bars.
         let fastest = state.velocity_m_per_s.iter().map(|v| v.norm()).fold(0.0, larger);
-        let other_length =
-            state.arc_length_m.last().is_some_and(|length| (length - self.problem.length).abs() > SAME_PLACE * length);
-        if state.time_s > 0.0 && (fastest < STILL_M_PER_S || other_length) {
+        let old = before.mechanics.problem();
+        let [bodies, old_bodies] = [&self.problem, old].map(|problem| problem.world.geometry().bodies());
+        let same_bodies = bodies.len() == old_bodies.len() && bodies.iter().zip(old_bodies).all(|(a, b)| a.is_where(b));
+        if state.time_s > 0.0 && (fastest < STILL_M_PER_S || self.problem.length != old.length || !same_bodies) {
             let laid = self.pieces.clone();
-            if self.settle().is_err() {
+            if self.settle().is_err() || self.runs_through_an_obstacle() {
                 self.pieces = laid;
             }
         }
@@ -170,6 +203,10 @@ impl SimulatedCable {
             return Err(SolveError::Unsupported { model, feature });
         }
         self.targets.supports.clone_from(&old.targets.supports);
+        // Pieces fall farther than the whole cable reached.
+        if let Some(problem) = self.problem.with_all_obstacles() {
+            self.problem = problem;
+        }
         let mut pieces = Vec::with_capacity(old.pieces.len());
         for p in &old.pieces {
             pieces.extend(self.rebuilt_piece(p)?);

@@ -70,22 +70,24 @@ impl Stepper {
 
     /// Brings straight bars to rest that were placed along the sagging bars of statics. Their
     /// positions change to the second order in the bar length; without this a run would begin with
-    /// a jerk. If they do not come to rest, they stay where they were placed.
-    pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
+    /// a jerk. If they do not come to rest, they stay where they were placed; returns whether they
+    /// did.
+    pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) -> bool {
         if !self.rested {
-            return;
+            return false;
         }
         self.rollback.save(&self.cable);
         let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
         let laid = self.cable.motion.positions.clone();
         let found = self.quasi_static_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
-        if !(found
+        let is_near = found
             && laid.len() == self.cable.motion.positions.len()
-            && laid.iter().zip(&self.cable.motion.positions).all(near))
-        {
+            && laid.iter().zip(&self.cable.motion.positions).all(near);
+        if !is_near {
             self.rollback.restore(&mut self.cable);
         }
+        is_near
     }
 
     /// Finds the equilibrium with contact at the present time; `dragged` are the hand-set support

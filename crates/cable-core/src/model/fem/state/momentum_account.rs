@@ -74,6 +74,13 @@ impl MomentumSums {
         (self.reached, self.to) = (momentum, now);
     }
 
+    /// Goes on after an edit with a cable that is heavier by a factor, and has `more` momentum (kg
+    /// m/s). The impulses in the history are then those of that cable.
+    pub(in crate::model::fem) fn change_mass(&mut self, factor: f64, more: Vec2) {
+        self.reached += more;
+        self.last.iter_mut().chain(&mut self.older).for_each(|impulse| *impulse *= factor);
+    }
+
     /// Records a plastic contact: the impulse `given` to the cable in the velocity step, and the
     /// part `forgotten` of the step's contact impulse that does not enter the history, N s.
     pub(in crate::model::fem) fn land(&mut self, given: Vec2, forgotten: Vec2) {

@@ -123,11 +123,6 @@ impl NodalMotion {
         self.previous_arc_length.clear();
         self.previous_arc_length.extend_from_slice(arc_length);
         self.step_before = 0.0;
-        self.restart_accounts();
-    }
-
-    /// Begins the accounts of momentum and energy anew.
-    pub(in crate::model::fem) fn restart_accounts(&mut self) {
         (self.account, self.energies) = (MomentumSums::unknown(), Energies::default());
     }
 

@@ -144,6 +144,7 @@ impl Stepper {
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
+            self.cable.approach_length(part);
             self.cable.motion.time = start;
             lay_down_released(&mut self.cable, [start, to]);
             self.relax(to, &hand_targets)

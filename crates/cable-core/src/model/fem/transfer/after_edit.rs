@@ -18,7 +18,7 @@ use crate::problem::{PointLoad, Problem, SupportPoint};
 /// laid on the edited scene anew. Smaller: more edits of obstacles forget the history; larger: a
 /// cable is stretched by a long way at once. A choice, tuned on no campaign.
 const MAX_WAY_BARS: f64 = 1.0;
-/// Part of the cable's length by which the places of a support differ by rounding.
+/// Part of the cable's length by which two places of a support, or of a corner, differ by rounding.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
 /// What draws a support.
@@ -115,9 +115,16 @@ fn have_same_outline(a: &Problem, b: &Problem) -> bool {
     }
 }
 
+/// A cable that goes on after an edit.
+pub(in crate::model::fem) struct EditedCable {
+    pub(in crate::model::fem) cable: CableState,
+    /// True if an obstacle that it lies round took it along at once: in motion that is a blow.
+    pub(in crate::model::fem) was_moved: bool,
+}
+
 /// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
 /// its mesh, or an obstacle now stands where the cable is.
-pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<CableState> {
+pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<EditedCable> {
     if !are_divided_alike(new, old) || !can_share_a_mesh(new, old) || old.mesh.breaks().next().is_some() {
         return None;
     }
@@ -136,19 +143,21 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
         outline.shape.clone_from(&edited.shape);
     }
     place_outline(&mut cable);
+    let mut was_moved = false;
     let edited = EditedObstacles { before: old.problem.world.geometry(), after: new.problem.world.geometry() };
     cable.contacts.change_features(|feature| edited.feature(feature));
     for k in 0..cable.mesh.nodes() {
         let Some(node) = cable.mesh.sliding[k] else { continue };
-        let moved = on_edited_obstacle([old, &cable], node, &edited);
-        if let Some(moved) = moved {
-            let way = moved.position() - node.position();
+        let now = on_edited_obstacle([old, &cable], node, &edited);
+        if let Some(now) = now {
+            let way = now.position() - node.position();
             if way.norm() > MAX_WAY_BARS * cable.even() {
                 return None;
             }
+            was_moved |= way.norm() > SAME_PLACE_FRACTION * new.problem.length;
             cable.motion.shift(k, way);
         }
-        cable.mesh.sliding[k] = moved;
+        cable.mesh.sliding[k] = now;
     }
     let check = IntersectionCheck::of(&cable);
     if !edited.adds_nothing() && (check.refuse_buried().is_err() || !check.cuts_nothing()) {
@@ -158,7 +167,7 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
     cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
     cable.motion.positions = x;
     renew_input(&mut cable);
-    Some(cable)
+    Some(EditedCable { cable, was_moved })
 }
 
 /// Lets supports that are drawn begin where they are, as fast as they are.

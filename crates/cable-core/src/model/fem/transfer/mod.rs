@@ -19,9 +19,9 @@ use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::remesh::change_wheels;
-use crate::model::fem::state::{renew_input, stored_energy};
+use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::{Drag, after_edit};
+use crate::model::fem::transfer::after_edit::{Drag, EditedCable, after_edit};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
@@ -107,12 +107,22 @@ impl Stepper {
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
         let pulled = &self.hand_drive.pulled;
         let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
-        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else { return false };
+        let Some(EditedCable { cable, was_moved }) = after_edit(&old.cable, &self.cable, &drags) else { return false };
         self.cable = cable;
-        self.cable.motion.restart_accounts();
+        let heavier = self.cable.problem.linear_density * self.cable.problem.length
+            / (old.cable.problem.linear_density * old.cable.problem.length);
+        let [before, after] = [&old.cable, &self.cable].map(|cable| MovingMass::of(cable).momentum());
+        self.cable.motion.account.change_mass(heavier, after - before);
+        self.cable.motion.energies = Energies::default();
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);
         self.rested = true;
+        if was_moved && !self.come_to_rest(dragged) {
+            let moved = self.cable.clone();
+            if self.settle(dragged).is_err() || !IntersectionCheck::of(&self.cable).cuts_nothing() {
+                self.cable = moved;
+            }
+        }
         true
     }
 
