@@ -131,9 +131,9 @@ impl SimulatedCable {
         nodes.any(|pair| !geometry.is_clear([pair[0].at(), pair[1].at()], least, [None; 2]))
     }
 
-    /// Goes on from where the same whole cable was before an edit: as it is if the model can, else
-    /// from its state.
-    fn go_on_from(&mut self, before: &CablePiece) -> Result<(), SolveError> {
+    /// Goes on from where the same whole cable was before an edit, by steps with inertia or
+    /// without: as it is if the model can, else from its state.
+    fn go_on_from(&mut self, before: &CablePiece, with_inertia: bool) -> Result<(), SolveError> {
         let state = before.mechanics.state();
         self.leaves_reach |= self.problem.is_beyond_reach(&state.position_m);
         self.add_obstacles_in_reach()?;
@@ -145,16 +145,19 @@ impl SimulatedCable {
             self.peaks = None;
             return Ok(());
         }
-        // Bars of another mesh may cut corners, and a cable at rest is not led round them.
-        self.set_state(&State { in_motion: true, ..state.clone() })?;
+        if !with_inertia {
+            return self.set_state(&state);
+        }
+        let old = before.mechanics.problem();
+        let [bodies, old_bodies] = [&self.problem, old].map(|problem| problem.world.geometry().bodies());
+        let same_bodies = bodies.len() == old_bodies.len() && bodies.iter().zip(old_bodies).all(|(a, b)| a.is_where(b));
+        // Bars of another mesh may cut corners, and a cable that lies still is not led round them.
+        self.set_state(&State { in_motion: state.in_motion || !same_bodies, ..state.clone() })?;
         // On another mesh bars have other strains, and what an obstacle moves would be struck. A
         // cable that lies still is balanced at once, and so is one that has other obstacles or
         // another length; one that moves keeps its motion on other bars.
         let fastest = state.velocity_m_per_s.iter().map(|v| v.norm()).fold(0.0, larger);
-        let old = before.mechanics.problem();
-        let [bodies, old_bodies] = [&self.problem, old].map(|problem| problem.world.geometry().bodies());
-        let same_bodies = bodies.len() == old_bodies.len() && bodies.iter().zip(old_bodies).all(|(a, b)| a.is_where(b));
-        if state.time_s > 0.0 && (fastest < STILL_M_PER_S || self.problem.length != old.length || !same_bodies) {
+        if fastest < STILL_M_PER_S || !same_bodies || self.problem.length != old.length {
             let laid = self.pieces.clone();
             if self.settle().is_err() || self.runs_through_an_obstacle() {
                 self.pieces = laid;
@@ -186,7 +189,7 @@ impl SimulatedCable {
         let (false, Some(first)) = (self.pieces.is_empty(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
             self.lead_moved_supports(old);
-            self.go_on_from(first)?;
+            self.go_on_from(first, old.peaks.is_some())?;
             let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
             if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
                 own.gauge.clone_from(&first.gauge);
