@@ -26,7 +26,7 @@ use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
-use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes};
+use crate::model::fem::transfer::from_state::{follow_corners, move_as_before, remove_all_sliding_nodes};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -117,11 +117,15 @@ impl Stepper {
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);
         self.rested = true;
-        if was_moved && !self.come_to_rest(dragged) {
-            let moved = self.cable.clone();
-            if self.settle(dragged).is_err() || !IntersectionCheck::of(&self.cable).cuts_nothing() {
-                self.cable = moved;
-            }
+        if !was_moved {
+            return true;
+        }
+        let moved = self.cable.clone();
+        if self.come_to_rest(dragged) {
+            // It was balanced where it is; what moved it goes on.
+            move_as_before(&mut self.cable, &moved);
+        } else if self.settle(dragged).is_err() || !IntersectionCheck::of(&self.cable).cuts_nothing() {
+            self.cable = moved;
         }
         true
     }
