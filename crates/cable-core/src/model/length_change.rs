@@ -6,6 +6,7 @@
 
 use super::smoothed_target::SmoothedTarget;
 use crate::math::Vec2;
+use crate::problem::Problem;
 
 /// Greatest speed at which the unstretched length changes, m/s: that of a slow winch. Larger: a
 /// shallow span that is let out falls free; smaller: an edit takes long to show.
@@ -26,12 +27,14 @@ impl LengthChange {
         Self { length: SmoothedTarget::at_rest(Vec2::new(length_m, 0.0)), lengths_m: [length_m; 4] }
     }
 
-    /// Changes towards the unstretched length `to_m` (m) for `dt_s`; returns the present one, m.
-    pub fn follow(&mut self, to_m: f64, dt_s: f64) -> f64 {
+    /// Changes towards the unstretched length of a problem for `dt_s`; returns that of a metre of arc
+    /// length, which is the very one of the problem once it is there.
+    pub fn follow(&mut self, problem: &Problem, dt_s: f64) -> f64 {
+        let to_m = problem.thermal_stretch * problem.length;
         self.length.follow(Vec2::new(to_m, 0.0), dt_s, LENGTH_SPEED);
         let [now, before, older, _] = self.lengths_m;
         self.lengths_m = [self.length.position().x, now, before, older];
-        self.lengths_m[0]
+        if self.lengths_m[0] == to_m { problem.thermal_stretch } else { self.lengths_m[0] / problem.length }
     }
 
     /// The unstretched length at the end of the present step, of that at its start and at those of

@@ -145,10 +145,8 @@ impl Mesh {
     /// Changes the unstretched length for `dt_s` towards that of the scene.
     pub(in crate::model::mass_spring) fn follow_length(&mut self, dt_s: f64) {
         if let Some(change) = &mut self.length_change {
-            let to = self.problem.thermal_stretch;
-            let length = change.follow(to * self.problem.length, dt_s);
-            let arrived = length == to * self.problem.length;
-            self.set_thermal_stretch(if arrived { to } else { length / self.problem.length });
+            let stretch = change.follow(&self.problem, dt_s);
+            self.set_thermal_stretch(stretch);
         }
     }
 
