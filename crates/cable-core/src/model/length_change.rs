@@ -27,8 +27,8 @@ impl LengthChange {
         Self { length: SmoothedTarget::at_rest(Vec2::new(length_m, 0.0)), lengths_m: [length_m; 4] }
     }
 
-    /// Changes towards the unstretched length of a problem for `dt_s`; returns that of a metre of arc
-    /// length, which is the very one of the problem once it is there.
+    /// Changes towards the unstretched length of a problem for `dt_s`; returns that of a metre of
+    /// arc length, which is the very one of the problem once it is there.
     pub fn follow(&mut self, problem: &Problem, dt_s: f64) -> f64 {
         let to_m = problem.thermal_stretch * problem.length;
         self.length.follow(Vec2::new(to_m, 0.0), dt_s, LENGTH_SPEED);
