@@ -229,7 +229,7 @@ fn without_inertia_an_edited_length_is_there_in_a_step() {
         let [is, should] = [&edited, &anew].map(|run| run.max_tension().tension_n);
         assert!((is / should - 1.0).abs() < 5e-3, "{name}: {is} N for {should} N");
     }
-    // Where friction holds it, it lies otherwise than one that was laid anew.
+    // Friction holds these, and they lie otherwise than cables that were laid anew.
     for name in ["plan-posts", "rubble-drop"] {
         let run = run(scene(name), Model::Auto, Inertia::QuasiStatic, 0.5).unwrap();
         for factor in [0.99, 1.01] {

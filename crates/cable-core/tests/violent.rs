@@ -338,6 +338,25 @@ fn edited_scenes_obey_the_laws() {
     edited_campaign(0..8, 1.0);
 }
 
+/// A torn piece fell through the ground that the whole cable could not reach, 4.7 m deep, after an
+/// obstacle elsewhere had been taken away.
+#[test]
+fn issue_016_a_torn_piece_keeps_its_ground_after_an_edit() {
+    let mut scene = scene(11);
+    let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, Settings::default()).unwrap();
+    sim.settle().unwrap();
+    for step in 0..360 {
+        if step == 144 {
+            assert!(!sim.solution().cables[0].breaks.is_empty(), "it is torn");
+            scene.obstacles.pop();
+            sim = sim.with_scene(scene.clone(), Settings::default()).unwrap();
+        }
+        sim.step(1.0 / RATE).unwrap();
+        let found = sim.solution().verification.unwrap().findings;
+        assert!(found.iter().all(|finding| finding.law != Law::Penetration), "step {step}: {found:?}");
+    }
+}
+
 fn edited_campaign(scenes: std::ops::Range<u64>, seconds: f64) {
     let mut found = Found::default();
     for number in scenes {

@@ -4,13 +4,9 @@
 //! At once, a span of 20 m let out by 1 % fell free and pulled with 1762 N for 93 N when it was
 //! caught; hauled in by 1 % it broke, with 20 kN. A winch does neither.
 
-use super::smoothed_target::SmoothedTarget;
+use super::smoothed_target::{EDIT_SPEED, SmoothedTarget};
 use crate::math::Vec2;
 use crate::problem::Problem;
-
-/// Greatest speed at which the unstretched length changes, m/s: that of a slow winch. Larger: a
-/// shallow span that is let out falls free; smaller: an edit takes long to show.
-const LENGTH_SPEED: f64 = 0.5;
 
 /// The unstretched length of a cable on its way to that of its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +27,7 @@ impl LengthChange {
     /// arc length, which is the very one of the problem once it is there.
     pub fn follow(&mut self, problem: &Problem, dt_s: f64) -> f64 {
         let to_m = problem.thermal_stretch * problem.length;
-        self.length.follow(Vec2::new(to_m, 0.0), dt_s, LENGTH_SPEED);
+        self.length.follow(Vec2::new(to_m, 0.0), dt_s, EDIT_SPEED);
         let [now, before, older, _] = self.lengths_m;
         self.lengths_m = [self.length.position().x, now, before, older];
         if self.lengths_m[0] == to_m { problem.thermal_stretch } else { self.lengths_m[0] / problem.length }

@@ -21,6 +21,11 @@ const TRAILING_S: f64 = 3.0 * LAG_S;
 /// Greatest speed limit of a hand, and speed at which a support catches up with its motion after it
 /// was held back, m/s. Without it a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
+/// Greatest speed at which an edit of a moving cable takes effect, m/s: a support goes to its new
+/// place, and the unstretched length changes, as a slow winch does it. Larger: taut cables are
+/// jerked (1118 N for 93 N at 2 m/s), and a shallow span that is let out falls free. Smaller: an
+/// edit takes long to show.
+pub(crate) const EDIT_SPEED: f64 = 0.5;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED_M: f64 = 1e-9;
 

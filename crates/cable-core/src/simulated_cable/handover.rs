@@ -16,9 +16,6 @@ use crate::state::State;
 /// Part of a cable's length by which the places of a break and of a support, or two of a support,
 /// differ by rounding.
 const SAME_PLACE: f64 = 1e-6;
-/// Depth, in radii of the cable, at which its middle counts as inside an obstacle: more than where
-/// it touches one, less than on its surface.
-const INSIDE_RADII: f64 = 0.9;
 /// Speed below which a cable lies still, m/s. Larger: an edit stops slow motion; smaller: one of a
 /// cable that trembles leaves its bars out of balance.
 const STILL_M_PER_S: f64 = 1e-3;
@@ -124,13 +121,6 @@ impl SimulatedCable {
         parts.into_iter().zip(state.pieces()).map(own).collect()
     }
 
-    /// True if the middle of the cable is in an obstacle between two of its nodes.
-    fn runs_through_an_obstacle(&self) -> bool {
-        let (geometry, least) = (self.problem.world.geometry(), -INSIDE_RADII * self.problem.radius);
-        let mut nodes = self.pieces.iter().flat_map(|piece| piece.answer.nodes.windows(2));
-        nodes.any(|pair| !geometry.is_clear([pair[0].at(), pair[1].at()], least, [None; 2]))
-    }
-
     /// Goes on from where the same whole cable was before an edit, by steps with inertia or
     /// without: as it is if the model can, else from its state.
     fn go_on_from(&mut self, before: &CablePiece, with_inertia: bool) -> Result<(), SolveError> {
@@ -159,7 +149,7 @@ impl SimulatedCable {
         let fastest = state.velocity_m_per_s.iter().map(|v| v.norm()).fold(0.0, larger);
         if fastest < STILL_M_PER_S || !same_bodies || self.problem.length != old.length {
             let laid = self.pieces.clone();
-            if self.settle().is_err() || self.runs_through_an_obstacle() {
+            if self.settle().is_err() {
                 self.pieces = laid;
             }
         }

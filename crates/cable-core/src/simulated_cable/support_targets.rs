@@ -3,12 +3,8 @@
 
 use crate::breakage::CablePart;
 use crate::math::{RigidPose, Vec2};
+use crate::model::smoothed_target::EDIT_SPEED;
 use crate::model::{Inertia, Mechanics};
-
-/// Greatest speed at which a support goes to a place that an edit gives it, m/s. Larger: a taut
-/// cable is jerked, and one of 93 N pulled with 1118 N at 2 m/s; smaller: an edit takes long to
-/// show.
-const PLACING_SPEED: f64 = 0.5;
 
 /// The place to which a support is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +37,7 @@ impl SupportTarget {
     /// there at once. None if it stays.
     pub fn after(self, dt_s: f64, inertia: Inertia) -> Option<Self> {
         let SupportGrip::Placed { to_m } = self.grip else { return None };
-        let (way, most) = (to_m - self.place_m, PLACING_SPEED * dt_s);
+        let (way, most) = (to_m - self.place_m, EDIT_SPEED * dt_s);
         let arrives = inertia == Inertia::QuasiStatic || way.norm() <= most;
         let grip = if arrives { SupportGrip::Rigid } else { self.grip };
         Some(Self { place_m: if arrives { to_m } else { self.place_m + way * (most / way.norm()) }, grip })

@@ -21,7 +21,7 @@ const MAX_WAY_BARS: f64 = 1.0;
 /// Part of the cable's length by which two places of a support, or of a corner, differ by rounding.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
-/// What draws a support.
+/// The connection of a support with what draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum Drag {
     Nothing,
@@ -87,7 +87,7 @@ fn are_divided_alike(a: &CableState, b: &CableState) -> bool {
             && s.holds_from(now) == t.holds_from(now)
     };
     let load = |(s, t): (&PointLoad, &PointLoad)| same_place(s.arc_length, t.arc_length);
-    // Where nobody gives the number of bars it goes with the length.
+    // A number of bars that nobody gives goes with the length.
     let same_bars = a.meshing.even_bars == b.meshing.even_bars || longer != 1.0 && p.cable.segments == q.cable.segments;
     same_bars
         && p.supports.len() == q.supports.len()

@@ -124,7 +124,7 @@ impl Stepper {
         if self.come_to_rest(dragged) {
             // It was balanced where it is; what moved it goes on.
             move_as_before(&mut self.cable, &moved);
-        } else if self.settle(dragged).is_err() || !IntersectionCheck::of(&self.cable).cuts_nothing() {
+        } else if self.settle(dragged).is_err() {
             self.cable = moved;
         }
         true
