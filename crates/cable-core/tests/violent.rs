@@ -107,7 +107,7 @@ const EDITED_EVERY_S: f64 = 0.2;
 fn edited(scene: &Scene, dice: &mut Dice) -> Option<Scene> {
     let mut scene = scene.clone();
     let cable = &mut scene.cables[0];
-    let which = (dice.unit() * 9.0) as usize;
+    let which = (dice.unit() * 10.0) as usize;
     let which = std::env::var("EDIT").ok().and_then(|e| e.parse().ok()).unwrap_or(which);
     match which {
         0 => cable.length_m *= dice.within(0.93, 1.1),
@@ -127,7 +127,8 @@ fn edited(scene: &Scene, dice: &mut Dice) -> Option<Scene> {
             let last = scene.obstacles.len().checked_sub(1).filter(|last| *last > 0)?;
             scene.obstacles.remove(last);
         }
-        7 => {
+        7 => cable.segments = Some(dice.within(20.0, 150.0) as usize),
+        8 => {
             let shape = Shape::Circle { center_m: [dice.within(-3.0, 3.0), 6.0], radius_m: 0.2 };
             scene.obstacles.push(Obstacle { name: "another".to_owned(), shape, friction: None });
         }

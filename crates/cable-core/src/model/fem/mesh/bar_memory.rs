@@ -39,6 +39,11 @@ impl BarMemory {
         &mut self.values
     }
 
+    /// True if all values are zero.
+    pub(in crate::model::fem) fn is_zero(&self) -> bool {
+        self.values.is_empty()
+    }
+
     /// Makes all values zero.
     pub(in crate::model::fem) fn clear(&mut self) {
         self.values.clear();

@@ -23,6 +23,10 @@ pub struct Clamp {
     pub direction: Vec2,
 }
 
+/// Fraction of its material by which the unstretched length of a bar differs from it unseen.
+/// Larger: tensions jump by EA times as much where an excess ends; smaller: it takes longer to end.
+const LEAST_EXCESS: f64 = 1e-9;
+
 /// A cable divided into bars.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
@@ -41,6 +45,9 @@ pub struct Mesh {
     pub sliding: Vec<Option<SlidingNode>>,
     /// 1 + αΔT: unstretched length of a metre of arc length.
     pub thermal_stretch: f64,
+    /// Length by which each bar is longer unstretched than its material, as a fraction of it: so
+    /// that it kept its tension when the cable was divided anew. It fades.
+    pub(in crate::model::fem) excess: BarMemory,
     /// EA, N.
     pub axial_stiffness: f64,
     /// EI, N·m²; 0 = no bending.
@@ -75,6 +82,7 @@ impl Mesh {
             held: vec![false; arc_length.len()],
             sliding: vec![None; arc_length.len()],
             thermal_stretch: problem.thermal_stretch,
+            excess: BarMemory::default(),
             rest_length,
             arc_length,
             clamps: Vec::new(),
@@ -122,6 +130,7 @@ impl Mesh {
         self.branch_moments.copy_from(branch_moments);
         self.remembered_impulses.copy_from(&other.remembered_impulses);
         self.thermal_stretch = other.thermal_stretch;
+        self.excess.copy_from(&other.excess);
         self.axial_stiffness = other.axial_stiffness;
         self.bending_stiffness = other.bending_stiffness;
     }
@@ -131,6 +140,39 @@ impl Mesh {
         let part = stretch / self.thermal_stretch;
         self.rest_length.iter_mut().for_each(|length| *length *= part);
         self.thermal_stretch = stretch;
+    }
+
+    /// Takes the unstretched length of bar `e` from its material.
+    pub(in crate::model::fem) fn renew_rest_length(&mut self, e: usize) {
+        let material = self.thermal_stretch * (self.arc_length[e + 1] - self.arc_length[e]);
+        self.rest_length[e] = material * (1.0 + self.excess.sum(e));
+    }
+
+    /// Gives bar `e` an unstretched length (m), which differs from that of its material.
+    pub(in crate::model::fem) fn set_rest_length(&mut self, e: usize, length: f64) {
+        let material = self.thermal_stretch * (self.arc_length[e + 1] - self.arc_length[e]);
+        self.rest_length[e] = length;
+        self.excess.of_all(self.rest_length.len(), 1)[e] = length / material - 1.0;
+    }
+
+    /// True if the unstretched length of a bar is not that of its material.
+    pub(in crate::model::fem) fn has_excess(&self) -> bool {
+        !self.excess.is_zero()
+    }
+
+    /// Keeps a part of what unstretched lengths differ from those of the material.
+    pub(in crate::model::fem) fn fade_excess(&mut self, part: f64) {
+        if !self.has_excess() {
+            return;
+        }
+        let excess = self.excess.of_all(self.rest_length.len(), 1);
+        excess.iter_mut().for_each(|excess| *excess *= part);
+        if excess.iter().all(|excess| excess.abs() < LEAST_EXCESS) {
+            self.excess.clear();
+        }
+        for e in 0..self.rest_length.len() {
+            self.renew_rest_length(e);
+        }
     }
 
     /// Gives the nodes the arc lengths of a cable that is longer by a factor, and as long
@@ -319,8 +361,13 @@ impl Mesh {
             *s += by;
         }
         for e in 0..self.rest_length.len() {
-            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
-                self.rest_length[e] = self.thermal_stretch * (self.arc_length[e + 1] - self.arc_length[e]);
+            if slide[e] == 0.0 && slide[e + 1] == 0.0 {
+                continue;
+            }
+            if self.has_excess() {
+                self.set_rest_length(e, self.rest_length[e] + self.thermal_stretch * (slide[e + 1] - slide[e]));
+            } else {
+                self.renew_rest_length(e);
             }
         }
     }
@@ -349,11 +396,13 @@ impl Mesh {
         let (a, b) = (self.arc_length[k - 1], self.arc_length[k]);
         self.spread.clear();
         self.branch_forces.divide(k - 1);
+        self.excess.divide(k - 1);
         self.remembered_impulses.divide(k - 1);
         self.branch_moments.insert_node(k, (arc_length - a) / (b - a));
         self.arc_length.insert(k, arc_length);
-        self.rest_length[k - 1] = self.thermal_stretch * (arc_length - a);
-        self.rest_length.insert(k, self.thermal_stretch * (b - arc_length));
+        self.rest_length.insert(k, 0.0);
+        self.renew_rest_length(k - 1);
+        self.renew_rest_length(k);
         self.held.insert(k, false);
         self.sliding.insert(k, sliding);
     }
@@ -362,6 +411,7 @@ impl Mesh {
     pub(in crate::model::fem) fn break_at(&mut self, k: usize) {
         self.arc_length.insert(k + 1, self.arc_length[k]);
         self.branch_forces.insert_break(k);
+        self.excess.insert_break(k);
         self.remembered_impulses.insert_break(k);
         self.branch_moments.break_at(k);
         self.rest_length.insert(k, 0.0);
@@ -374,11 +424,12 @@ impl Mesh {
         self.spread.clear();
         let part = self.material_between(k - 1, k) / self.material_between(k - 1, k + 1);
         self.branch_forces.merge(k - 1, part);
+        self.excess.merge(k - 1, part);
         self.remembered_impulses.merge(k - 1, part);
         self.branch_moments.remove_node(k);
         self.arc_length.remove(k);
         self.rest_length.remove(k);
-        self.rest_length[k - 1] = self.thermal_stretch * (self.arc_length[k] - self.arc_length[k - 1]);
+        self.renew_rest_length(k - 1);
         self.held.remove(k);
         self.sliding.remove(k);
     }

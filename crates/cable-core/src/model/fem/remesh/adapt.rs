@@ -125,7 +125,7 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
     mesh.sliding[k] = Some(sliding);
     mesh.arc_length[k] = arc_length;
     for e in [k - 1, k] {
-        mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        mesh.renew_rest_length(e);
     }
     m.slide_rates[k] = -m.velocities[k].dot(&along);
     m.previous_slide_rates[k] = m.slide_rates[k];
@@ -187,8 +187,12 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     if ways[0] > 0.0 && ways[1] > 0.0 {
         let first = whole * MaterialShare::of(ways, before, whole).first;
         mesh.arc_length[k] = mesh.arc_length[k - 1] + first / mesh.thermal_stretch;
-        mesh.rest_length[k - 1] = first;
-        mesh.rest_length[k] = whole - first;
+        for (e, length) in [(k - 1, first), (k, whole - first)] {
+            match mesh.has_excess() {
+                true => mesh.set_rest_length(e, length),
+                false => mesh.rest_length[e] = length,
+            }
+        }
     }
     let m = &mut cable.motion;
     let slid = floor_friction::as_move(cable.contacts.floor_slip[k], along.try_normalize(0.0).unwrap_or_default());
@@ -291,7 +295,7 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
         let spare = before.is_none()
             && after.is_none()
             && cable.mesh.material_between(k - 1, k + 1) < cable.mesh.tuning.remesh.spare_bars * even
-            && cable.mesh.runs_straight(k, &cable.motion.positions);
+            && cable.mesh.turn(k, &cable.motion.positions).abs() < cable.mesh.tuning.remesh.min_turn_rad;
         let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
         if (crowded || enclosed || spare) && IntersectionCheck::of(cable).clear_without(k) {
             remove(cable, k);

@@ -16,6 +16,11 @@ use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
 
+/// Time in which the excess of unstretched lengths fades by a factor e, s. Smaller: the tension
+/// changes like a blow; larger: the cable is longer or shorter than its scene says. A choice, tuned
+/// on no campaign.
+const EXCESS_TIME_S: f64 = 0.1;
+
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct NodeTensions {
@@ -111,11 +116,21 @@ impl CableState {
         }));
     }
 
+    /// True if the unstretched length is still changing to that of the scene.
+    pub(in crate::model::fem) fn changes_length(&self) -> bool {
+        self.motion.length_change.is_some() || self.mesh.has_excess()
+    }
+
     /// Changes the unstretched length for `dt_s` towards that of the scene.
     pub(in crate::model::fem) fn follow_length(&mut self, dt_s: f64) {
         if let Some(change) = &mut self.motion.length_change {
             let stretch = change.follow(&self.problem, dt_s);
             self.set_thermal_stretch(stretch);
+        }
+        if self.mesh.has_excess() {
+            let part = (-dt_s / EXCESS_TIME_S).exp();
+            self.mesh.fade_excess(part);
+            self.motion.note_fading(part);
         }
     }
 
@@ -125,6 +140,7 @@ impl CableState {
             let [now, to] = [self.mesh.thermal_stretch, self.problem.thermal_stretch];
             self.set_thermal_stretch(if part < 1.0 - 1e-9 { now + (to - now) * part } else { to });
         }
+        self.mesh.fade_excess(if part < 1.0 - 1e-9 { 1.0 - part } else { 0.0 });
     }
 
     fn set_thermal_stretch(&mut self, stretch: f64) {

@@ -2,6 +2,7 @@
 //! earlier steps that the time integrator uses.
 
 use crate::math::{RigidPose, Vec2};
+use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::momentum_account::MomentumSums;
 use crate::model::hand::Hand;
@@ -56,6 +57,9 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) hands: Vec<Option<Hand>>,
     /// The unstretched length after an edit, on its way to that of the scene.
     pub(in crate::model::fem) length_change: Option<LengthChange>,
+    /// The excess of the bars over their material at the start of the present step, and at those of
+    /// the two steps before, of that now.
+    pub(in crate::model::fem) earlier_excess: [f64; 3],
     pub(in crate::model::fem) time: f64,
     /// The pose of the robot's outline, if there is one.
     pub(in crate::model::fem) placement: Option<RigidPose>,
@@ -75,10 +79,18 @@ impl NodalMotion {
         }
     }
 
-    /// The unstretched length in the present step, of that at its start and at those of the two
-    /// steps before.
-    pub(in crate::model::fem) fn growth(&self) -> [f64; 3] {
-        self.length_change.map_or([1.0; 3], |change| change.growth())
+    /// Lets the excess of the bars fade by a factor in the present step.
+    pub(in crate::model::fem) fn note_fading(&mut self, part: f64) {
+        let [now, before, _] = self.earlier_excess;
+        self.earlier_excess = [1.0, now, before].map(|excess| excess / part);
+    }
+
+    /// The unstretched length of bar `e` of a mesh in the present step, of that at its start and at
+    /// those of the two steps before.
+    pub(in crate::model::fem) fn growth(&self, mesh: &Mesh, e: usize) -> [f64; 3] {
+        let of_all = self.length_change.map_or([1.0; 3], |change| change.growth());
+        let excess = mesh.excess.sum(e);
+        std::array::from_fn(|j| of_all[j] * (1.0 + excess) / (1.0 + excess * self.earlier_excess[j]))
     }
 
     /// Becomes a copy of `other`, reusing its memory where possible.
@@ -111,6 +123,7 @@ impl NodalMotion {
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         self.steps_without_history = other.steps_without_history;
         self.length_change = other.length_change;
+        self.earlier_excess = other.earlier_excess;
         (self.time, self.placement) = (other.time, other.placement);
         (self.account, self.energies) = (other.account, other.energies);
     }

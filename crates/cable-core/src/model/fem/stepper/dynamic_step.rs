@@ -159,8 +159,7 @@ impl Stepper {
     /// Begins a step of the energy account; returns the energy of the cable.
     fn begin_energy_account(&mut self) -> Energy {
         let motion = &self.cable.motion;
-        let may_differ =
-            motion.step_before == 0.0 || motion.length_change.is_some() || !self.cable.meshing.never_slides;
+        let may_differ = motion.step_before == 0.0 || self.cable.changes_length() || !self.cable.meshing.never_slides;
         let mut energies = self.cable.motion.energies;
         let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
         self.cable.motion.energies = energies;

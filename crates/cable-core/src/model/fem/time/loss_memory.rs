@@ -96,7 +96,6 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
     let stiffness = viscous + loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
     let part = viscous / stiffness;
     losses.material_strain.clear();
-    let [growth, ..] = cable.motion.growth();
     for (e, &length) in mesh.rest_length.iter().enumerate() {
         if mesh.is_break(e) {
             losses.material_strain.push(0.0);
@@ -106,7 +105,7 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
         let path = if slides(e) {
             losses.predicted_length[e]
         } else {
-            (cable.motion.positions[e + 1] - cable.motion.positions[e]).norm() * growth
+            (cable.motion.positions[e + 1] - cable.motion.positions[e]).norm() * cable.motion.growth(mesh, e)[0]
         };
         let forces = mesh.branch_forces.of_bar(e);
         let slack_strain = -forces.iter().sum::<f64>() / ea;

@@ -71,8 +71,8 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         *loss = [taut, folds * l * l.sqrt()];
     }
     // Lengths of earlier steps count as those of a bar that was as long unstretched as now.
-    let growth = m.growth();
     for e in 0..mesh.rest_length.len() {
+        let growth = m.growth(mesh, e);
         input.losses.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
             mesh.path(e, &m.positions).length * growth[0]
         } else {
@@ -93,7 +93,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         };
     }
     for &(bar, length) in &input.losses.lengths_at_wheels {
-        input.losses.predicted_length[bar] = length * growth[0];
+        input.losses.predicted_length[bar] = length * m.growth(mesh, bar)[0];
     }
     loss_memory::add(cable, h, rate, decay);
     loss_memory::add_to_bends(cable, h, decay);

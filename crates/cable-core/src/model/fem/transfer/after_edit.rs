@@ -6,10 +6,13 @@
 //! posts with 10 N for 18 N.
 
 use crate::contact::geometry::{Body, Geometry};
-use crate::math::Vec2;
-use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
+use crate::math::{Vec2, perp};
+use crate::model::fem::first_shape::depenetrate;
+use crate::model::fem::mesh::{BarEnd, PUSHED_OUT_REACHES, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::remesh::{even_out, insert};
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
+use crate::model::fem::transfer::stretched_bars::StretchedBars;
 use crate::model::length_change::LengthChange;
 use crate::model::smoothed_target::SmoothedTarget;
 use crate::problem::{PointLoad, Problem, SupportPoint};
@@ -18,6 +21,8 @@ use crate::problem::{PointLoad, Problem, SupportPoint};
 /// laid on the edited scene anew. Smaller: more edits of obstacles forget the history; larger: a
 /// cable is stretched by a long way at once. A choice, tuned on no campaign.
 const MAX_WAY_BARS: f64 = 1.0;
+/// Distance from an obstacle from which a node does not lie on it, in reaches of the barrier.
+const FREE_REACHES: f64 = 2.0;
 /// Part of the cable's length by which two places of a support, or of a corner, differ by rounding.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
@@ -87,13 +92,17 @@ fn are_divided_alike(a: &CableState, b: &CableState) -> bool {
             && s.holds_from(now) == t.holds_from(now)
     };
     let load = |(s, t): (&PointLoad, &PointLoad)| same_place(s.arc_length, t.arc_length);
-    // A number of bars that nobody gives goes with the length.
-    let same_bars = a.meshing.even_bars == b.meshing.even_bars || longer != 1.0 && p.cable.segments == q.cable.segments;
-    same_bars
-        && p.supports.len() == q.supports.len()
+    p.supports.len() == q.supports.len()
         && p.supports.iter().zip(&q.supports).all(support)
         && p.loads.len() == q.loads.len()
         && p.loads.iter().zip(&q.loads).all(load)
+}
+
+/// True if the cable `a` is to have another number of bars than `b`. A number that
+/// nobody gives goes with the length.
+fn has_other_bars(a: &CableState, b: &CableState) -> bool {
+    let same_length = a.problem.length == b.problem.length;
+    a.meshing.even_bars != b.meshing.even_bars && (same_length || a.problem.cable.segments != b.problem.cable.segments)
 }
 
 /// True if the mesh of the cable `b` can serve for `a`: its mass is lumped if that of `a` is, and
@@ -115,17 +124,15 @@ fn have_same_outline(a: &Problem, b: &Problem) -> bool {
     }
 }
 
-/// A cable that goes on after an edit.
-pub(in crate::model::fem) struct EditedCable {
-    pub(in crate::model::fem) cable: CableState,
-    /// True if an obstacle that it lies round took it along at once: in motion that is a blow.
-    pub(in crate::model::fem) was_moved: bool,
-}
-
 /// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
 /// its mesh, or an obstacle now stands where the cable is.
-pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<EditedCable> {
+pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<CableState> {
     if !are_divided_alike(new, old) || !can_share_a_mesh(new, old) || old.mesh.breaks().next().is_some() {
+        return None;
+    }
+    // A cable that rubs on nothing has no memory that another mesh would lose.
+    let other_bars = has_other_bars(new, old);
+    if other_bars && !old.can_rub() {
         return None;
     }
     let mut cable = old.clone();
@@ -143,7 +150,7 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
         outline.shape.clone_from(&edited.shape);
     }
     place_outline(&mut cable);
-    let mut was_moved = false;
+    let stretched_before = StretchedBars::of(&cable);
     let edited = EditedObstacles { before: old.problem.world.geometry(), after: new.problem.world.geometry() };
     cable.contacts.change_features(|feature| edited.feature(feature));
     for k in 0..cable.mesh.nodes() {
@@ -154,20 +161,49 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
             if way.norm() > MAX_WAY_BARS * cable.even() {
                 return None;
             }
-            was_moved |= way.norm() > SAME_PLACE_FRACTION * new.problem.length;
             cable.motion.shift(k, way);
         }
         cable.mesh.sliding[k] = now;
     }
-    let check = IntersectionCheck::of(&cable);
-    if !edited.adds_nothing() && (check.refuse_buried().is_err() || !check.cuts_nothing()) {
+    if !edited.adds_nothing() && is_inside_something(&cable) {
+        push_out(&mut cable)?;
+    }
+    stretched_before.restore(&mut cable);
+    // Nodes of a cable that can meet itself neither come nor go.
+    if other_bars && !cable.contacts.self_contacts.shape.is_on() {
+        (cable.meshing.even_bars, cable.meshing.bar_weight) = (new.meshing.even_bars, new.meshing.bar_weight);
+        divide_anew(&mut cable);
+    }
+    if !edited.adds_nothing() && is_inside_something(&cable) {
         return None;
     }
     let x = std::mem::take(&mut cable.motion.positions);
     cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
     cable.motion.positions = x;
     renew_input(&mut cable);
-    Some(EditedCable { cable, was_moved })
+    Some(cable)
+}
+
+fn is_inside_something(cable: &CableState) -> bool {
+    let check = IntersectionCheck::of(cable);
+    check.refuse_buried().is_err() || !check.cuts_nothing()
+}
+
+/// Pushes the nodes of the material out of obstacles that were put there, with their history; None
+/// if one would go farther than a bar.
+fn push_out(cable: &mut CableState) -> Option<()> {
+    let mut pushed = cable.motion.positions.clone();
+    depenetrate(&cable.problem, &cable.mesh, &mut pushed, PUSHED_OUT_REACHES * cable.contacts.barrier.reach);
+    for (k, to) in pushed.into_iter().enumerate() {
+        let way = to - cable.motion.positions[k];
+        if way.norm() > MAX_WAY_BARS * cable.even() {
+            return None;
+        }
+        if cable.mesh.sliding[k].is_none() {
+            cable.motion.shift(k, way);
+        }
+    }
+    Some(())
 }
 
 /// Lets supports that are drawn begin where they are, as fast as they are.
@@ -203,6 +239,66 @@ fn change_length(cable: &mut CableState, before_m: f64) {
     }
 }
 
+/// Divides the bars that are too long for the mesh, and removes the nodes that it can spare. The
+/// new nodes lie on the curve of the cable: on the straight bars they would fall until the bars are
+/// bent like it. Every bar keeps its tension, so it is a little longer unstretched than its
+/// material, which fades.
+fn divide_anew(cable: &mut CableState) {
+    let stretched_before = StretchedBars::of(cable);
+    let even = cable.even();
+    for e in (0..cable.mesh.rest_length.len()).rev() {
+        let pieces = (cable.mesh.straight_length(e, &cable.motion.positions) / even).round() as usize;
+        if pieces > 1 {
+            divide(cable, e, pieces);
+        }
+    }
+    even_out(cable);
+    stretched_before.restore(cable);
+}
+
+/// Divides a bar into even pieces.
+fn divide(cable: &mut CableState, e: usize, pieces: usize) {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let path = mesh.path(e, x);
+    let lead = path.arcs[0] * mesh.end(e, x).radius;
+    let (first, material) = (mesh.arc_length[e], mesh.arc_length[e + 1] - mesh.arc_length[e]);
+    let curvature = curvature(cable, e);
+    let outward = perp(path.direction) * (-0.5 * curvature * path.straight * path.straight);
+    for j in 1..pieces {
+        let part = j as f64 / pieces as f64;
+        let at = first + (lead + part * path.straight) / path.length * material;
+        insert(cable, e + j, at, None);
+    }
+    let on_chord = cable.motion.clone();
+    for j in 1..pieces {
+        let part = j as f64 / pieces as f64;
+        cable.motion.shift(e + j, outward * (part * (1.0 - part)));
+    }
+    let check = IntersectionCheck::of(cable);
+    if !(e..e + pieces).all(|bar| check.is_clear(bar)) {
+        cable.motion = on_chord;
+    }
+}
+
+/// Curvature of the cable along a bar, 1/m: the smaller of those at its ends, none where they
+/// differ in sign. A cable is bent by what it lies on in one point.
+fn curvature(cable: &CableState, e: usize) -> f64 {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let at = |k: usize| {
+        let is_inside = k > 0 && k + 1 < mesh.nodes() && mesh.is_free(k);
+        let is_free =
+            is_inside && cable.problem.world.signed_gap(x[k], FREE_REACHES * cable.contacts.barrier.reach).is_none();
+        let beside = || 0.5 * (mesh.straight_length(k - 1, x) + mesh.straight_length(k, x));
+        is_free.then(|| mesh.turn(k, x) / beside())
+    };
+    let smaller_of = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
+    match (at(e), at(e + 1)) {
+        (Some(a), Some(b)) if a * b > 0.0 => smaller_of(a, b),
+        (Some(a), None) | (None, Some(a)) => a,
+        _ => 0.0,
+    }
+}
+
 /// Gives a cable the material, the supports and the loads of `new`.
 fn adopt_material(cable: &mut CableState, new: &CableState) {
     let mesh = &mut cable.mesh;
@@ -210,7 +306,7 @@ fn adopt_material(cable: &mut CableState, new: &CableState) {
     (mesh.axial_stiffness, mesh.bending_stiffness) = (new.mesh.axial_stiffness, new.mesh.bending_stiffness);
     let (meshing, edited) = (&mut cable.meshing, &new.meshing);
     (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
-    meshing.bar_weight = edited.bar_weight;
+    meshing.bar_weight = edited.bar_weight * (edited.even_bars as f64 / meshing.even_bars as f64);
     for (load, edited) in meshing.loads.iter_mut().zip(&edited.loads) {
         load.1.clone_from(&edited.1);
     }

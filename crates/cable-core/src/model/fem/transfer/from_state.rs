@@ -39,27 +39,6 @@ fn farthest(cable: &CableState, e: usize, state: &State) -> Option<(f64, Vec2)> 
     (off(&farthest.1) > cable.problem.radius).then_some(farthest)
 }
 
-/// Gives a cable the velocities that it had before its nodes were balanced anew: to nodes of the
-/// material those of their place in it, to sliding nodes the rate of the nearest one that slid over
-/// the same thing.
-pub(in crate::model::fem) fn move_as_before(cable: &mut CableState, before: &CableState) {
-    let state = before.state();
-    for (k, &s) in cable.mesh.arc_length.iter().enumerate() {
-        let Some(node) = &cable.mesh.sliding[k] else {
-            cable.motion.velocities[k] = state.velocity_at(s).unwrap_or_default();
-            continue;
-        };
-        let slid = before.mesh.sliding.iter().zip(&before.mesh.arc_length).enumerate();
-        let alike = slid.filter(|(_, (old, _))| old.is_some_and(|old| old.slide_over == node.slide_over));
-        let nearest = alike.min_by(|(_, (_, a)), (_, (_, b))| (**a - s).abs().total_cmp(&(**b - s).abs()));
-        if let Some((j, _)) = nearest {
-            cable.motion.slide_rates[k] = before.motion.slide_rates[j];
-            cable.motion.velocities[k] = before.motion.velocities[j];
-        }
-    }
-    cable.forget_history();
-}
-
 /// Removes all sliding nodes.
 pub(in crate::model::fem) fn remove_all_sliding_nodes(cable: &mut CableState) {
     let mut k = 1;

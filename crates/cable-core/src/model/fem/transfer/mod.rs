@@ -3,6 +3,7 @@
 //! | room | content |
 //! |---|---|
 //! | `after_edit.rs` | continues on the same mesh after an edit of the scene |
+//! | `stretched_bars.rs` | bars of an edited mesh keep their tension |
 //! | `from_state.rs` | adopts a state of another mesh or model |
 //! | `from_solution.rs` | adopts an answer with its tensions: sliding nodes, stretch, friction
 //! anchors |
@@ -10,6 +11,7 @@
 pub(in crate::model::fem) mod after_edit;
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
+mod stretched_bars;
 
 use std::sync::Arc;
 
@@ -21,12 +23,12 @@ use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::remesh::change_wheels;
 use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::{Drag, EditedCable, after_edit};
+use crate::model::fem::transfer::after_edit::{Drag, after_edit};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
-use crate::model::fem::transfer::from_state::{follow_corners, move_as_before, remove_all_sliding_nodes};
+use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -107,7 +109,7 @@ impl Stepper {
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
         let pulled = &self.hand_drive.pulled;
         let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
-        let Some(EditedCable { cable, was_moved }) = after_edit(&old.cable, &self.cable, &drags) else { return false };
+        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else { return false };
         self.cable = cable;
         let heavier = self.cable.problem.linear_density * self.cable.problem.length
             / (old.cable.problem.linear_density * old.cable.problem.length);
@@ -117,16 +119,6 @@ impl Stepper {
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);
         self.rested = true;
-        if !was_moved {
-            return true;
-        }
-        let moved = self.cable.clone();
-        if self.come_to_rest(dragged) {
-            // It was balanced where it is; what moved it goes on.
-            move_as_before(&mut self.cable, &moved);
-        } else if self.settle(dragged).is_err() {
-            self.cable = moved;
-        }
         true
     }
 

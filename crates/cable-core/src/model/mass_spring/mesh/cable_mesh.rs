@@ -102,7 +102,9 @@ impl Mesh {
         let [before, after] = [places(p, longer), places(q, 1.0)];
         let same_count = before.len() == after.len();
         let same_kind = (p.bending_stiffness > 0.0) == (q.bending_stiffness > 0.0);
-        (self.even_length * longer - other.even_length).abs() <= SAME_PLACE_FRACTION * other.even_length
+        let same_nodes =
+            (self.even_length * longer - other.even_length).abs() <= SAME_PLACE_FRACTION * other.even_length;
+        (same_nodes || other.keeps_nodes(self.position.len()))
             && p.supports.iter().map(support).eq(q.supports.iter().map(support))
             && same_count
             && same_kind
@@ -244,10 +246,15 @@ impl Mesh {
         let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
         let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
         let apart = s.windows(2).all(|w| w[1] - w[0] >= self.tuning.mesh.min_spacing_lengths * self.even_length);
+        (self.keeps_nodes(s.len()) && apart && marks.into_iter().all(fits)).then(|| s.clone())
+    }
+
+    /// True if a cable that can lie on something keeps as many nodes as it has, on other nodes it
+    /// would be laid anew.
+    fn keeps_nodes(&self, count: usize) -> bool {
         let wanted = self.problem.length / self.even_length;
-        let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
-        let plain = self.wheels.pulleys.is_empty() && !self.problem.world.is_empty();
-        (plain && apart && many && marks.into_iter().all(fits)).then(|| s.clone())
+        let many = (0.5 * wanted..=2.0 * wanted).contains(&(count as f64 - 1.0));
+        many && self.wheels.pulleys.is_empty() && !self.problem.world.is_empty()
     }
 
     /// Geometry of element `e` now.
