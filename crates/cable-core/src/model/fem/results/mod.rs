@@ -50,7 +50,7 @@ fn solution_now(d: &CableState) -> CableSolution {
         momentum: d.motion.account.report().filter(|_| d.motion.inertia_counts()),
         energy_account: d.motion.energies.report(d.motion.time),
         breaks: d.mesh.breaks().map(|e| e + 1).collect(),
-        unstretched_length_m: d.motion.length_change.map(|_| d.mesh.thermal_stretch * problem.length),
+        unstretched_length_m: d.changes_length().then(|| d.mesh.rest_length.iter().sum()),
         ..CableSolution::default()
     }
 }
