@@ -57,8 +57,10 @@ fn issue_016_an_edit_that_does_not_concern_the_cable_changes_nothing() {
             let Some(run) = run(scene.clone(), model, inertia, 0.5) else { continue };
             for edited in [scene.clone(), with_a_post_far_away(scene.clone())] {
                 let [alone, edited] = compared(&run, edited, inertia);
-                // Without inertia a cable that touches nothing is solved anew.
-                let most = if inertia == Inertia::Dynamic { 0.0 } else { 1e-9 };
+                // Without inertia a cable that touches nothing is solved anew, and one that lies
+                // still is watched anew before its motion ends.
+                let lies_still = alone.windows(2).any(|pair| pair[0] == pair[1]);
+                let most = if inertia == Inertia::Dynamic && !lies_still { 0.0 } else { 1e-9 };
                 let same = |(a, b): (&f64, &f64)| (b - a).abs() <= most * a;
                 let same = alone.len() == edited.len() && alone.iter().zip(&edited).all(same);
                 assert!(same, "{name} {model:?} {inertia:?}: {alone:?} {edited:?}");

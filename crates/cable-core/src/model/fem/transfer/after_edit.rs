@@ -23,6 +23,10 @@ use crate::problem::{PointLoad, Problem, SupportPoint};
 const MAX_WAY_BARS: f64 = 1.0;
 /// Distance from an obstacle from which a node does not lie on it, in reaches of the barrier.
 const FREE_REACHES: f64 = 2.0;
+/// Turn at a node from which the cable counts as folded there, rad. Larger: new nodes beside a fold
+/// lie far from the bars; smaller: those of coarse meshes lie on the bars, and fall. A choice,
+/// tuned on no campaign.
+const MAX_CURVED_TURN_RAD: f64 = 0.5;
 /// Part of the cable's length by which two places of a support, or of a corner, differ by rounding.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
 
@@ -150,7 +154,7 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
         outline.shape.clone_from(&edited.shape);
     }
     place_outline(&mut cable);
-    let stretched_before = StretchedBars::of(&cable);
+    let (stretched_before, mut was_moved) = (StretchedBars::of(&cable), false);
     let edited = EditedObstacles { before: old.problem.world.geometry(), after: new.problem.world.geometry() };
     cable.contacts.change_features(|feature| edited.feature(feature));
     for k in 0..cable.mesh.nodes() {
@@ -161,14 +165,18 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
             if way.norm() > MAX_WAY_BARS * cable.even() {
                 return None;
             }
+            was_moved |= way.norm() > SAME_PLACE_FRACTION * new.problem.length;
             cable.motion.shift(k, way);
         }
         cable.mesh.sliding[k] = now;
     }
     if !edited.adds_nothing() && is_inside_something(&cable) {
         push_out(&mut cable)?;
+        was_moved = true;
     }
-    stretched_before.restore(&mut cable);
+    if was_moved {
+        stretched_before.restore(&mut cable);
+    }
     // Nodes of a cable that can meet itself neither come nor go.
     if other_bars && !cable.contacts.self_contacts.shape.is_on() {
         (cable.meshing.even_bars, cable.meshing.bar_weight) = (new.meshing.even_bars, new.meshing.bar_weight);
@@ -281,7 +289,7 @@ fn divide(cable: &mut CableState, e: usize, pieces: usize) {
 }
 
 /// Curvature of the cable along a bar, 1/m: the smaller of those at its ends, none where they
-/// differ in sign. A cable is bent by what it lies on in one point.
+/// differ in sign. Folds, and what a cable lies on, bend it in one point.
 fn curvature(cable: &CableState, e: usize) -> f64 {
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let at = |k: usize| {
@@ -289,7 +297,8 @@ fn curvature(cable: &CableState, e: usize) -> f64 {
         let is_free =
             is_inside && cable.problem.world.signed_gap(x[k], FREE_REACHES * cable.contacts.barrier.reach).is_none();
         let beside = || 0.5 * (mesh.straight_length(k - 1, x) + mesh.straight_length(k, x));
-        is_free.then(|| mesh.turn(k, x) / beside())
+        let turn = if is_free { mesh.turn(k, x) } else { f64::INFINITY };
+        (turn.abs() < MAX_CURVED_TURN_RAD).then(|| turn / beside())
     };
     let smaller_of = |a: f64, b: f64| if a.abs() < b.abs() { a } else { b };
     match (at(e), at(e + 1)) {

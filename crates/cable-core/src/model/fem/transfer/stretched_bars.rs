@@ -26,7 +26,7 @@ impl StretchedBars {
     }
 
     /// Gives the bars of the edited cable the stretch that their material had. A flexible bar that
-    /// was slack keeps its material.
+    /// was slack stays slack, with its own material if that is enough.
     pub(in crate::model::fem) fn restore(&self, cable: &mut CableState) {
         let (mesh, x) = (&mut cable.mesh, &cable.motion.positions);
         for e in 0..mesh.rest_length.len() {
@@ -35,10 +35,11 @@ impl StretchedBars {
             if mesh.is_break(e) || self.has_bar(ends, lengths) {
                 continue;
             }
-            let Some(stretch) = self.mean(ends).filter(|stretch| *stretch > 1.0 || !mesh.is_flexible()) else {
-                continue;
-            };
-            mesh.set_rest_length(e, lengths[0] / stretch);
+            let Some(stretch) = self.mean(ends) else { continue };
+            let unstretched = lengths[0] / stretch;
+            if stretch > 1.0 || !mesh.is_flexible() || unstretched > lengths[1] {
+                mesh.set_rest_length(e, unstretched);
+            }
         }
         if mesh.has_excess() {
             cable.motion.earlier_excess = [1.0; 3];
