@@ -8,6 +8,7 @@
 
 use cable_core::contact::World;
 use cable_core::math::vec2;
+use cable_core::scene::Cable;
 use cable_core::{Model, Simulation, SolveError};
 
 use crate::worker::request::Edit;
@@ -128,17 +129,30 @@ const SEARCH_RADIUS_M: f64 = 1e3;
 /// instead.
 #[must_use]
 pub fn penetrates_new_obstacle(edit: &Edit, old: &Simulation) -> bool {
+    reaches_into_new_obstacle(edit, old, |cable, _| 0.5 * cable.diameter_m)
+}
+
+/// Returns whether a moving cable would lie inside such an obstacle by more than one of its bars:
+/// by less the obstacle takes it along, and the motion goes on.
+#[must_use]
+pub fn is_left_inside_new_obstacle(edit: &Edit, old: &Simulation) -> bool {
+    reaches_into_new_obstacle(edit, old, |cable, nodes| cable.length_m / (nodes as f64 - 1.0))
+}
+
+/// Returns whether a cable lies inside a new obstacle by more than a depth (m), which depends on
+/// the cable and on the number of its nodes.
+fn reaches_into_new_obstacle(edit: &Edit, old: &Simulation, depth: impl Fn(&Cable, usize) -> f64) -> bool {
     let obstacles = &edit.scene.obstacles;
     if *obstacles == old.scene().obstacles {
         return false;
     }
     edit.scene.cables.iter().zip(old.states()).any(|(cable, state)| {
-        let radius = 0.5 * cable.diameter_m;
-        let world = World::new(obstacles, cable.friction, radius);
+        let depth = depth(cable, state.position_m.len());
+        let world = World::new(obstacles, cable.friction, 0.5 * cable.diameter_m);
         // Ends are where their supports are.
         let inner = state.position_m.len().saturating_sub(2);
         let mut points = state.position_m.iter().skip(1).take(inner);
-        points.any(|&p| world.signed_gap(p, SEARCH_RADIUS_M).is_some_and(|gap| gap.gap_m < -radius))
+        points.any(|&p| world.signed_gap(p, SEARCH_RADIUS_M).is_some_and(|gap| gap.gap_m < -depth))
     })
 }
 

@@ -358,6 +358,31 @@ fn a_support_that_is_moved_after_a_pause_goes_on_with_the_run() {
     assert!((after / before - 1.0).abs() < 0.1, "{before} and {after} N");
 }
 
+/// A pipe that was drawn into its cable by more than the cable's radius in a frame began the run
+/// anew while time ran, with a cable that fell on it.
+#[test]
+fn issue_020_an_obstacle_drawn_into_its_cable_while_time_runs_takes_it_along() {
+    let scene = catalog::draped_slipping();
+    let pipe = scene.obstacles.iter().position(|o| matches!(o.shape, Shape::Circle { .. })).unwrap();
+    let Shape::Circle { center_m, .. } = scene.obstacles[pipe].shape else { panic!("a pipe") };
+    let radius_m = 0.5 * scene.cables[0].diameter_m;
+    let mut harness = open(scene);
+    harness.key_press(Key::Space);
+    harness.run_steps(150);
+    let before = answer(&harness);
+    for k in 1..=8 {
+        let far = 2.0 * radius_m * f64::from(k);
+        let item = Item::Obstacle(pipe);
+        apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [center_m[0], center_m[1] + far] }));
+        harness.run_steps(3);
+        let after = answer(&harness);
+        assert!(after.time_s > before.time_s, "move {k}: {} s", after.time_s);
+        let [before, after] = [&before, &after].map(|answer| answer.max_tension().tension_n);
+        assert!(after < 4.0 * before, "move {k}: {after} N for {before} N");
+    }
+    assert!(harness.query_by_label("Undo restart").is_none());
+}
+
 /// A robot that was moved after a pause began the run anew, and what had been recorded was gone
 /// without a word.
 #[test]

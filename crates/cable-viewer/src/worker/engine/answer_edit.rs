@@ -136,9 +136,11 @@ impl Engine {
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
         let question = if moves { MOTION } else { Question::Rest };
         let mut is_new_scene = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
+        let is_playing = time_s > 0.0 && !self.playback.paused;
+        let stays_inside = if is_playing { draft::is_left_inside_new_obstacle } else { draft::penetrates_new_obstacle };
         if let Some(old) = old
             && draft::same_cables(edit, old)
-            && !draft::penetrates_new_obstacle(edit, old)
+            && !stays_inside(edit, old)
         {
             let mut carried = is_new_scene.clone();
             if carried.carry(old).is_ok() {
