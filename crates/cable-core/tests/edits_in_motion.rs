@@ -290,6 +290,7 @@ fn issue_016_a_moved_obstacle_does_not_strike_its_cable() {
     }
     let cable = &scene.cables[0];
     let jerk = 0.009 / 0.05 * (cable.axial_stiffness_n * cable.linear_density_kg_per_m).sqrt();
+    println!("{most:.1} N for {before:.1} N");
     assert!(most < before + jerk, "{most:.1} N for {before:.1} N and {jerk:.1} N");
 }
 
@@ -319,6 +320,7 @@ fn issue_016_other_segments_keep_tension_and_friction() {
                 scene.cables[0].segments = Some((factor * bars as f64).round() as usize);
                 let [alone, edited] = compared(&run, scene, Inertia::Dynamic);
                 let off = alone.iter().zip(&edited).map(|(a, b)| (b - a).abs() / a).fold(0.0, f64::max);
+                println!("{name} {model:?} ×{factor}: {off:.4}");
                 assert!(alone.len() == edited.len() && off <= most, "{name} {model:?} ×{factor}: {alone:?} {edited:?}");
             }
         }

@@ -19,7 +19,7 @@ use crate::state::State;
 /// Time in which the excess of unstretched lengths fades by a factor e, s. Smaller: the tension
 /// changes like a blow; larger: the cable is longer or shorter than its scene says. A choice, tuned
 /// on no campaign.
-const EXCESS_TIME_S: f64 = 0.1;
+const EXCESS_TIME_S: f64 = 0.2;
 
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
