@@ -1,6 +1,6 @@
 //! An edit of the mesh keeps the tension of every bar.
 //!
-//! A bar that takes the place of two is shorter than they were, one that runs over a corner is
+//! A bar that takes the place of two is shorter than they were, one that an obstacle takes along is
 //! longer, and their material is the same: they would be slacker or tauter at once, by 1.1 % for a
 //! bend of 0.3 rad. So each bar has an unstretched length of its own at first, which differs from
 //! that of its material by an excess that fades.
@@ -26,19 +26,22 @@ impl StretchedBars {
     }
 
     /// Gives the bars of the edited cable the stretch that their material had. A flexible bar that
-    /// was slack stays slack, with its own material if that is enough.
+    /// was slack stays slack: it keeps its material, or gets as much as it just needs.
     pub(in crate::model::fem) fn restore(&self, cable: &mut CableState) {
         let (mesh, x) = (&mut cable.mesh, &cable.motion.positions);
         for e in 0..mesh.rest_length.len() {
             let lengths = [mesh.path(e, x).length, mesh.rest_length[e]];
             let ends = [mesh.arc_length[e], mesh.arc_length[e + 1]];
-            if mesh.is_break(e) || self.has_bar(ends, lengths) {
+            // A bar without unstretched length is a break.
+            if mesh.is_break(e) || lengths[0] == 0.0 || self.has_bar(ends, lengths) {
                 continue;
             }
-            let Some(stretch) = self.mean(ends) else { continue };
-            let unstretched = lengths[0] / stretch;
-            if stretch > 1.0 || !mesh.is_flexible() || unstretched > lengths[1] {
-                mesh.set_rest_length(e, unstretched);
+            match self.mean(ends) {
+                Some(stretch) if stretch > 1.0 || stretch > 0.0 && !mesh.is_flexible() => {
+                    mesh.set_rest_length(e, lengths[0] / stretch);
+                }
+                _ if lengths[0] > lengths[1] => mesh.set_rest_length(e, lengths[0]),
+                _ => (),
             }
         }
         if mesh.has_excess() {
