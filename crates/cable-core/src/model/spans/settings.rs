@@ -162,6 +162,10 @@ pub struct ContinuationSettings {
     /// touches only the obstacles that its route bends round. Smaller: it touches more than the
     /// taut string of the route. Larger: more steps from there.
     pub first_tension_weights: f64,
+    /// Tension of a second search, if the first finds nothing: corners that the string bends round
+    /// and the cable does not touch need more length than the first shrinkage. Smaller: those
+    /// corners remain. Larger: more steps.
+    pub second_tension_weights: f64,
     /// Fraction of the load that acts at first. Smaller: nothing gained. Larger: a long span sags
     /// into obstacles below it before they can be met step by step.
     pub first_load_fraction: f64,
@@ -317,7 +321,8 @@ impl Default for ContinuationSettings {
             missing_friction_fraction: 3e-4,
             landing_step_fraction: 1.0 / 64.0,
             max_pockets: 3,
-            first_tension_weights: 20.0,
+            first_tension_weights: 4.0,
+            second_tension_weights: 400.0,
             first_load_fraction: 1e-3,
             unused_cone_fractions: [1e-5, 1e-3, 1e-2],
             first_missing_part: 0.04,

@@ -11,16 +11,15 @@
 //!   cable that is not held at both ends would run away, and keeps its friction.
 //! - **Slack.** The spans of a slack cable are not determined by its ends. The cable is shrunk
 //!   until a tension of a few weights draws it taut along its route, and paid out again step by
-//!   step.
+//!   step; with more tension if the first was not enough.
+//! - **Tension.** A contact that would be compressed shows that the cable has no tension left there
+//!   ([`Failure::Compressed`]): only then may it lie loose on the ground.
 //! - **Posts as polygons.** A cable held by friction alone may pass between the points that
 //!   represent a post: such a cable gets more points ([`posts_seen_nearer`]).
-//!
-//! A cable may lie loose in all of them where it has no tension left. Three more shapes stood here:
-//! the whole cable without friction, one drawn tauter, and one that may lie loose. In 1180 random
-//! scenes the three that are left find as many equilibria.
 
 use crate::model::spans::initial::{POST_POLYGONS, PostPolygon};
 use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::settings::ContinuationSettings;
 
 /// A first shape from which an equilibrium is sought.
 #[derive(Clone, Copy, Debug)]
@@ -46,8 +45,10 @@ pub(in crate::model::spans) enum FirstFriction {
 pub(in crate::model::spans) enum FirstLength {
     /// All of it.
     Whole,
-    /// Shrunk until it is taut, then let out.
+    /// Shrunk to `first_tension_weights`, then let out.
     Taut,
+    /// Shrunk to `second_tension_weights`, then let out.
+    VeryTaut,
 }
 
 /// The places at which a cable may lie without tension.
@@ -55,8 +56,10 @@ pub(in crate::model::spans) enum FirstLength {
 pub(in crate::model::spans) enum SlackCable {
     /// The cable has tension everywhere.
     Nowhere,
-    /// A section may spread on the ground along its route, and cable may lie loose on a
-    /// frictionless contact where it has no tension left.
+    /// A section may spread on the ground along its route.
+    AlongRoute,
+    /// As `AlongRoute`, and cable may lie loose on a frictionless contact where it has no tension
+    /// left.
     WhereTensionEnds,
 }
 
@@ -64,7 +67,7 @@ pub(in crate::model::spans) enum SlackCable {
 pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
     friction: FirstFriction::FromTheStart,
     length: FirstLength::Whole,
-    slack: SlackCable::WhereTensionEnds,
+    slack: SlackCable::AlongRoute,
     posts: POST_POLYGONS[0],
 };
 
@@ -72,18 +75,23 @@ pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
 pub(super) const TAUT: FirstShape = FirstShape { length: FirstLength::Taut, ..ALONG_ROUTE };
 
 /// The first shapes in the order in which they are tried, each with the reason for it.
-pub(super) const FIRST_SHAPES: [FirstShape; 3] = [
+pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
     ALONG_ROUTE,
     // Friction holds no equilibrium near the route.
+    FirstShape { friction: FirstFriction::OnceAtRest, ..ALONG_ROUTE },
+    // Slack keeps Newton's method from the frictionless equilibrium.
     FirstShape { friction: FirstFriction::OnceAtRest, ..TAUT },
+    // A contact would be compressed, so the cable there has no tension.
+    FirstShape { slack: SlackCable::WhereTensionEnds, ..ALONG_ROUTE },
     // Slack keeps Newton's method from the equilibrium with friction.
     TAUT,
+    // A stiff cable stretches so little that a few weights do not draw it taut.
+    FirstShape { friction: FirstFriction::OnceAtRest, length: FirstLength::VeryTaut, ..ALONG_ROUTE },
 ];
 
 /// The first shapes that are tried after [`FIRST_SHAPES`] if friction alone holds a section.
 pub(super) fn posts_seen_nearer(layout: &SectionLayout) -> impl Iterator<Item = FirstShape> {
-    let tried = |shape: &FirstShape| shape.posts == POST_POLYGONS[0];
-    shapes_with_friction(layout).into_iter().filter(move |shape| !tried(shape))
+    shapes_with_friction(layout).into_iter().skip(1)
 }
 
 /// The first shapes with friction from which the friction that a cable needs is found.
@@ -92,4 +100,15 @@ pub(in crate::model::spans) fn shapes_with_friction(layout: &SectionLayout) -> V
     let rings = if held_by_friction { &POST_POLYGONS[..] } else { &POST_POLYGONS[..1] };
     let shapes = rings.iter().map(|posts| FirstShape { posts: *posts, ..ALONG_ROUTE });
     shapes.chain(held_by_friction.then_some(TAUT)).collect()
+}
+
+impl FirstLength {
+    /// The tension, in weights of the cable, to which it is shrunk; None if it is not shrunk.
+    pub(super) fn tension_weights(self, tuned: &ContinuationSettings) -> Option<f64> {
+        match self {
+            Self::Whole => None,
+            Self::Taut => Some(tuned.first_tension_weights),
+            Self::VeryTaut => Some(tuned.second_tension_weights),
+        }
+    }
 }

@@ -81,13 +81,16 @@ impl CableEquilibrium {
         let with_friction = start != SearchStart::Frictionless && instant.friction > 0.0;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let context = layout.context(layout.curves(), instant);
-        let (mut first, mut stopped, mut loose) = (None, None, None);
+        let (mut first, mut stopped, mut pushes, mut loose) = (None, None, false, None);
         for shape in FIRST_SHAPES.into_iter().chain(posts_seen_nearer(layout)) {
             let begin = match shape.friction {
                 FirstFriction::FromTheStart => instant,
                 FirstFriction::OnceAtRest => &smooth,
             };
             if !(if begin.friction > 0.0 { with_friction } else { without_friction }) {
+                continue;
+            }
+            if shape.slack == SlackCable::WhereTensionEnds && !pushes {
                 continue;
             }
             let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
@@ -105,6 +108,7 @@ impl CableEquilibrium {
                     return Ok((cable_equilibrium, taken));
                 }
                 Err(failure) => {
+                    pushes |= matches!(failure, Failure::Compressed { .. });
                     if shape.length != FirstLength::Whole && stopped.is_none() {
                         stopped =
                             Some(NotFound { failure: failure.clone(), let_out: Some(Box::new(cable_equilibrium)) });
