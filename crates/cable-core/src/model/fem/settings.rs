@@ -426,9 +426,9 @@ impl Default for OutlineTuning {
 /// Constants of changes of the mesh between steps. Lengths of bars are in even bars.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RemeshTuning {
-    /// Turn below which a corner gets no sliding node and the barrier carries the cable, rad: there
-    /// a chain jerks by less than 1e-3 of its tension. Smaller: sliding nodes on every facet of the
-    /// ground. Larger: jerks.
+    /// Turn below which a corner gets no sliding node and the barrier carries the cable, and a
+    /// spare node is removed, rad: there a chain jerks by less than 1e-3 of its tension. Smaller:
+    /// sliding nodes on every facet of the ground. Larger: jerks.
     pub min_turn_rad: f64,
     /// Shortest bar beside a sliding node. Smaller: the matrix is worse. Larger: nodes come and go
     /// all the time.

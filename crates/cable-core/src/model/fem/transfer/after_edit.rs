@@ -1,5 +1,5 @@
-//! This module continues a cable after an edit of its scene, on the same mesh and with all that it
-//! remembers: its history, its loss, and its friction.
+//! This module continues a cable after an edit of its scene, on the same mesh, divided anew for
+//! other segments, and with all that it remembers: its history, its loss, and its friction.
 //!
 //! A mesh of its own, on which the cable would be laid anew, has nodes elsewhere and bars of other
 //! strains: an edit of nothing pulled a cable drawn over a beam with 83 N for 108 N, and one round
@@ -17,9 +17,9 @@ use crate::model::length_change::LengthChange;
 use crate::model::smoothed_target::SmoothedTarget;
 use crate::problem::{PointLoad, Problem, SupportPoint};
 
-/// Greatest way that a sliding node is moved with its corner, in even bars: beyond it the cable is
-/// laid on the edited scene anew. Smaller: more edits of obstacles forget the history; larger: a
-/// cable is stretched by a long way at once. A choice, tuned on no campaign.
+/// Greatest way that an obstacle put elsewhere takes a node along, in even bars: beyond it the
+/// cable is laid on the edited scene anew. Smaller: more edits of obstacles forget the history;
+/// larger: a cable is stretched by a long way at once. A choice, tuned on no campaign.
 const MAX_WAY_BARS: f64 = 1.0;
 /// Distance from an obstacle from which a node does not lie on it, in reaches of the barrier.
 const FREE_REACHES: f64 = 2.0;

@@ -249,7 +249,7 @@ impl Mesh {
         (self.keeps_nodes(s.len()) && apart && marks.into_iter().all(fits)).then(|| s.clone())
     }
 
-    /// True if a cable that can lie on something keeps as many nodes as it has, on other nodes it
+    /// True if a cable that can lie on something keeps its nodes, which are so many: on others it
     /// would be laid anew.
     fn keeps_nodes(&self, count: usize) -> bool {
         let wanted = self.problem.length / self.even_length;
