@@ -5,8 +5,27 @@
 //! caught; hauled in by 1 % it broke, with 20 kN. A winch does neither.
 
 use super::smoothed_target::{EDIT_SPEED, SmoothedTarget};
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::problem::Problem;
+
+/// Time in which the excess of unstretched lengths fades by a factor e, s, or longer where the
+/// cable would change its length faster than by [`EDIT_SPEED`]. Smaller: the tension changes like a
+/// blow; larger: the cable is longer or shorter than its scene says. A choice, tuned on no
+/// campaign.
+const EXCESS_TIME_S: f64 = 0.2;
+/// Excess of an unstretched length, as a fraction of it, below which it is that of the material.
+/// Larger: tensions jump by EA times as much where an excess ends; smaller: it takes longer to end.
+pub(crate) const LEAST_EXCESS: f64 = 1e-9;
+
+/// Least length with which a slack bar or spring begins to push, of its unstretched length.
+/// Smaller: it grows from a point; larger: it pushes at once. A choice, tuned on no campaign.
+pub(crate) const MIN_UNSTRESSED_FRACTION: f64 = 0.01;
+
+/// The part of the excess of unstretched lengths, of which the sizes add up to `whole_m` (m), that
+/// is left after `dt_s` (s).
+pub(crate) fn excess_left(whole_m: f64, dt_s: f64) -> f64 {
+    (-dt_s / larger(EXCESS_TIME_S, whole_m / EDIT_SPEED)).exp()
+}
 
 /// The unstretched length of a cable on its way to that of its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs` | the choice of a model |
 //! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
-//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `length_change.rs`, `arc_nodes.rs`, `material_loss.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `length_change.rs`, `bending_change.rs`, `arc_nodes.rs`, `material_loss.rs`, `mobilised_friction.rs`, `auxiliary_weight.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: the equilibrium of a cable ([`Mechanics::settle`]), and
@@ -18,6 +18,7 @@
 mod arc_nodes;
 pub(crate) mod auto;
 mod auxiliary_weight;
+mod bending_change;
 pub mod catenary;
 pub mod fem;
 pub mod hand;

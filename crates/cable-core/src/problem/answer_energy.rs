@@ -19,7 +19,7 @@ impl Energy {
         let elements = answer.pieces().flat_map(|piece| piece.windows(2));
         elements
             .filter_map(|pair| if let [a, b] = pair { Some((a, b)) } else { None })
-            .map(|(a, b)| element(problem, a, b))
+            .map(|(a, b)| element(problem, answer.assumptions.bending_stiffness_n_m2, a, b))
             .sum()
     }
 }
@@ -29,7 +29,7 @@ fn product(a: [f64; 2], b: [f64; 2], ds: f64) -> f64 {
     ds * (2.0 * a[0] * b[0] + a[0] * b[1] + a[1] * b[0] + 2.0 * a[1] * b[1]) / 6.0
 }
 
-fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
+fn element(problem: &Problem, bending_stiffness: f64, a: &Node, b: &Node) -> Energy {
     let ds = b.arc_length_m - a.arc_length_m;
     let speed = squared(a.vx_m_per_s, b.vx_m_per_s, ds) + squared(a.vy_m_per_s, b.vy_m_per_s, ds);
     let stretch = squared(a.tension_n, b.tension_n, ds) / problem.axial_stiffness;
@@ -43,6 +43,6 @@ fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
         gravity_j: -problem.weight.y * height,
         // Strain by tension is T/EA of a length that temperature has changed.
         stretch_j: 0.5 * problem.thermal_stretch * (stretch - relaxed),
-        bending_j: 0.5 * problem.bending_stiffness * squared(a.curvature_per_m, b.curvature_per_m, ds),
+        bending_j: 0.5 * bending_stiffness * squared(a.curvature_per_m, b.curvature_per_m, ds),
     }
 }

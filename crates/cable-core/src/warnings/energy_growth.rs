@@ -8,6 +8,7 @@
 //! |---|---|
 //! | a support that is led, or held by a hand | greatest tension of the step, or its reaction if that is greater, times its way |
 //! | a change of the unstretched length | greatest tension times the change |
+//! | a rise of the bending stiffness | the energy of the bends times that |
 //! | a load, wind, current | mean force of both ends of the step times the way, and half of how much it changed times the size of that |
 //! | the outline of a robot | its force before and after and the impulse of all contacts, at the greatest speed of the cable |
 //!
@@ -104,6 +105,10 @@ struct EnergySnapshot {
     loads: Vec<Vec2>,
     /// Unstretched length, m, where it changes.
     unstretched_m: Option<f64>,
+    /// Bending stiffness, N·m², and the energy that is stored by it, J.
+    bending: [f64; 2],
+    /// Time of the account from which the energy of bends is, s; None if it is from the nodes.
+    accounted_s: Option<f64>,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².
     moment: Vec2,
@@ -122,7 +127,12 @@ impl EnergyGrowth {
         // Without inertia, and where a support let go or the cable broke, it begins anew.
         let goes_on = |b: &EnergySnapshot| {
             let holds = |m: &EnergySnapshot| m.supports.iter().filter(|s| s.holds()).count();
-            observed.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
+            observed.answer.peaks.is_some()
+                && b.time_s < time_s
+                && b.breaks == now.breaks
+                && holds(b) == holds(now)
+                && b.accounted_s.is_some() == now.accounted_s.is_some()
+                && b.accounted_s <= now.accounted_s
         };
         match before.filter(goes_on) {
             Some(before) => self.work_j += work(observed, &before, now),
@@ -210,11 +220,28 @@ impl EnergySnapshot {
             outline_force = by.map(|c| c.normal_n.abs() + c.friction_n.abs()).sum();
             max_speed = answer.nodes.iter().map(|n| n.vx_m_per_s.hypot(n.vy_m_per_s)).fold(0.0, larger);
         }
-        let forms = [kinetic_j, gravity_j, stretch_j, bending_j];
+        // Sliding nodes carry no moment, but their arcs are bent as much as the corner is round.
+        let account = answer.energy_account.as_ref().filter(|_| answer.assumptions.bending_stiffness_n_m2 > 0.0);
+        let accounted_s = account.map(|account| account.over_s);
+        let forms = [kinetic_j, gravity_j, stretch_j, account.map_or(bending_j, |account| account.gained.bending_j)];
         let energy_j = forms.iter().sum();
         let breaks = breaks.len();
         let unstretched_m = answer.unstretched_length_m;
-        (Self { time_s, energy_j, breaks, supports, loads, unstretched_m, moment, outline_force, max_speed }, forms)
+        let bending = [answer.assumptions.bending_stiffness_n_m2, bending_j];
+        let snapshot = Self {
+            time_s,
+            energy_j,
+            breaks,
+            supports,
+            loads,
+            unstretched_m,
+            bending,
+            accounted_s,
+            moment,
+            outline_force,
+            max_speed,
+        };
+        (snapshot, forms)
     }
 }
 
@@ -242,6 +269,10 @@ fn work(observed: &Observed<'_>, before: &EnergySnapshot, now: &EnergySnapshot) 
         (None, None) => 0.0,
         _ => greatest * (length(now) - length(before)).abs(),
     };
+    let ([softer, _], [stiffer, stored]) = (before.bending, now.bending);
+    if stiffer > softer {
+        sum += stored * (1.0 - softer / stiffer);
+    }
     for (s, (a, b)) in problem.supports.iter().zip(before.supports.iter().zip(&now.supports)) {
         use SupportState::Holds;
         let (Holds { at: from_at, speed: u, force: f }, Holds { at: to_at, speed: v, force: g }) = (a, b) else {

@@ -189,7 +189,7 @@ impl ChainModel {
         if !self.has_shape {
             self.start_from_fem();
         }
-        self.chain.mesh.approach_length(1.0);
+        self.chain.mesh.approach_edit(1.0);
         let found = find_equilibrium(&mut self.chain, Anchors::Forgotten);
         if found.is_err() {
             *self = before;

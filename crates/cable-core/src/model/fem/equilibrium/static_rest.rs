@@ -101,7 +101,7 @@ impl Stepper {
         self.cable.answers.held_back.clear();
         self.rollback.save(&self.cable);
         self.cable.motion.followers.fill(None);
-        self.cable.approach_length(1.0);
+        self.cable.approach_edit(1.0);
         self.cable.motion.hands.fill(None);
         if !self.rested && put_outline(&mut self.cable) {
             let mut x = std::mem::take(&mut self.cable.motion.positions);

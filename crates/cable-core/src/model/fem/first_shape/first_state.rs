@@ -136,6 +136,7 @@ fn motion_at_rest(problem: &Problem, mesh: &Mesh, positions: Vec<Vec2>) -> Nodal
         previous_slide_rates: vec![0.0; n],
         followers: vec![None; problem.supports.len()],
         length_change: None,
+        bending_change: None,
         earlier_excess: [1.0; 3],
         hands: vec![None; problem.supports.len()],
         placement: problem.outline.as_ref().map(|o| o.placement),

@@ -11,6 +11,7 @@ use crate::model::fem::mesh::mass_matrix::{MassMatrix, Spread};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{BarEnd, StraightPart, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;
+use crate::model::length_change::LEAST_EXCESS;
 use crate::problem::Problem;
 
 /// A direction prescribed at a node. The bars on both sides of the node are bent against it, each
@@ -22,10 +23,6 @@ pub struct Clamp {
     /// Unit vector of growing arc length.
     pub direction: Vec2,
 }
-
-/// Fraction of its material by which the unstretched length of a bar differs from it unseen.
-/// Larger: tensions jump by EA times as much where an excess ends; smaller: it takes longer to end.
-const LEAST_EXCESS: f64 = 1e-9;
 
 /// A cable divided into bars.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -158,6 +155,12 @@ impl Mesh {
     /// True if the unstretched length of a bar is not that of its material.
     pub(in crate::model::fem) fn has_excess(&self) -> bool {
         !self.excess.is_zero()
+    }
+
+    /// What unstretched lengths differ from those of the material, all together, m.
+    pub(in crate::model::fem) fn whole_excess(&self) -> f64 {
+        let material = |e: usize| self.thermal_stretch * (self.arc_length[e + 1] - self.arc_length[e]);
+        (0..self.rest_length.len()).map(|e| self.excess.sum(e).abs() * material(e)).sum()
     }
 
     /// Keeps a part of what unstretched lengths differ from those of the material.

@@ -43,7 +43,7 @@ fn solution_now(d: &CableState) -> CableSolution {
         supports: supports::supports(d, x, &ends, &tension),
         contacts: contact_reports::contacts(d, x, &tension, &lying_ends),
         assumptions: Assumptions {
-            bending_stiffness_n_m2: problem.bending_stiffness,
+            bending_stiffness_n_m2: d.mesh.bending_stiffness,
             self_contact: problem.cable.self_contact,
             inertia: d.motion.inertia_counts(),
         },

@@ -6,20 +6,17 @@ use std::sync::Arc;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
+use crate::model::bending_change::BendingChange;
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNodeLoad};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::system::{ContactSet, StepContext, StepInput, Unknowns, load_scale, slip_at_rest};
+use crate::model::length_change::excess_left;
 use crate::model::material_loss::Loss;
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
-
-/// Time in which the excess of unstretched lengths fades by a factor e, s. Smaller: the tension
-/// changes like a blow; larger: the cable is longer or shorter than its scene says. A choice, tuned
-/// on no campaign.
-const EXCESS_TIME_S: f64 = 0.2;
 
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -121,26 +118,45 @@ impl CableState {
         self.motion.length_change.is_some() || self.mesh.has_excess()
     }
 
-    /// Changes the unstretched length for `dt_s` towards that of the scene.
-    pub(in crate::model::fem) fn follow_length(&mut self, dt_s: f64) {
+    /// True if the unstretched length or the bending stiffness is still changing to that of the
+    /// scene.
+    pub(in crate::model::fem) fn changes(&self) -> bool {
+        self.changes_length() || self.motion.bending_change.is_some()
+    }
+
+    /// Changes the bending stiffness, if it changes.
+    fn change_bending(&mut self, change: impl FnOnce(&mut BendingChange)) {
+        if let Some(bending) = &mut self.motion.bending_change {
+            change(bending);
+            self.mesh.bending_stiffness = bending.stiffness();
+            self.motion.bending_change = self.motion.bending_change.filter(|bending| !bending.is_over());
+        }
+    }
+
+    /// Changes the unstretched length and the bending stiffness for `dt_s` towards those of the
+    /// scene.
+    pub(in crate::model::fem) fn follow_edit(&mut self, dt_s: f64) {
         if let Some(change) = &mut self.motion.length_change {
             let stretch = change.follow(&self.problem, dt_s);
             self.set_thermal_stretch(stretch);
         }
         if self.mesh.has_excess() {
-            let part = (-dt_s / EXCESS_TIME_S).exp();
+            let part = excess_left(self.mesh.whole_excess(), dt_s);
             self.mesh.fade_excess(part);
             self.motion.note_fading(part);
         }
+        self.change_bending(|bending| bending.follow(dt_s));
     }
 
-    /// Changes the unstretched length by a fraction of what it differs from that of the scene.
-    pub(in crate::model::fem) fn approach_length(&mut self, part: f64) {
+    /// Changes the unstretched length and the bending stiffness by a fraction of what they differ
+    /// from those of the scene.
+    pub(in crate::model::fem) fn approach_edit(&mut self, part: f64) {
         if self.motion.length_change.is_some() {
             let [now, to] = [self.mesh.thermal_stretch, self.problem.thermal_stretch];
             self.set_thermal_stretch(if part < 1.0 - 1e-9 { now + (to - now) * part } else { to });
         }
         self.mesh.fade_excess(if part < 1.0 - 1e-9 { 1.0 - part } else { 0.0 });
+        self.change_bending(|bending| bending.approach(part));
     }
 
     fn set_thermal_stretch(&mut self, stretch: f64) {

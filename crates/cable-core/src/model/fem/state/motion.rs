@@ -2,6 +2,7 @@
 //! earlier steps that the time integrator uses.
 
 use crate::math::{RigidPose, Vec2};
+use crate::model::bending_change::BendingChange;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::energy_account::Energies;
 use crate::model::fem::state::momentum_account::MomentumSums;
@@ -57,6 +58,8 @@ pub(in crate::model::fem) struct NodalMotion {
     pub(in crate::model::fem) hands: Vec<Option<Hand>>,
     /// The unstretched length after an edit, on its way to that of the scene.
     pub(in crate::model::fem) length_change: Option<LengthChange>,
+    /// The bending stiffness after an edit, on its way to that of the scene.
+    pub(in crate::model::fem) bending_change: Option<BendingChange>,
     /// The excess of the bars over their material at the start of the present step, and at those of
     /// the two steps before, of that now.
     pub(in crate::model::fem) earlier_excess: [f64; 3],
@@ -122,7 +125,7 @@ impl NodalMotion {
         self.hands.clone_from(hands);
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         self.steps_without_history = other.steps_without_history;
-        self.length_change = other.length_change;
+        (self.length_change, self.bending_change) = (other.length_change, other.bending_change);
         self.earlier_excess = other.earlier_excess;
         (self.time, self.placement) = (other.time, other.placement);
         (self.account, self.energies) = (other.account, other.energies);

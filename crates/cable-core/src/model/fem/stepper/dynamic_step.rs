@@ -12,6 +12,7 @@ use crate::model::fem::time::{
     Weights, account_for_step, forces_in_step, forget_slack_impulses, hands, keep_balanced_tensions, loss_memory,
     plastic_impact, remember_impulses, set_inertia, work_in_step,
 };
+use crate::model::fem::transfer::StretchedBars;
 use crate::solution::Energy;
 
 impl Stepper {
@@ -21,7 +22,7 @@ impl Stepper {
         h: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
-        self.cable.follow_length(h);
+        self.cable.follow_edit(h);
         let before = self.accounts_energy.then(|| self.begin_energy_account());
         let weights = self.begin_step(h, dragged);
         let predicted = self.solver.predicted_unknowns(&self.cable, h);
@@ -119,7 +120,12 @@ impl Stepper {
             return Ok(());
         }
         self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
+        // A stiff cable is never slack: where nodes come and go, its bars keep their tension.
+        let before = (!self.cable.mesh.is_flexible()).then(|| StretchedBars::of(&self.cable));
         let changed = remesh(&mut self.cable, Inertia::Dynamic);
+        if let Some(before) = before.filter(|_| changed != Remeshed::default()) {
+            before.restore(&mut self.cable);
+        }
         if self.accounts_energy && changed != Remeshed::default() {
             self.cable.motion.energies.edit(stored_energy(&self.cable));
             self.cable.motion.energies.end_step();
@@ -159,7 +165,7 @@ impl Stepper {
     /// Begins a step of the energy account; returns the energy of the cable.
     fn begin_energy_account(&mut self) -> Energy {
         let motion = &self.cable.motion;
-        let may_differ = motion.step_before == 0.0 || self.cable.changes_length() || !self.cable.meshing.never_slides;
+        let may_differ = motion.step_before == 0.0 || self.cable.changes() || !self.cable.meshing.never_slides;
         let mut energies = self.cable.motion.energies;
         let before = energies.begin_step(self.cable.motion.time, may_differ, || stored_energy(&self.cable));
         self.cable.motion.energies = energies;

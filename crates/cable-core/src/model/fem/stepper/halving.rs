@@ -133,7 +133,7 @@ impl Stepper {
         let mut hand_targets = std::mem::take(&mut self.hand_drive.hand_targets);
         let part = piece / (request.due - start);
         self.cable.interpolate_targets(&mut hand_targets, request.dragged, part);
-        self.cable.approach_length(part);
+        self.cable.approach_edit(part);
         // The cable balances at the end of the piece, without the supports that release it on the
         // way.
         lay_down_released(&mut self.cable, [start, to]);
@@ -144,7 +144,7 @@ impl Stepper {
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
-            self.cable.approach_length(part);
+            self.cable.approach_edit(part);
             self.cable.motion.time = start;
             lay_down_released(&mut self.cable, [start, to]);
             self.relax(to, &hand_targets)

@@ -58,7 +58,7 @@ impl Sleep {
         let touches =
             !cable.contacts.friction_contacts.is_empty() || !cable.contacts.self_contacts.friction_contacts.is_empty();
         let falls_asleep =
-            still && touches && self.same_input(cable) && !wheels_act(cable, motion.time) && !cable.changes_length();
+            still && touches && self.same_input(cable) && !wheels_act(cable, motion.time) && !cable.changes();
         self.asleep |= falls_asleep;
         self.since = motion.time;
         self.place.clone_from(&motion.positions);
@@ -88,7 +88,7 @@ impl Sleep {
         dragged: &[Option<Vec2>],
     ) -> bool {
         let outline_moves = cable.outline.as_ref().is_some_and(MovingOutline::moves);
-        if outline_moves || wheels_act(cable, to) || cable.changes_length() {
+        if outline_moves || wheels_act(cable, to) || cable.changes() {
             self.asleep = false;
         }
         if !self.asleep {

@@ -7,6 +7,7 @@
 
 use crate::contact::geometry::{Body, Geometry};
 use crate::math::{Vec2, perp};
+use crate::model::bending_change::BendingChange;
 use crate::model::fem::first_shape::depenetrate;
 use crate::model::fem::mesh::{BarEnd, PUSHED_OUT_REACHES, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
@@ -143,6 +144,7 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
     cable.problem = new.problem.clone();
     drag_supports(&mut cable, drags);
     change_length(&mut cable, old.problem.length);
+    change_bending_stiffness(&mut cable);
     cable.loss = new.loss.clone();
     if new.loss != old.loss {
         cable.mesh.branch_forces.clear();
@@ -247,6 +249,12 @@ fn change_length(cable: &mut CableState, before_m: f64) {
     }
 }
 
+/// Lets the bending stiffness begin to change to that of the problem.
+fn change_bending_stiffness(cable: &mut CableState) {
+    let change = BendingChange::between(cable.mesh.bending_stiffness, cable.problem.bending_stiffness);
+    cable.motion.bending_change = Some(change).filter(|change| !change.is_over());
+}
+
 /// Divides the bars that are too long for the mesh, and removes the nodes that it can spare. The
 /// new nodes lie on the curve of the cable: on the straight bars they would fall until the bars are
 /// bent like it. Every bar keeps its tension, so it is a little longer unstretched than its
@@ -312,7 +320,7 @@ fn curvature(cable: &CableState, e: usize) -> f64 {
 fn adopt_material(cable: &mut CableState, new: &CableState) {
     let mesh = &mut cable.mesh;
     mesh.tuning.clone_from(&new.mesh.tuning);
-    (mesh.axial_stiffness, mesh.bending_stiffness) = (new.mesh.axial_stiffness, new.mesh.bending_stiffness);
+    mesh.axial_stiffness = new.mesh.axial_stiffness;
     let (meshing, edited) = (&mut cable.meshing, &new.meshing);
     (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
     meshing.bar_weight = edited.bar_weight * (edited.even_bars as f64 / meshing.even_bars as f64);

@@ -7,6 +7,7 @@
 
 use crate::math::{larger, smaller};
 use crate::model::fem::state::CableState;
+use crate::model::length_change::MIN_UNSTRESSED_FRACTION;
 
 /// The bars of a cable before an edit, and how far each is stretched.
 #[derive(Clone, Debug)]
@@ -25,6 +26,14 @@ impl StretchedBars {
         Self { arc_length: mesh.arc_length.clone(), lengths: (0..mesh.rest_length.len()).map(lengths).collect() }
     }
 
+    /// The same of a cable without slack: a slack bar is as long unstretched as it is.
+    pub(in crate::model::fem) fn without_slack(mut self) -> Self {
+        for [length, unstretched] in &mut self.lengths {
+            *unstretched = smaller(*length, *unstretched);
+        }
+        self
+    }
+
     /// Gives the bars of the edited cable the stretch that their material had. A flexible bar that
     /// was slack stays slack: it keeps its material, or gets as much as it just needs.
     pub(in crate::model::fem) fn restore(&self, cable: &mut CableState) {
@@ -38,7 +47,8 @@ impl StretchedBars {
             }
             match self.mean(ends) {
                 Some(stretch) if stretch > 1.0 || stretch > 0.0 && !mesh.is_flexible() => {
-                    mesh.set_rest_length(e, lengths[0] / stretch);
+                    let least = MIN_UNSTRESSED_FRACTION * lengths[1];
+                    mesh.set_rest_length(e, larger(lengths[0] / stretch, least));
                 }
                 _ if lengths[0] > lengths[1] => mesh.set_rest_length(e, lengths[0]),
                 _ => (),

@@ -80,7 +80,7 @@ fn sub_step(
 ) {
     release_pulleys(&mut chain.mesh, chain.clock.time_s - h);
     let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
-    mesh.follow_length(h);
+    mesh.follow_edit(h);
     chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
     hands::follow(&mut chain.drives, mesh, hand_settings, h);
     nodal::update(mesh, chain.clock.time_s, 2.0 * chain.clock.behind_s);
@@ -127,6 +127,8 @@ fn runaway(chain: &ChainState, h: f64, fastest: f64) -> SolveError {
 /// times their time constants, it is stable up to h² k + 2 h c = 4 m.
 fn stable_step(mesh: &Mesh) -> f64 {
     let [ea, ei] = [&mesh.spring_memory, &mesh.bend_memory].map(RelaxationMemory::unrelaxed_stiffness);
+    // Before the next choice of a sub-step it may have become as stiff as its scene says.
+    let ei = ei * mesh.bending_change.map_or(1.0, |change| change.greatest_growth());
     let [stretching, bending] = [&mesh.spring_memory, &mesh.bend_memory].map(RelaxationMemory::viscosity);
     let mut stable = f64::INFINITY;
     for n in 0..mesh.position.len() {

@@ -51,7 +51,7 @@ pub(in crate::model::mass_spring) fn add_spring(mesh: &mut Mesh, system: &mut Eq
     let (l0, ea, lambda) = (mesh.rest_length[e], mesh.problem.axial_stiffness, mesh.thermal_stretch);
     let stretch = r.length - l0;
     // A spring of a cable with bending stiffness pushes.
-    let taut = stretch > 0.0 || mesh.problem.bending_stiffness > 0.0;
+    let taut = stretch > 0.0 || mesh.bending_stiffness > 0.0;
     let lent = system.initial_tension[e] * system.fade;
     let tension = if taut { ea * stretch / l0 } else { 0.0 };
     mesh.tension[e] = tension;

@@ -247,7 +247,7 @@ impl<'a> EquilibriumSolver<'a> {
         for e in 0..mesh.rest_length.len() {
             value += assembly::add_spring(mesh, system, e);
         }
-        if mesh.problem.bending_stiffness > 0.0 {
+        if mesh.bending_stiffness > 0.0 {
             value += assembly::add_bending(mesh, system, curvature);
         }
         value += self.contacts.assemble(mesh, system);

@@ -28,7 +28,7 @@ pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, d
             // A hand goes straight.
             chain.drives.targets[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
         }
-        chain.mesh.approach_length((next - done) / (1.0 - done));
+        chain.mesh.approach_edit((next - done) / (1.0 - done));
         match find_equilibrium(chain, Anchors::Kept) {
             Ok(()) => {
                 iterations += chain.report.cost.iterations;

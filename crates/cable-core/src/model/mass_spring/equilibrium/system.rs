@@ -27,7 +27,7 @@ pub(in crate::model::mass_spring) struct EquilibriumSystem {
 impl EquilibriumSystem {
     pub(in crate::model::mass_spring) fn new(mesh: &Mesh) -> Result<Self, SolveError> {
         let n = mesh.position.len();
-        let band = if mesh.problem.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH };
+        let band = if mesh.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH };
         let factor = BandFactor::new(2 * n, band).map_err(|_| SolveError::Indefinite { model: Model::MassSpring })?;
         Ok(Self {
             initial_tension: mesh.tension.clone(),

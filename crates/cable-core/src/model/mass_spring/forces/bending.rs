@@ -18,7 +18,7 @@ pub(in crate::model::mass_spring) fn clamp_at(mesh: &Mesh, node: usize) -> Optio
 pub(in crate::model::mass_spring) fn bend_at(mesh: &Mesh, n: usize) -> Option<BendingEnergy> {
     let inner = n > 0 && n + 1 < mesh.position.len() && mesh.wheels.at_node[n].is_none();
     inner.then(|| BendingEnergy {
-        stiffness: mesh.problem.bending_stiffness,
+        stiffness: mesh.bending_stiffness,
         length: 0.5 * (mesh.rest_length[n - 1] + mesh.rest_length[n]),
         from: 0.0,
     })
@@ -26,12 +26,12 @@ pub(in crate::model::mass_spring) fn bend_at(mesh: &Mesh, n: usize) -> Option<Be
 
 /// Bending energy of element `e` against a clamp at one of its ends.
 pub(in crate::model::mass_spring) fn clamp_bend(mesh: &Mesh, e: usize, direction: Vec2) -> ClampBend {
-    ClampBend { stiffness: mesh.problem.bending_stiffness, length: 0.5 * mesh.rest_length[e], direction, from: 0.0 }
+    ClampBend { stiffness: mesh.bending_stiffness, length: 0.5 * mesh.rest_length[e], direction, from: 0.0 }
 }
 
 /// Adds the forces of bending at a time `since_s` (s) after they were last computed in this motion.
 pub(in crate::model::mass_spring) fn add_forces(mesh: &mut Mesh, since_s: f64) {
-    if !(mesh.problem.bending_stiffness > 0.0) {
+    if !(mesh.bending_stiffness > 0.0) {
         return;
     }
     mesh.bend_memory.begin_step(since_s);

@@ -20,7 +20,7 @@ pub(in crate::model::mass_spring) fn at_node(mesh: &Mesh, i: usize) -> f64 {
         return mesh.tension[e];
     }
     let force = reactions::total(mesh, i);
-    if mesh.problem.bending_stiffness > 0.0 { force.dot(&mesh.element(e).direction).abs() } else { force.norm() }
+    if mesh.bending_stiffness > 0.0 { force.dot(&mesh.element(e).direction).abs() } else { force.norm() }
 }
 
 /// The same where forces are not summed up: at an end the tension of its element.

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use crate::error::SolveError;
-use crate::math::Vec2;
-use crate::model::length_change::LengthChange;
+use crate::math::{Vec2, larger};
+use crate::model::bending_change::BendingChange;
+use crate::model::length_change::{LEAST_EXCESS, LengthChange, MIN_UNSTRESSED_FRACTION, excess_left};
 use crate::model::mass_spring::mesh::node_placement::{
     SAME_PLACE_FRACTION, even_nodes, first_shape, separate_supports,
 };
@@ -25,6 +26,10 @@ part! {
         thermal_stretch: f64,
         /// The unstretched length after an edit, on its way to that of the scene.
         length_change: Option<LengthChange>,
+        /// EI, N·m²; 0: no bending.
+        bending_stiffness: f64,
+        /// The bending stiffness after an edit, on its way to that of the scene.
+        bending_change: Option<BendingChange>,
         /// Arc length of each node, m.
         arc_length: Vec<f64>,
         /// Position of each node, m.
@@ -43,6 +48,9 @@ part! {
         support_acceleration: Vec<Vec2>,
         /// Unstretched length of each element at the present temperature, m.
         rest_length: Vec<f64>,
+        /// Length by which each element is longer unstretched than its material, as a fraction of
+        /// it. It fades.
+        excess: Vec<f64>,
         /// Arc length of each element at rest temperature, m: weight and wind go with it.
         material_length: Vec<f64>,
         /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
@@ -101,13 +109,11 @@ impl Mesh {
         };
         let [before, after] = [places(p, longer), places(q, 1.0)];
         let same_count = before.len() == after.len();
-        let same_kind = (p.bending_stiffness > 0.0) == (q.bending_stiffness > 0.0);
         let same_nodes =
             (self.even_length * longer - other.even_length).abs() <= SAME_PLACE_FRACTION * other.even_length;
         (same_nodes || other.keeps_nodes(self.position.len()))
             && p.supports.iter().map(support).eq(q.supports.iter().map(support))
             && same_count
-            && same_kind
             && before.iter().zip(&after).all(same_place)
     }
 
@@ -119,13 +125,30 @@ impl Mesh {
             (p.linear_density, p.axial_stiffness, p.bending_stiffness, loss)
         };
         let other_material = material(&self.problem) != material(&edited.problem);
+        let gets_stiff = self.problem.bending_stiffness == 0.0 && edited.problem.bending_stiffness > 0.0;
         self.change_length(edited.problem.clone());
+        if gets_stiff {
+            self.unstress_slack_springs();
+        }
         self.tuning.clone_from(&edited.tuning);
         self.update_elements();
         if other_material {
             let nodes = self.position.len();
             [self.spring_memory, self.bend_memory] =
-                memories(&self.problem, &self.tuning.mesh, self.even_length, nodes);
+                memories(&self.problem, &self.tuning.mesh, [self.even_length, self.bending_stiffness], nodes);
+        }
+        let change = BendingChange::between(self.bending_stiffness, self.problem.bending_stiffness);
+        self.bending_change = Some(change).filter(|change| !change.is_over());
+        self.set_bending_stiffness(change.stiffness());
+    }
+
+    /// Gives every slack spring the unstretched length that it has: from now on the springs push.
+    fn unstress_slack_springs(&mut self) {
+        for e in 0..self.rest_length.len() {
+            let length = larger(self.element(e).length, MIN_UNSTRESSED_FRACTION * self.rest_length[e]);
+            if length < self.rest_length[e] {
+                self.excess[e] = length / (self.material_length[e] * self.thermal_stretch) - 1.0;
+            }
         }
     }
 
@@ -144,20 +167,66 @@ impl Mesh {
         }
     }
 
-    /// Changes the unstretched length for `dt_s` towards that of the scene.
-    pub(in crate::model::mass_spring) fn follow_length(&mut self, dt_s: f64) {
+    /// Changes the unstretched length and the bending stiffness for `dt_s` towards those of the
+    /// scene.
+    pub(in crate::model::mass_spring) fn follow_edit(&mut self, dt_s: f64) {
         if let Some(change) = &mut self.length_change {
             let stretch = change.follow(&self.problem, dt_s);
             self.set_thermal_stretch(stretch);
         }
+        self.change_bending(|bending| bending.follow(dt_s));
+        let sizes = self.excess.iter().zip(&self.material_length).map(|(excess, length)| excess.abs() * length);
+        self.fade_excess(excess_left(sizes.sum(), dt_s));
     }
 
-    /// Changes the unstretched length by a fraction of what it differs from that of the scene.
-    pub(in crate::model::mass_spring) fn approach_length(&mut self, part: f64) {
+    /// Changes the unstretched length and the bending stiffness by a fraction of what they differ
+    /// from those of the scene.
+    pub(in crate::model::mass_spring) fn approach_edit(&mut self, part: f64) {
         if self.length_change.is_some() {
             let [now, to] = [self.thermal_stretch, self.problem.thermal_stretch];
             self.set_thermal_stretch(if part < 1.0 { now + (to - now) * part } else { to });
         }
+        self.change_bending(|bending| bending.approach(part));
+        self.fade_excess(1.0 - part);
+    }
+
+    /// True if the unstretched length of an element is not that of its material.
+    pub(in crate::model::mass_spring) fn has_excess(&self) -> bool {
+        self.excess.iter().any(|excess| *excess != 0.0)
+    }
+
+    /// Keeps a part of what unstretched lengths differ from those of the material.
+    fn fade_excess(&mut self, part: f64) {
+        if !self.has_excess() {
+            return;
+        }
+        for excess in &mut self.excess {
+            *excess = if excess.abs() > LEAST_EXCESS { *excess * part } else { 0.0 };
+        }
+        for e in 0..self.rest_length.len() {
+            self.renew_rest_length(e);
+        }
+    }
+
+    /// Takes the unstretched length of element `e` from its material.
+    fn renew_rest_length(&mut self, e: usize) {
+        self.rest_length[e] = self.material_length[e] * self.thermal_stretch * (1.0 + self.excess[e]);
+    }
+
+    /// Changes the bending stiffness, if it changes.
+    fn change_bending(&mut self, change: impl FnOnce(&mut BendingChange)) {
+        if let Some(bending) = &mut self.bending_change {
+            change(bending);
+            let stiffness = bending.stiffness();
+            self.bending_change = self.bending_change.filter(|bending| !bending.is_over());
+            self.set_bending_stiffness(stiffness);
+        }
+    }
+
+    fn set_bending_stiffness(&mut self, stiffness: f64) {
+        self.bending_stiffness = stiffness;
+        self.bend_memory.set_stiffness(stiffness);
+        self.spring_memory.let_push(stiffness > 0.0);
     }
 
     fn set_thermal_stretch(&mut self, stretch: f64) {
@@ -211,7 +280,8 @@ impl Mesh {
             let node = support_node[p.support];
             p.place_on(node, arc_length[node]);
         }
-        let [spring_memory, bend_memory] = memories(&problem, &tuning.mesh, problem.length / segments as f64, count);
+        let [spring_memory, bend_memory] =
+            memories(&problem, &tuning.mesh, [problem.length / segments as f64, problem.bending_stiffness], count);
         Self {
             position: first_shape(&problem, &arc_length, &support_node),
             velocity: vec![Vec2::zeros(); count],
@@ -220,6 +290,8 @@ impl Mesh {
             point_mass,
             thermal_stretch: problem.thermal_stretch,
             length_change: None,
+            bending_stiffness: problem.bending_stiffness,
+            bending_change: None,
             supported: vec![false; count],
             support_acceleration: vec![Vec2::zeros(); count],
             straight_length: material_length.clone(),
@@ -233,6 +305,7 @@ impl Mesh {
             tuning,
             arc_length,
             rest_length,
+            excess: vec![0.0; elements],
             material_length,
             support_node,
         }
@@ -297,7 +370,7 @@ impl Mesh {
     pub(in crate::model::mass_spring) fn update_elements(&mut self) {
         for e in 0..self.material_length.len() {
             self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
-            self.rest_length[e] = self.material_length[e] * self.thermal_stretch;
+            self.renew_rest_length(e);
             self.straight_length[e] = self.material_length[e];
         }
         let density = self.problem.linear_density;
@@ -313,7 +386,7 @@ impl Mesh {
             let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
                 self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
-                self.rest_length[e] = self.material_length[e] * self.thermal_stretch;
+                self.renew_rest_length(e);
             }
         }
         for k in 0..self.wheels.pulleys.len() {

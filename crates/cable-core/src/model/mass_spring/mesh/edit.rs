@@ -192,6 +192,7 @@ fn spread_length(mesh: &mut Mesh, e: usize, more: f64) {
 
 fn remove_node(mesh: &mut Mesh, n: usize) {
     let [before, after] = [mesh.material_length[n - 1], mesh.material_length[n]];
+    mesh.excess[n] = (before * mesh.excess[n - 1] + after * mesh.excess[n]) / (before + after);
     mesh.spring_memory.merge(n - 1, before / (before + after));
     mesh.bend_memory.remove_node(n);
     for list in [&mut mesh.arc_length, &mut mesh.mass, &mut mesh.point_mass] {
@@ -202,7 +203,13 @@ fn remove_node(mesh: &mut Mesh, n: usize) {
     }
     mesh.supported.remove(n);
     mesh.wheels.at_node.remove(n);
-    for list in [&mut mesh.material_length, &mut mesh.rest_length, &mut mesh.straight_length, &mut mesh.tension] {
+    for list in [
+        &mut mesh.material_length,
+        &mut mesh.rest_length,
+        &mut mesh.straight_length,
+        &mut mesh.tension,
+        &mut mesh.excess,
+    ] {
         list.remove(n - 1);
     }
     renumber(mesh, n, -1);
@@ -221,12 +228,13 @@ fn insert_node(mesh: &mut Mesh, e: usize, s: f64, x: Vec2, v: Vec2) {
     mesh.support_acceleration.insert(n, Vec2::zeros());
     mesh.supported.insert(n, false);
     mesh.wheels.at_node.insert(n, None);
-    let tension = mesh.tension[e];
+    let (tension, excess) = (mesh.tension[e], mesh.excess[e]);
     for (list, value) in [
         (&mut mesh.material_length, 0.0),
         (&mut mesh.rest_length, 0.0),
         (&mut mesh.straight_length, 0.0),
         (&mut mesh.tension, tension),
+        (&mut mesh.excess, excess),
     ] {
         list.insert(n, value);
     }

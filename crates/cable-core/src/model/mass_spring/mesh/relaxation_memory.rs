@@ -15,7 +15,7 @@
 
 use std::sync::Arc;
 
-use crate::math::smaller;
+use crate::math::{larger, smaller};
 use crate::model::mass_spring::settings::MeshTuning;
 use crate::model::material_loss::{Loss, MaterialLoss};
 use crate::problem::Problem;
@@ -55,22 +55,25 @@ part! {
 }
 
 /// The memory of the springs and of the bends of a cable of even springs of length `spring` (m)
-/// between so many nodes.
-pub(super) fn memories(problem: &Problem, tuning: &MeshTuning, spring: f64, nodes: usize) -> [RelaxationMemory; 2] {
+/// between so many nodes, with a bending stiffness (N·m²) that may yet become that of the problem.
+pub(super) fn memories(
+    problem: &Problem,
+    tuning: &MeshTuning,
+    [spring, bending_stiffness]: [f64; 2],
+    nodes: usize,
+) -> [RelaxationMemory; 2] {
     let Loss { mut stretching, mut bending } = Loss::of(problem, spring, false);
     // Time constants whose damping of the fastest modes, 2√(EA/ρ)/l and 4√(EI/ρ)/l², is critical.
     let critical = spring / (problem.axial_stiffness / problem.linear_density).sqrt();
-    let critical_in_bending = 0.5 * spring * spring / (problem.bending_stiffness / problem.linear_density).sqrt();
+    let greater = larger(bending_stiffness, problem.bending_stiffness);
+    let critical_in_bending = 0.5 * spring * spring / (greater / problem.linear_density).sqrt();
     stretching.viscous = smaller(stretching.viscous, tuning.max_mode_damping * critical);
     bending.viscous = smaller(bending.viscous, tuning.max_mode_damping * critical_in_bending);
-    let slots = if problem.bending_stiffness > 0.0 { 2 * nodes } else { 0 };
+    let slots = if greater > 0.0 { 2 * nodes } else { 0 };
     let springs = RelaxationMemory::new(stretching, problem.axial_stiffness, nodes - 1);
     let impact_time_s = tuning.impact_damping * critical;
-    let pushes = problem.bending_stiffness > 0.0;
-    [
-        RelaxationMemory { impact_time_s, pushes, ..springs },
-        RelaxationMemory::new(bending, problem.bending_stiffness, slots),
-    ]
+    let pushes = greater > 0.0;
+    [RelaxationMemory { impact_time_s, pushes, ..springs }, RelaxationMemory::new(bending, bending_stiffness, slots)]
 }
 
 impl RelaxationMemory {
@@ -92,6 +95,17 @@ impl RelaxationMemory {
             kept: vec![0.0; slots],
             change: vec![0.0; slots],
         }
+    }
+
+    /// Lets springs push, or not.
+    pub(in crate::model::mass_spring) fn let_push(&mut self, pushes: bool) {
+        self.pushes = pushes;
+    }
+
+    /// Changes the stiffness, N or N·m².
+    pub(in crate::model::mass_spring) fn set_stiffness(&mut self, stiffness: f64) {
+        self.stiffness = stiffness;
+        self.set_step(self.step_s);
     }
 
     /// Begins a step of `h` (s). With none a motion begins, and the branches are at rest.
@@ -263,7 +277,7 @@ mod tests {
         let mut scene = catalog::hanging_span();
         scene.cables[0].damping_ratio = 0.05;
         let problem = problems(&scene).unwrap().remove(0);
-        let [springs, _] = memories(&problem, &MeshTuning::default(), 0.1, count + 1);
+        let [springs, _] = memories(&problem, &MeshTuning::default(), [0.1, problem.bending_stiffness], count + 1);
         springs
     }
 

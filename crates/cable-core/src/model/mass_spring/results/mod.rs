@@ -29,12 +29,13 @@ pub(in crate::model::mass_spring) fn answer(
         nodes: reader.nodes().into(),
         supports: (0..mesh.support_node.len()).map(|k| reader.reaction(k, drives.hands[k])).collect(),
         assumptions: Assumptions {
-            bending_stiffness_n_m2: mesh.problem.bending_stiffness,
+            bending_stiffness_n_m2: mesh.bending_stiffness,
             inertia: mesh.velocity.iter().any(|v| v.norm_squared() > 0.0),
             ..Assumptions::default()
         },
         momentum: report.account.report(mesh),
-        unstretched_length_m: mesh.length_change.map(|_| mesh.thermal_stretch * mesh.problem.length),
+        unstretched_length_m: (mesh.length_change.is_some() || mesh.has_excess())
+            .then(|| mesh.rest_length.iter().sum()),
         contacts: contact_reports::read(mesh, contacts, &report.cost)
             .into_iter()
             .map(|contact| contact.report)

@@ -177,10 +177,10 @@ impl NodeReader<'_> {
     fn element_force(&self, e: usize) -> Vec2 {
         let pull = nodal::spring_force(self.mesh, e);
         let d = self.mesh.position[e + 1] - self.mesh.position[e];
-        if !(self.mesh.problem.bending_stiffness > 0.0 && d.norm_squared() > 0.0) {
+        if !(self.mesh.bending_stiffness > 0.0 && d.norm_squared() > 0.0) {
             return pull;
         }
-        let stiffness = self.mesh.problem.bending_stiffness / self.mesh.thermal_stretch;
+        let stiffness = self.mesh.bending_stiffness / self.mesh.thermal_stretch;
         let moment = |i: usize| stiffness * self.node_curvature(i) + self.branch_moment(i, e);
         pull + perp(d) * ((moment(e) - moment(e + 1)) / d.norm_squared())
     }
@@ -208,7 +208,7 @@ impl NodeReader<'_> {
     /// one.
     fn end_tension(&self, i: usize) -> f64 {
         let force = reactions::of_support(self.mesh, i);
-        if !(self.mesh.problem.bending_stiffness > 0.0) {
+        if !(self.mesh.bending_stiffness > 0.0) {
             return force.norm();
         }
         let along = bending::clamp_at(self.mesh, i)
@@ -236,7 +236,7 @@ impl NodeReader<'_> {
     /// Curvature between a clamp at an end and the middle of its element `e`, which has the
     /// direction `d`; 0 without a clamp.
     fn clamp_curvature(&self, i: usize, e: usize, d: Vec2) -> f64 {
-        let clamp = bending::clamp_at(self.mesh, i).filter(|_| self.mesh.problem.bending_stiffness > 0.0);
+        let clamp = bending::clamp_at(self.mesh, i).filter(|_| self.mesh.bending_stiffness > 0.0);
         clamp.map_or(0.0, |c| turn(c, d) / (0.5 * self.mesh.material_length[e]))
     }
 

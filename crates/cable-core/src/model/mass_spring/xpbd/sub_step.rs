@@ -94,7 +94,7 @@ fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2]
     }
     let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
     let hand_settings = HandSettings::of(settings);
-    mesh.follow_length(h);
+    mesh.follow_edit(h);
     chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
     hands::follow(&mut chain.drives, mesh, hand_settings, h);
     nodal::set_loads(mesh, chain.clock.time_s);
