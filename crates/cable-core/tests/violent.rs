@@ -110,6 +110,9 @@ fn edited(scene: &Scene, dice: &mut Dice) -> Option<Scene> {
     let cable = &mut scene.cables[0];
     let which = (dice.unit() * 11.0) as usize;
     let which = std::env::var("EDIT").ok().and_then(|e| e.parse().ok()).unwrap_or(which);
+    if std::env::var("TELL").is_ok_and(|t| t == "edits") {
+        println!("edit {which} of {:?} N m²", cable.bending_stiffness_n_m2);
+    }
     match which {
         0 => cable.length_m *= dice.within(0.93, 1.1),
         1 => cable.axial_stiffness_n *= 10f64.powf(dice.within(-0.3, 0.3)),

@@ -26,6 +26,9 @@ pub const MAX_SPEED: f64 = 20.0;
 /// jerked (1118 N for 93 N at 2 m/s), and a shallow span that is let out falls free. Smaller: an
 /// edit takes long to show.
 pub(crate) const EDIT_SPEED: f64 = 0.5;
+/// Speed below which a cable lies still, m/s. Larger: an edit stops slow motion; smaller: one of a
+/// cable that trembles leaves its bars out of balance.
+pub(crate) const STILL_M_PER_S: f64 = 1e-3;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED_M: f64 = 1e-9;
 

@@ -8,6 +8,7 @@ use super::support_targets::{SupportGrip, SupportTarget};
 use crate::breakage::{CablePart, Cut};
 use crate::error::{SolveError, Unsupported};
 use crate::math::{Vec2, larger};
+use crate::model::smoothed_target::STILL_M_PER_S;
 use crate::model::{Mechanics, Model, ModelSource, Settings};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
@@ -16,9 +17,6 @@ use crate::state::State;
 /// Part of a cable's length by which the places of a break and of a support, or two of a support,
 /// differ by rounding.
 const SAME_PLACE: f64 = 1e-6;
-/// Speed below which a cable lies still, m/s. Larger: an edit stops slow motion; smaller: one of a
-/// cable that trembles leaves its bars out of balance.
-const STILL_M_PER_S: f64 = 1e-3;
 
 /// Lets a model continue with all that another one remembers of the same cable; returns whether it
 /// does.

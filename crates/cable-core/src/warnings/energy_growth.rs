@@ -109,6 +109,8 @@ struct EnergySnapshot {
     bending: [f64; 2],
     /// Time of the account from which the energy of bends is, s; None if it is from the nodes.
     accounted_s: Option<f64>,
+    /// Work of edits in that account, J.
+    edits_j: Option<f64>,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².
     moment: Vec2,
@@ -222,7 +224,7 @@ impl EnergySnapshot {
         }
         // Sliding nodes carry no moment, but their arcs are bent as much as the corner is round.
         let account = answer.energy_account.as_ref().filter(|_| answer.assumptions.bending_stiffness_n_m2 > 0.0);
-        let accounted_s = account.map(|account| account.over_s);
+        let (accounted_s, edits_j) = (account.map(|account| account.over_s), account.map(|account| account.edits_j));
         let forms = [kinetic_j, gravity_j, stretch_j, account.map_or(bending_j, |account| account.gained.bending_j)];
         let energy_j = forms.iter().sum();
         let breaks = breaks.len();
@@ -237,6 +239,7 @@ impl EnergySnapshot {
             unstretched_m,
             bending,
             accounted_s,
+            edits_j,
             moment,
             outline_force,
             max_speed,
@@ -265,13 +268,17 @@ fn work(observed: &Observed<'_>, before: &EnergySnapshot, now: &EnergySnapshot) 
     let dt = to - from;
     let greatest = super::tension::greatest(answer);
     let length = |snapshot: &EnergySnapshot| snapshot.unstretched_m.unwrap_or(problem.length * problem.thermal_stretch);
+    // The bars of a stiff cable push, too.
+    let pushes = answer.nodes.iter().map(|n| -n.tension_n).fold(greatest, larger);
     let mut sum = match (before.unstretched_m, now.unstretched_m) {
         (None, None) => 0.0,
-        _ => greatest * (length(now) - length(before)).abs(),
+        _ => pushes * (length(now) - length(before)).abs(),
     };
     let ([softer, _], [stiffer, stored]) = (before.bending, now.bending);
     if stiffer > softer {
-        sum += stored * (1.0 - softer / stiffer);
+        // The account knows it from the bends of the mesh.
+        let accounted = before.edits_j.zip(now.edits_j).map(|(before, now)| now - before);
+        sum += larger(accounted.unwrap_or_else(|| stored * (1.0 - softer / stiffer)), 0.0);
     }
     for (s, (a, b)) in problem.supports.iter().zip(before.supports.iter().zip(&now.supports)) {
         use SupportState::Holds;

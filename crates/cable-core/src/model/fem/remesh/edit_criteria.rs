@@ -1,6 +1,6 @@
 //! These criteria decide where sliding nodes are inserted and removed; they change nothing.
 
-use crate::math::{bounded, perp};
+use crate::math::{bounded, larger, perp};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, TangentPath, angle_between, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::state::{CableState, Meshing, NodalMotion};
@@ -211,7 +211,8 @@ impl<'a> Criteria<'a> {
         {
             return None;
         }
-        if self.meshing.bends_visibly(mesh, self.step.problem.length, tension) {
+        let stiffness = larger(mesh.bending_stiffness, self.step.problem.bending_stiffness);
+        if self.meshing.bends_visibly(mesh, stiffness, tension) {
             return None;
         }
         let before = path.arcs[0] * mesh.end(bar, x).radius;

@@ -56,14 +56,14 @@ impl Meshing {
         }
     }
 
-    /// True if the bend of a cable of a length (m) under a tension (N) is longer than its bars:
-    /// then material nodes resolve it, and a sliding node, which carries no moment, would neglect
-    /// it.
-    pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, length: f64, tension: f64) -> bool {
-        let (stiffness, even) = (mesh.bending_stiffness, length / self.even_bars as f64);
+    /// True if the bend of a cable of a bending stiffness (N·m²) under a tension (N) is longer than
+    /// its bars: then material nodes resolve it, and a sliding node, which carries no moment, would
+    /// neglect it.
+    pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, stiffness: f64, tension: f64) -> bool {
+        let length = mesh.arc_length.last().copied().unwrap_or_default();
         let least = self.bar_weight + stiffness / (length * length);
         stiffness > 0.0
             && (stiffness / if tension > least { tension } else { least }).sqrt()
-                > mesh.tuning.remesh.resolved_bend * even
+                > mesh.tuning.remesh.resolved_bend * self.even(length)
     }
 }

@@ -11,11 +11,11 @@ use crate::model::bending_change::BendingChange;
 use crate::model::fem::first_shape::depenetrate;
 use crate::model::fem::mesh::{BarEnd, PUSHED_OUT_REACHES, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
-use crate::model::fem::remesh::{even_out, insert};
+use crate::model::fem::remesh::{even_out, insert, settle_down};
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
 use crate::model::fem::transfer::stretched_bars::StretchedBars;
 use crate::model::length_change::LengthChange;
-use crate::model::smoothed_target::SmoothedTarget;
+use crate::model::smoothed_target::{STILL_M_PER_S, SmoothedTarget};
 use crate::problem::{PointLoad, Problem, SupportPoint};
 
 /// Greatest way that an obstacle put elsewhere takes a node along, in even bars: beyond it the
@@ -111,13 +111,19 @@ fn has_other_bars(a: &CableState, b: &CableState) -> bool {
 }
 
 /// True if the mesh of the cable `b` can serve for `a`: its mass is lumped if that of `a` is, and
-/// both have bending or none, contact with themselves or none, and the same outline of a robot.
+/// both have bending or none, or `a` gets one while it moves, contact with themselves or none, and
+/// the same outline of a robot.
 fn can_share_a_mesh(a: &CableState, b: &CableState) -> bool {
     (b.mesh.spread.is_lumped() || !a.mesh.spread.is_lumped())
-        && a.mesh.is_flexible() == b.mesh.is_flexible()
+        && (a.mesh.is_flexible() == b.mesh.is_flexible() || b.mesh.is_flexible() && moves(b))
         && a.problem.cable.self_contact == b.problem.cable.self_contact
         && have_same_outline(&a.problem, &b.problem)
         && a.problem.floor_friction.is_some() == b.problem.floor_friction.is_some()
+}
+
+/// True if the cable does not lie still.
+fn moves(cable: &CableState) -> bool {
+    cable.motion.velocities.iter().any(|v| v.norm() > STILL_M_PER_S)
 }
 
 /// True if the robots of two problems have the same outline, or none.
@@ -251,8 +257,29 @@ fn change_length(cable: &mut CableState, before_m: f64) {
 
 /// Lets the bending stiffness begin to change to that of the problem.
 fn change_bending_stiffness(cable: &mut CableState) {
-    let change = BendingChange::between(cable.mesh.bending_stiffness, cable.problem.bending_stiffness);
+    let (from, to) = (cable.mesh.bending_stiffness, cable.problem.bending_stiffness);
+    let change = BendingChange::between(from, to);
     cable.motion.bending_change = Some(change).filter(|change| !change.is_over());
+    cable.mesh.bending_stiffness = change.stiffness();
+    if from == 0.0 && to > 0.0 {
+        resolve_bends(cable, to);
+    }
+}
+
+/// Turns the sliding nodes that would neglect visible bends of a stiffness (N·m²) into nodes of the
+/// material. The bars keep their tension, and those that were slack, which push from now on, have
+/// none.
+fn resolve_bends(cable: &mut CableState, stiffness: f64) {
+    let stretched_before = StretchedBars::of(cable).without_slack();
+    for k in 1..cable.mesh.nodes().max(1) - 1 {
+        let slides = |node: SlidingNode| matches!(node.slide_over, SlideOver::Obstacle { .. });
+        let length = cable.mesh.path(k - 1, &cable.motion.positions).length;
+        let tension = cable.mesh.tension(k - 1, length);
+        if cable.mesh.sliding[k].is_some_and(slides) && cable.meshing.bends_visibly(&cable.mesh, stiffness, tension) {
+            settle_down(cable, k);
+        }
+    }
+    stretched_before.restore(cable);
 }
 
 /// Divides the bars that are too long for the mesh, and removes the nodes that it can spare. The

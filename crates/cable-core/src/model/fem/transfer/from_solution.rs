@@ -119,7 +119,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
     }
     for arc in arcs_of_solution(cable, curve) {
         let tension = curve.tension(0.5 * (arc.material[0] + arc.material[1]));
-        if cable.meshing.bends_visibly(&cable.mesh, cable.problem.length, tension) {
+        if cable.meshing.bends_visibly(&cable.mesh, cable.mesh.bending_stiffness, tension) {
             continue;
         }
         let round = arc.node.end.radius * arc.turn;

@@ -23,7 +23,7 @@ use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::remesh::change_wheels;
-use crate::model::fem::state::{CableState, Energies, MovingMass, renew_input, stored_energy};
+use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
 use crate::model::fem::transfer::after_edit::{Drag, after_edit};
 use crate::model::fem::transfer::from_solution::{
@@ -111,9 +111,7 @@ impl Stepper {
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
         let pulled = &self.hand_drive.pulled;
         let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
-        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else {
-            return self.becomes_stiff(&old.cable);
-        };
+        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else { return false };
         self.cable = cable;
         let heavier = self.cable.problem.linear_density * self.cable.problem.length
             / (old.cable.problem.linear_density * old.cable.problem.length);
@@ -123,19 +121,6 @@ impl Stepper {
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);
         self.rested = true;
-        true
-    }
-
-    /// Goes on from a flexible cable that moves, if this one is stiff, on another mesh: its bars
-    /// keep their tension, and those that were slack, which would push now, have none. Returns
-    /// false, without a change, if it is not.
-    fn becomes_stiff(&mut self, old: &CableState) -> bool {
-        let moves = old.motion.velocities.iter().any(|v| v.norm() > 0.0);
-        let becomes_stiff = old.mesh.is_flexible() && !self.cable.mesh.is_flexible();
-        if !(moves && becomes_stiff && old.mesh.breaks().next().is_none()) || self.set_state(&old.state()).is_err() {
-            return false;
-        }
-        StretchedBars::of(old).without_slack().restore(&mut self.cable);
         true
     }
 
@@ -182,9 +167,10 @@ impl Stepper {
         }
         // A state in motion continues as it is; one at rest is brought to rest on this mesh.
         let still = !state.in_motion && self.cable.motion.velocities.iter().all(|v| v.norm() == 0.0);
-        // So does a first equilibrium: bars that cut a corner would come to rest there. Within a
-        // quasi-static run friction is not disturbed.
-        if !same && (!still || state.time_s == 0.0) {
+        // Bars that cut a corner would come to rest there. Where none does, friction is not
+        // disturbed within a quasi-static run.
+        let cuts = !same && !IntersectionCheck::of(&self.cable).cuts_nothing();
+        if !same && (!still || state.time_s == 0.0 || cuts) {
             follow_corners(&mut self.cable, state);
         }
         if !same || IntersectionCheck::of(&self.cable).refuse_buried().is_err() {
