@@ -271,6 +271,7 @@ fn change_bending_stiffness(cable: &mut CableState) {
 /// none.
 fn resolve_bends(cable: &mut CableState, stiffness: f64) {
     let stretched_before = StretchedBars::of(cable).without_slack();
+    let (sum, late) = (cable.motion.account.sum, cable.motion.account.late);
     for k in 1..cable.mesh.nodes().max(1) - 1 {
         let slides = |node: SlidingNode| matches!(node.slide_over, SlideOver::Obstacle { .. });
         let length = cable.mesh.path(k - 1, &cable.motion.positions).length;
@@ -279,6 +280,8 @@ fn resolve_bends(cable: &mut CableState, stiffness: f64) {
             settle_down(cable, k);
         }
     }
+    // The momentum that an edit gives is not an impulse of obstacles.
+    (cable.motion.account.sum, cable.motion.account.late) = (sum, late);
     stretched_before.restore(cable);
 }
 
