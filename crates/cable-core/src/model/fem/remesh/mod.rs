@@ -7,6 +7,7 @@
 //! | `edit.rs` | insertion and removal of one node; material, position and momentum kept |
 //! | `break_cable.rs` | a break: one node becomes two |
 //! | `wheels.rs` | wheels that a cable in motion leaves |
+//! | `stretched_bars.rs` | bars of an edited mesh keep their tension |
 //! | `arc_marks.rs` | marks on a round where material is counted: moved, added, removed |
 
 pub(in crate::model::fem) mod adapt;
@@ -14,9 +15,11 @@ pub(in crate::model::fem) mod arc_marks;
 mod break_cable;
 pub(in crate::model::fem) mod edit;
 mod edit_criteria;
+mod stretched_bars;
 mod wheels;
 
 pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
 pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};
+pub(in crate::model::fem) use stretched_bars::StretchedBars;
 pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel};

@@ -4,7 +4,7 @@ use super::Stepper;
 use crate::math::Vec2;
 use crate::model::Inertia;
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::{Remeshed, remesh};
+use crate::model::fem::remesh::{Remeshed, StretchedBars, remesh};
 use crate::model::fem::results;
 use crate::model::fem::state::{MovingMass, kinetic_energy, kinetic_energy_of_step, stored_energy};
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
@@ -12,7 +12,6 @@ use crate::model::fem::time::{
     Weights, account_for_step, forces_in_step, forget_slack_impulses, hands, keep_balanced_tensions, loss_memory,
     plastic_impact, remember_impulses, set_inertia, work_in_step,
 };
-use crate::model::fem::transfer::StretchedBars;
 use crate::solution::Energy;
 
 impl Stepper {

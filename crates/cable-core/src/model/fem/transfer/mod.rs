@@ -3,7 +3,6 @@
 //! | room | content |
 //! |---|---|
 //! | `after_edit.rs` | continues on the same mesh after an edit of the scene |
-//! | `stretched_bars.rs` | bars of an edited mesh keep their tension |
 //! | `from_state.rs` | adopts a state of another mesh or model |
 //! | `from_solution.rs` | adopts an answer with its tensions: sliding nodes, stretch, friction
 //! anchors |
@@ -11,9 +10,6 @@
 pub(in crate::model::fem) mod after_edit;
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
-mod stretched_bars;
-
-pub(in crate::model::fem) use stretched_bars::StretchedBars;
 
 use std::sync::Arc;
 
