@@ -231,7 +231,8 @@ pub struct TensionPeak {
 /// model, not an unbalanced force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Assumptions {
-    /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
+    /// Bending stiffness EI, N·m²; 0 = perfectly flexible. After an edit of a cable in motion it is
+    /// that of the instant.
     pub bending_stiffness_n_m2: f64,
     /// True if the cable is an obstacle to itself.
     pub self_contact: bool,

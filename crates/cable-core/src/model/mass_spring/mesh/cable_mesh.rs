@@ -176,7 +176,10 @@ impl Mesh {
         }
         self.change_bending(|bending| bending.follow(dt_s));
         let sizes = self.excess.iter().zip(&self.material_length).map(|(excess, length)| excess.abs() * length);
-        self.fade_excess(excess_left(sizes.sum(), dt_s));
+        let whole_m: f64 = sizes.sum();
+        if whole_m > 0.0 {
+            self.fade_excess(excess_left(whole_m, dt_s));
+        }
     }
 
     /// Changes the unstretched length and the bending stiffness by a fraction of what they differ
@@ -187,7 +190,9 @@ impl Mesh {
             self.set_thermal_stretch(if part < 1.0 { now + (to - now) * part } else { to });
         }
         self.change_bending(|bending| bending.approach(part));
-        self.fade_excess(1.0 - part);
+        if self.has_excess() {
+            self.fade_excess(1.0 - part);
+        }
     }
 
     /// True if the unstretched length of an element is not that of its material.
@@ -197,9 +202,6 @@ impl Mesh {
 
     /// Keeps a part of what unstretched lengths differ from those of the material.
     fn fade_excess(&mut self, part: f64) {
-        if !self.has_excess() {
-            return;
-        }
         for excess in &mut self.excess {
             *excess = if excess.abs() > LEAST_EXCESS { *excess * part } else { 0.0 };
         }
