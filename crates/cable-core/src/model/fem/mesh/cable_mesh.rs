@@ -157,7 +157,8 @@ impl Mesh {
         !self.excess.is_zero()
     }
 
-    /// What unstretched lengths differ from those of the material, all together, m.
+    /// The sum over all bars of how much their unstretched length differs from that of the
+    /// material, m.
     pub(in crate::model::fem) fn whole_excess(&self) -> f64 {
         let material = |e: usize| self.thermal_stretch * (self.arc_length[e + 1] - self.arc_length[e]);
         (0..self.rest_length.len()).map(|e| self.excess.sum(e).abs() * material(e)).sum()

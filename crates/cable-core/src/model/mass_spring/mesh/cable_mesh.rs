@@ -135,7 +135,7 @@ impl Mesh {
         if other_material {
             let nodes = self.position.len();
             [self.spring_memory, self.bend_memory] =
-                memories(&self.problem, &self.tuning.mesh, [self.even_length, self.bending_stiffness], nodes);
+                memories(&self.problem, &self.tuning.mesh, self.even_length, self.bending_stiffness, nodes);
         }
         let change = BendingChange::between(self.bending_stiffness, self.problem.bending_stiffness);
         self.bending_change = Some(change).filter(|change| !change.is_over());
@@ -283,7 +283,7 @@ impl Mesh {
             p.place_on(node, arc_length[node]);
         }
         let [spring_memory, bend_memory] =
-            memories(&problem, &tuning.mesh, [problem.length / segments as f64, problem.bending_stiffness], count);
+            memories(&problem, &tuning.mesh, problem.length / segments as f64, problem.bending_stiffness, count);
         Self {
             position: first_shape(&problem, &arc_length, &support_node),
             velocity: vec![Vec2::zeros(); count],

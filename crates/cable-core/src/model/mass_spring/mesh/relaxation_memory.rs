@@ -59,7 +59,8 @@ part! {
 pub(super) fn memories(
     problem: &Problem,
     tuning: &MeshTuning,
-    [spring, bending_stiffness]: [f64; 2],
+    spring: f64,
+    bending_stiffness: f64,
     nodes: usize,
 ) -> [RelaxationMemory; 2] {
     let Loss { mut stretching, mut bending } = Loss::of(problem, spring, false);
@@ -277,7 +278,7 @@ mod tests {
         let mut scene = catalog::hanging_span();
         scene.cables[0].damping_ratio = 0.05;
         let problem = problems(&scene).unwrap().remove(0);
-        let [springs, _] = memories(&problem, &MeshTuning::default(), [0.1, problem.bending_stiffness], count + 1);
+        let [springs, _] = memories(&problem, &MeshTuning::default(), 0.1, problem.bending_stiffness, count + 1);
         springs
     }
 
