@@ -298,6 +298,13 @@ fn random_pieces_meet() {
     campaign(0..12, 2.0);
 }
 
+/// Two ends of one break lay past each other by 10 mm.
+#[test]
+fn issue_016_the_ends_of_a_break_do_not_pass_each_other() {
+    let seen = run(&random_scene(4116), Model::Fem, 2.0);
+    assert!(seen.breaks == 3 && seen.crossed == 0 && seen.touching > 0 && seen.stopped.is_none(), "{seen:?}");
+}
+
 /// `cargo test --locked -p cable-core --test broken_pieces -- --ignored --nocapture`, with
 /// `FROM=100 TO=200` for some of them.
 #[test]

@@ -12,12 +12,13 @@
 //! At a break two nodes have the same place in the cable, and the segment between them does not
 //! exist. Across it arc lengths mean nothing: the ends of the two pieces touch like any other parts
 //! of the cable. But they begin at the same point, without a gap. So a pair across a break that was
-//! no contact of the unbroken cable is none until the pieces have parted there, which is where its
-//! barrier begins: at the reach, where its force is zero.
+//! no contact of the unbroken cable keeps the distance that it has come to since: what has parted
+//! does not come together again. Its barrier begins where it is, at the reach, where its force is
+//! zero, and moves out with it, until the centre lines are a diameter and the reach apart.
 
 use super::distance::{from_segment, nearest_fraction, point_segment};
 use super::sweep::advance;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 
 /// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the
 /// radius d/2 takes 1.57, and segments need some room beside that.
@@ -39,6 +40,8 @@ pub struct SelfPair {
     pub normal: Vec2,
     /// Distance of the surfaces, m.
     pub gap_m: f64,
+    /// Distance of the centre lines, m.
+    pub distance_m: f64,
     /// +1 or −1.
     pub weight: f64,
 }
@@ -70,8 +73,29 @@ pub struct SelfContact {
     pub diameter: f64,
     /// Breaks: the segments that do not exist.
     breaks: Vec<usize>,
-    /// Nodes and segments on both sides of a break that have not parted since.
-    joined: Vec<(usize, usize)>,
+    /// Pairs across a break that have not come apart by a diameter since.
+    parting: Vec<PartingPair>,
+}
+
+/// A node and a segment on both sides of a break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct PartingPair {
+    node: usize,
+    segment: usize,
+    /// Distance of the centre lines to which they may come together again, m; 0: they may cross.
+    least_m: f64,
+}
+
+impl PartingPair {
+    /// The distance of the centre lines at positions `x`, m.
+    fn distance(&self, x: &[Vec2]) -> f64 {
+        point_segment(x[self.node], x[self.segment], x[self.segment + 1])
+    }
+
+    /// The pair at positions `x` for a barrier that reaches this far (m).
+    fn parted(self, x: &[Vec2], reach: f64) -> Self {
+        Self { least_m: larger(self.least_m, self.distance(x) - reach), ..self }
+    }
 }
 
 /// Nodes sorted by x, and kept from search to search: a nearly sorted list is sorted quickly.
@@ -101,6 +125,20 @@ struct Pairing {
     segment: usize,
     fraction: f64,
     weight: f64,
+    /// Distance of the centre lines where the surfaces touch, m.
+    diameter: f64,
+}
+
+impl Pairing {
+    fn push(self, x: &[Vec2], reach: f64, out: &mut Vec<SelfPair>) {
+        let Self { node, segment, fraction, weight, diameter } = self;
+        let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);
+        let distance_m = away.norm();
+        if distance_m > 0.0 && distance_m - diameter < reach {
+            let (normal, gap_m) = (away / distance_m, distance_m - diameter);
+            out.push(SelfPair { node, segment, fraction, normal, gap_m, distance_m, weight });
+        }
+    }
 }
 
 impl SelfContact {
@@ -114,7 +152,7 @@ impl SelfContact {
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.diameter = other.diameter;
         self.breaks.clone_from(&other.breaks);
-        self.joined.clone_from(&other.joined);
+        self.parting.clone_from(&other.parting);
     }
 
     /// Breaks the cable at node `k`, whose copy for the second piece has become node `k` + 1 at
@@ -124,11 +162,11 @@ impl SelfContact {
         let moved_segment = |e: usize| if e >= k { e + 1 } else { e };
         self.breaks.iter_mut().for_each(|e| *e = moved_segment(*e));
         // A pair of the broken node is one of both its copies.
-        let joined = std::mem::take(&mut self.joined);
-        for (p, e) in joined {
-            self.joined.push((moved(p), moved_segment(e)));
-            if p == k {
-                self.joined.push((k + 1, moved_segment(e)));
+        for pair in std::mem::take(&mut self.parting) {
+            let segment = moved_segment(pair.segment);
+            self.parting.push(PartingPair { node: moved(pair.node), segment, ..pair });
+            if pair.node == k {
+                self.parting.push(PartingPair { node: k + 1, segment, ..pair });
             }
         }
         let first = self.breaks.partition_point(|&e| e < k);
@@ -136,21 +174,26 @@ impl SelfContact {
             first.checked_sub(1).map_or(0, |b| self.breaks[b] + 1),
             self.breaks.get(first).copied().unwrap_or(x.len() - 1),
         );
-        let near = |p: usize, e: usize| {
-            !self.is_beyond_bend(arc, p, e) && point_segment(x[p], x[e], x[e + 1]) - self.diameter < reach
-        };
+        let pair = |(node, segment): (usize, usize)| PartingPair { node, segment, least_m: 0.0 }.parted(x, reach);
         let before = (low..=k).flat_map(|p| (k + 1..high).map(move |e| (p, e)));
         let after = (k + 1..=high).flat_map(|p| (low..k).map(move |e| (p, e)));
-        let joined: Vec<(usize, usize)> = before.chain(after).filter(|&(p, e)| near(p, e)).collect();
-        self.joined.extend(joined);
+        let near = before.chain(after).filter(|&(p, e)| !self.is_beyond_bend(arc, p, e)).map(pair);
+        let parting: Vec<PartingPair> = near.filter(|pair| pair.least_m < self.diameter).collect();
+        self.parting.extend(parting);
         self.breaks.insert(first, k);
     }
 
-    /// Lets the pairs at breaks be contacts that have parted by the `reach` of the barrier (m) at
-    /// positions `x` (m).
+    /// Keeps the distances to which the pairs at breaks have come at positions `x` (m), with a
+    /// barrier of this `reach` (m).
     pub(crate) fn part(&mut self, x: &[Vec2], reach: f64) {
         let diameter = self.diameter;
-        self.joined.retain(|&(p, e)| point_segment(x[p], x[e], x[e + 1]) - diameter < reach);
+        self.parting.iter_mut().for_each(|pair| *pair = pair.parted(x, reach));
+        self.parting.retain(|pair| pair.least_m < diameter);
+    }
+
+    /// Returns whether the node `p` and the segment `e` are still parting at a break.
+    fn is_parting(&self, p: usize, e: usize) -> bool {
+        self.parting.iter().any(|pair| (pair.node, pair.segment) == (p, e))
     }
 
     /// Returns whether the cable meets itself at all.
@@ -168,7 +211,7 @@ impl SelfContact {
         let between = if p <= e { p..=e } else { e..=p - 1 };
         let first = self.breaks.partition_point(|b| b < between.start());
         match self.breaks.get(first).filter(|b| between.contains(b)) {
-            Some(_) => self.breaks.binary_search(&e).is_err() && !self.joined.contains(&(p, e)),
+            Some(_) => self.breaks.binary_search(&e).is_err() && !self.is_parting(p, e),
             None => self.is_beyond_bend(arc, p, e),
         }
     }
@@ -188,7 +231,8 @@ impl SelfContact {
             return;
         }
         order.sort(x);
-        let near = self.diameter + reach;
+        let diameter = self.diameter;
+        let near = diameter + reach;
         let last = x.len() - 2;
         for e in 0..=last {
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
@@ -198,7 +242,7 @@ impl SelfContact {
                 }
                 let fraction = nearest_fraction(x[p], x[e], x[e + 1]);
                 if fraction > 0.0 && fraction < 1.0 {
-                    self.push(x, Pairing { node: p, segment: e, fraction, weight: 1.0 }, reach, out);
+                    Pairing { node: p, segment: e, fraction, weight: 1.0, diameter }.push(x, reach, out);
                 }
                 // Each segment handles the joint at its end, the first segment also the one at its
                 // start.
@@ -207,7 +251,7 @@ impl SelfContact {
                     let weight = self.joint_weight(x, arc, p, v);
                     if weight != 0.0 {
                         let fraction = if v == e { 0.0 } else { 1.0 };
-                        self.push(x, Pairing { node: p, segment: e, fraction, weight }, reach, out);
+                        Pairing { node: p, segment: e, fraction, weight, diameter }.push(x, reach, out);
                     }
                 }
                 // If only the later segment of a joint is far enough along the cable, no other
@@ -215,10 +259,14 @@ impl SelfContact {
                 if e > 0 && !self.apart(arc, p, e - 1) {
                     let weight = self.joint_weight(x, arc, p, e);
                     if weight != 0.0 {
-                        self.push(x, Pairing { node: p, segment: e, fraction: 0.0, weight }, reach, out);
+                        Pairing { node: p, segment: e, fraction: 0.0, weight, diameter }.push(x, reach, out);
                     }
                 }
             }
+        }
+        for &PartingPair { node, segment, least_m } in self.parting.iter().filter(|pair| pair.least_m > 0.0) {
+            let fraction = nearest_fraction(x[node], x[segment], x[segment + 1]);
+            Pairing { node, segment, fraction, weight: 1.0, diameter: least_m }.push(x, reach, out);
         }
         out.sort_by_key(|pair| (pair.node, pair.segment));
     }
@@ -232,16 +280,6 @@ impl SelfContact {
         let after = clamped(v, 0.0);
         let count = f64::from(u8::from(before == Some(true)) + u8::from(after == Some(true)));
         if before.is_some() && after.is_some() { count - 1.0 } else { count }
-    }
-
-    fn push(&self, x: &[Vec2], pairing: Pairing, reach: f64, out: &mut Vec<SelfPair>) {
-        let Pairing { node, segment, fraction, weight } = pairing;
-        let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);
-        let distance = away.norm();
-        if distance > 0.0 && distance - self.diameter < reach {
-            let (normal, gap_m) = (away / distance, distance - self.diameter);
-            out.push(SelfPair { node, segment, fraction, normal, gap_m, weight });
-        }
     }
 
     /// The largest fraction (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves
@@ -276,12 +314,12 @@ impl SelfContact {
                 if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
                     continue;
                 }
-                // In the frame of the node, which is then at rest, the segment moves.
-                let c = step(p);
-                let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
-                let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
-                free = advance(moving, way, [Vec2::zeros(); 2], self.diameter, [keep, most, noise], free);
+                free = until_near(x, [p, e], [step(p), a, b], self.diameter, [keep, most, noise], free);
             }
+        }
+        for &PartingPair { node: p, segment: e, least_m } in self.parting.iter().filter(|pair| pair.least_m > 0.0) {
+            let ways = [p, e, e + 1].map(step);
+            free = until_near(x, [p, e], ways, least_m, [keep, most, noise], free);
         }
         free
     }
@@ -293,6 +331,22 @@ impl SelfContact {
         self.pairs(x, arc, within, &mut SortedNodes::default(), &mut pairs);
         pairs.iter().filter(|p| p.weight > 0.0).map(|p| (p.gap_m, p.node)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
+}
+
+/// The fraction, at most `free`, of a move of the node `p` and of both ends of the segment `e` that
+/// leaves of the distance beyond `diameter` (m) what is asked.
+fn until_near(
+    x: &[Vec2],
+    [p, e]: [usize; 2],
+    [c, a, b]: [Vec2; 3],
+    diameter: f64,
+    keep: [f64; 3],
+    free: f64,
+) -> f64 {
+    // In the frame of the node, which is then at rest, the segment moves.
+    let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
+    let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
+    advance(moving, way, [Vec2::zeros(); 2], diameter, keep, free)
 }
 
 #[cfg(test)]
@@ -391,6 +445,15 @@ mod tests {
         let nearly = moved(Vec2::new(0.0, 0.0205));
         shape.part(&nearly, reach);
         assert!(pairs(&shape, &nearly).is_empty());
+        // They may part further, but not come together again: nearer than the reach they repel.
+        let back = Vec2::new(0.0, -0.0205);
+        let free_way = |way: Vec2| {
+            let step = |k: usize| if k > 20 { way } else { Vec2::zeros() };
+            shape.free_fraction(&nearly, &s, &step, [0.5, f64::INFINITY, 1.0], &mut SortedNodes::default())
+        };
+        assert!(free_way(-back) == 1.0 && free_way(back) < 0.05);
+        let nearer = pairs(&shape, &moved(Vec2::new(0.0, 0.02)));
+        assert!(nearer.iter().any(|p| (p.gap_m - 5e-4).abs() < 1e-12 && (p.distance_m - 0.02).abs() < 1e-12));
         // Once they have parted they do: end against end, and laid over each other anywhere.
         shape.part(&moved(Vec2::new(0.03, 0.0)), reach);
         assert_eq!(pairs(&shape, &moved(Vec2::new(0.0205, 0.0))).iter().map(|p| p.weight).sum::<f64>(), 2.0);

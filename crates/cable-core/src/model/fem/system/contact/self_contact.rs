@@ -149,7 +149,7 @@ pub fn add(
         let b = barrier.at(pair.gap_m);
         let (slope, bend) = (b.slope * pair.weight, b.curvature * pair.weight);
         let bend = if !exact && bend < 0.0 { 0.0 } else { bend };
-        let (n, d) = (pair.normal, pair.gap_m + self_contacts.shape.diameter);
+        let (n, d) = (pair.normal, pair.distance_m);
         let shares = pair.shares();
         let chord = x[pair.segment + 1] - x[pair.segment];
         let (length, inside) = (chord.norm(), pair.fraction > 0.0 && pair.fraction < 1.0);
