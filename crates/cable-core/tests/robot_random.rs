@@ -142,6 +142,18 @@ fn whatever_is_pressed_on_whatever_map_nothing_gets_into_anything() {
     assert!(touched >= 50 && stopped == 0, "{stopped} of {touched} drives stopped");
 }
 
+/// The slack of these cables falls into the notch between the robot and a knee of the saltcake, onto
+/// one place. The contacts of bars a micrometre long depended on their directions, and no step,
+/// however short, found its balance.
+#[test]
+fn issue_017_a_heap_of_slack_cable_behind_the_robot_does_not_stop_it() {
+    let maps = preset::map_presets();
+    let map = maps.iter().find(|map| map.name.starts_with("Saltcake mounded")).unwrap();
+    for number in [918_604, 1_140_336, 1_457_096, 2_264_834, 2_850_840] {
+        assert!(!drive(map, number, Check::Burial).1, "{number}");
+    }
+}
+
 /// A number that the caller asks for, or a default.
 fn asked(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |value| value.parse().unwrap())

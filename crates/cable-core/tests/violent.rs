@@ -385,6 +385,13 @@ fn edited_campaign(scenes: std::ops::Range<u64>, seconds: f64) {
     assert!(worst < 1e-4, "momentum from nowhere: {worst:e}");
 }
 
+/// The momentum that nodes gave to obstacles where an edit divided a stiff cable anew was counted in
+/// the next step: 1.1e-3 of its impulse.
+#[test]
+fn issue_016_the_momentum_that_an_edit_gives_is_no_impulse_of_obstacles() {
+    edited_campaign(3495..3496, 1.6);
+}
+
 /// Cables that got a bending stiffness, of which the bars were slack or stretched by the mesh on
 /// which they were laid (14 kN for 49 N), or that lost nodes on the way (262 J in a step), were
 /// told to have energy from nowhere. One lay 14 mm inside an obstacle (2346), two stopped (2350 and

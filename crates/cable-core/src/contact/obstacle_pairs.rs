@@ -166,9 +166,9 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
 fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: &[Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
     let [before, Some(p), after] = *chain else { return };
     let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);
-    let (b, a) = (beyond(before), beyond(after));
-    let clamped = f64::from(u8::from(b == Some(true)) + u8::from(a == Some(true)));
-    let weight = if b.is_some() && a.is_some() { clamped - 1.0 } else { clamped };
+    // The segments that meet the corner with their inside take this node's part.
+    let inside = [beyond(before), beyond(after)].into_iter().filter(|b| *b == Some(false)).count();
+    let weight = 1.0 - inside as f64;
     push_point(body, feature, [p, v], weight, reach, out);
 }
 

@@ -226,6 +226,24 @@ fn pair_sums_have_no_jump() {
     assert!(worst < 8.0 * 8e-5, "{worst}");
 }
 
+/// A node meets the corner of a boundary, and the corner meets the node; each bar that meets the
+/// corner with its inside takes such a part of the node's.
+#[test]
+fn a_node_meets_a_corner_less_the_bars_that_do() {
+    let ground = [[-5.0, -1.0], [0.0, 0.0], [5.0, -1.0]];
+    let world = World::new(&[obstacle(terrain(&ground))], 0.5, 0.0);
+    let node = Vec2::new(0.0, 0.05);
+    let weight = |before: Option<Vec2>, after: Option<Vec2>| {
+        let mut sum = 0.0;
+        world.geometry().node_pairs(before, node, after, 0.1, &mut |p| sum += p.weight);
+        sum
+    };
+    let (up, down) = (Some(Vec2::new(0.1, 1.0)), Some(Vec2::new(1.0, -0.5)));
+    assert_eq!(weight(None, None), 2.0);
+    assert_eq!((weight(up, None), weight(None, up), weight(up, up)), (2.0, 2.0, 2.0));
+    assert_eq!((weight(down, None), weight(down, up), weight(down, down)), (1.0, 1.0, 0.0));
+}
+
 /// First time in (0, 1) at which the moving segment touches an edge: an end reaches the edge, or an
 /// end of the edge reaches the segment. Exact roots, no search.
 fn first_crossing(from: [Vec2; 2], to: [Vec2; 2], p: Vec2, q: Vec2) -> Option<f64> {

@@ -192,6 +192,9 @@ pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drag
     if !edited.adds_nothing() && is_inside_something(&cable) {
         return None;
     }
+    // The momentum that an edit gives is not an impulse of obstacles.
+    let account = &old.motion.account;
+    (cable.motion.account.sum, cable.motion.account.late) = (account.sum, account.late);
     let x = std::mem::take(&mut cable.motion.positions);
     cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
     cable.motion.positions = x;
@@ -270,7 +273,6 @@ fn change_bending_stiffness(cable: &mut CableState) {
 /// none.
 fn resolve_bends(cable: &mut CableState, stiffness: f64) {
     let stretched_before = StretchedBars::of(cable).without_slack();
-    let (sum, late) = (cable.motion.account.sum, cable.motion.account.late);
     for k in 1..cable.mesh.nodes().max(1) - 1 {
         let slides = |node: SlidingNode| matches!(node.slide_over, SlideOver::Obstacle { .. });
         let length = cable.mesh.path(k - 1, &cable.motion.positions).length;
@@ -279,8 +281,6 @@ fn resolve_bends(cable: &mut CableState, stiffness: f64) {
             settle_down(cable, k);
         }
     }
-    // The momentum that an edit gives is not an impulse of obstacles.
-    (cable.motion.account.sum, cable.motion.account.late) = (sum, late);
     stretched_before.restore(cable);
 }
 

@@ -35,9 +35,30 @@ fn parts_near<'a>(
 pub struct ContactSearch {
     /// The listed obstacles of each bar.
     pub lists: NeighbourLists,
+    /// True for each bar that is collapsed in this step: its ends meet obstacles for themselves,
+    /// and nothing is between them that could.
+    collapsed: Vec<bool>,
 }
 
 impl ContactSearch {
+    /// Notes which bars of the mesh at `x` (m) are collapsed: slack, and shorter than `length_m`
+    /// (m). In a heap of slack cable their directions are chance, and change with every iteration;
+    /// contacts that depend on them, by inclusion and exclusion, have no minimum that could be
+    /// found.
+    pub fn note_collapsed_bars(&mut self, mesh: &Mesh, x: &[Vec2], length_m: f64) {
+        let is_plain = |e: usize| mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none();
+        let is_short = |e: usize| (x[e + 1] - x[e]).norm_squared() < length_m * length_m;
+        self.collapsed.clear();
+        self.collapsed
+            .extend((0..mesh.rest_length.len()).map(|e| is_short(e) && is_plain(e) && mesh.rest_length[e] > length_m));
+    }
+
+    /// True if bar `e` joins its ends in contact.
+    fn is_bar(&self, mesh: &Mesh, e: usize) -> bool {
+        let is_collapsed = self.collapsed.len() == mesh.rest_length.len() && self.collapsed[e];
+        !mesh.is_break(e) && !is_collapsed
+    }
+
     /// Finds the contacts of the mesh at `x` (m), in order of arc length. Each bar, and the node at
     /// its start, has its own `reach` (m). Held nodes have no contacts.
     pub fn find(
@@ -73,15 +94,15 @@ impl ContactSearch {
                 continue;
             }
             if mesh.is_free(node) {
-                let before = node.checked_sub(1).filter(|&e| !mesh.is_break(e)).map(|e| mesh.straight(e, x)[0]);
-                let chain = [before, Some(x[node]), ends.filter(|_| !mesh.is_break(node)).map(|e| e[1])];
+                let before = node.checked_sub(1).filter(|&e| self.is_bar(mesh, e)).map(|e| mesh.straight(e, x)[0]);
+                let chain = [before, Some(x[node]), ends.filter(|_| self.is_bar(mesh, node)).map(|e| e[1])];
                 let mut keep = |pair| out.push(ContactPair { node, on_segment: false, pair });
                 match listed {
                     Some(parts) => geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut keep),
                     None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
                 }
             }
-            let moves = |_: &[Vec2; 2]| (mesh.is_free(node) || mesh.is_free(node + 1)) && !mesh.is_break(node);
+            let moves = |_: &[Vec2; 2]| (mesh.is_free(node) || mesh.is_free(node + 1)) && self.is_bar(mesh, node);
             let Some(ends) = ends.filter(moves) else { continue };
             let rounds = mesh.rounds(node);
             let mut keep = |pair: Pair| {

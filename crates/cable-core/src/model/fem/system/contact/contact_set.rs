@@ -132,6 +132,7 @@ impl ContactSet {
         let needed = |e: usize| reach + move_of(e) + tuning.listed_move_m;
         let within = |e: usize| reach + tuning.listed_steps * move_of(e) + 2.0 * tuning.listed_move_m;
         self.search.list_neighbours(problem, mesh, x, needed, within);
+        self.search.note_collapsed_bars(mesh, x, reach);
     }
 
     /// Sets up friction for a step that began at `start`, with the contacts and normal forces at
