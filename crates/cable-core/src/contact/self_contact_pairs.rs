@@ -335,14 +335,7 @@ impl SelfContact {
 
 /// The fraction, at most `free`, of a move of the node `p` and of both ends of the segment `e` that
 /// leaves of the distance beyond `diameter` (m) what is asked.
-fn until_near(
-    x: &[Vec2],
-    [p, e]: [usize; 2],
-    [c, a, b]: [Vec2; 3],
-    diameter: f64,
-    keep: [f64; 3],
-    free: f64,
-) -> f64 {
+fn until_near(x: &[Vec2], [p, e]: [usize; 2], [c, a, b]: [Vec2; 3], diameter: f64, keep: [f64; 3], free: f64) -> f64 {
     // In the frame of the node, which is then at rest, the segment moves.
     let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
     let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);

@@ -97,10 +97,10 @@ impl Energies {
         self.stored.kinetic_j = kinetic_j;
     }
 
-    /// Records that the cable falls asleep, and so stands still.
-    pub(in crate::model::fem) fn fall_asleep(&mut self) {
-        self.works.numerical -= self.stored.kinetic_j;
-        self.stored.kinetic_j = 0.0;
+    /// Records that the cable falls asleep: it stands still, with the energy `stored`.
+    pub(in crate::model::fem) fn fall_asleep(&mut self, stored: Energy) {
+        self.works.numerical += stored.total_j() - self.stored.total_j();
+        self.stored = stored;
     }
 
     /// Ends a step.

@@ -5,7 +5,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::mesh::SlideOver;
 use crate::model::fem::results;
-use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds};
+use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds, stored_energy};
 use crate::model::fem::system::{Converged, WorkBudget};
 use crate::model::smoothed_target::held_warning;
 use crate::model::tension_gauge::{TensionBefore, TensionGauge};
@@ -69,7 +69,7 @@ impl Stepper {
         let mut total = stepped?;
         self.cable.motion.time = end;
         match inertia {
-            Inertia::Dynamic => self.end_motion(dt_s),
+            Inertia::Dynamic => total.iterations += self.end_motion(dt_s, dragged),
             Inertia::QuasiStatic => {
                 total = self.polish(total, dragged);
                 self.time_control.sleep.wake();
@@ -113,8 +113,8 @@ impl Stepper {
     }
 
     /// Ends an `advance` of `dt_s` (s) with inertia: chooses the size of the next steps, and puts a
-    /// cable at rest to sleep.
-    fn end_motion(&mut self, dt_s: f64) {
+    /// cable at rest to sleep. Returns the iterations that this took.
+    fn end_motion(&mut self, dt_s: f64, dragged: &[Option<Vec2>]) -> usize {
         self.cable.motion.account.ends_at(self.cable.motion.time);
         self.time_control.step_size.choose(
             &self.cable.mesh.tuning.step,
@@ -122,14 +122,20 @@ impl Stepper {
             self.cable.problem.length,
             dt_s,
         );
-        if self.time_control.sleep.falls_asleep(&self.cable) {
-            self.cable.motion.velocities.fill(Vec2::zeros());
-            self.cable.motion.slide_rates.fill(0.0);
-            let mut energies = self.cable.motion.energies;
-            energies.fall_asleep();
-            self.forget_history();
-            self.cable.motion.energies = energies;
+        if !self.time_control.sleep.falls_asleep(&self.cable) {
+            return 0;
         }
+        self.cable.motion.velocities.fill(Vec2::zeros());
+        self.cable.motion.slide_rates.fill(0.0);
+        let mut energies = self.cable.motion.energies;
+        self.forget_history();
+        // What trembles stands still in the balance about which it trembles.
+        let done = self.polish(Converged::default(), dragged);
+        if self.accounts_energy {
+            energies.fall_asleep(stored_energy(&self.cable));
+        }
+        self.cable.motion.energies = energies;
+        done.iterations
     }
 
     /// The report of an `advance` or of a search for the equilibrium.
