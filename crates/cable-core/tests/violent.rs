@@ -444,6 +444,18 @@ fn issue_016_a_cable_that_falls_asleep_is_in_balance() {
     check_all(&found);
 }
 
+/// The contact of a stiff cable with an edge went on along the line of the edge where that had ended:
+/// wholly beyond a beam (105), and from the top of a hill into the air (173). The checker saw it, so
+/// that there was no answer.
+#[test]
+fn issue_016_a_stiff_cable_lies_on_no_edge_beyond_its_end() {
+    for number in [105, 173] {
+        let mut sim = Simulation::with_settings(stiff_scene(number), Model::Fem, Settings::default()).unwrap();
+        let found = sim.settle().map(|answer| answer.verification.unwrap().findings);
+        assert_eq!(found.map_err(|e| e.to_string()), Ok(Vec::new()), "{number}");
+    }
+}
+
 #[test]
 #[ignore = "minutes: 300 violent scenes of stiff cables"]
 fn many_stiff_violent_scenes_obey_the_laws() {

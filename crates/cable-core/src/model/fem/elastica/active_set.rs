@@ -7,6 +7,7 @@ use crate::model::fem::elastica::boundary_value::{
     tangent,
 };
 use crate::model::fem::elastica::guess::contacts_of_answer::contact_at;
+use crate::numerics::bisect;
 use crate::problem::Problem;
 
 /// Depth to which a cable may lie in an obstacle, as a fraction of its radius: the error of the
@@ -32,6 +33,26 @@ const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 /// The same tolerance for a contact that was a stretch and became a point. At the limit both states
 /// are solutions, and without this hysteresis the contact would alternate for ever.
 const POINT_CURVATURE_TOLERANCE: f64 = 1e-3;
+
+/// Nodes of a stretch on its edge with which it can end before the corner. Fewer: what is left of it
+/// has no length; more: a short stretch beyond a corner is refused.
+const LEAST_NODES_ON_EDGE: usize = 4;
+
+/// Halvings of the bar in which a stretch leaves its edge: to less than a thousandth of it.
+const CORNER_HALVINGS: usize = 10;
+
+/// An end of a stretch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StretchEnd {
+    First,
+    Last,
+}
+
+/// True if nothing is where the cable is said to lie.
+fn is_clear(problem: &Problem, x: Vec2) -> bool {
+    let near = OVERLAP_TOLERANCE * problem.radius;
+    problem.world.signed_gap(x, near).is_none_or(|gap| gap.gap_m > near)
+}
 
 /// The two free pieces into which a node cuts a piece.
 fn split(piece: &ElasticaPiece, node: usize) -> (ElasticaPiece, ElasticaPiece) {
@@ -73,7 +94,7 @@ impl Elastica {
                 if !self.lift_off_lines(&saved) {
                     return false;
                 }
-            } else {
+            } else if !self.leave_ends_of_lines(problem) {
                 match self.change_one_contact(problem, &points) {
                     Some(true) => {}
                     Some(false) => return true,
@@ -109,6 +130,89 @@ impl Elastica {
             self.release(j);
         }
         true
+    }
+
+    /// Lifts the cable off a line where the edge along which the line runs has ended: a point beyond
+    /// the end opens, a stretch that lies wholly beyond it, too, and one that lies beyond it in part
+    /// ends before the corner, over which the cable goes on. Returns whether there was one.
+    fn leave_ends_of_lines(&mut self, problem: &Problem) -> bool {
+        let line =
+            |k: usize| self.contacts.get(k).is_some_and(|c| c.radius.is_none() && !matches!(c.owner, Owner::Pulley(_)));
+        let is_clear = |u: &[f64; STATES]| is_clear(problem, place(u));
+        let inner = |k: usize| k > 0 && k + 1 < self.pieces.len();
+        let lies_beyond = |p: &ElasticaPiece| p.contact.is_some_and(line) && p.nodes.iter().all(is_clear);
+        if let Some(k) = (0..self.pieces.len()).find(|&k| inner(k) && lies_beyond(&self.pieces[k])) {
+            self.make_point(k);
+            self.release(k - 1);
+            return true;
+        }
+        let point = self.joints.iter().zip(&self.pieces).position(|(joint, before)| {
+            matches!(joint, Joint::PointContact(k) if line(*k)) && before.nodes.last().is_some_and(is_clear)
+        });
+        if let Some(j) = point {
+            self.release(j);
+            return true;
+        }
+        let ends_beyond = |k: usize, end: StretchEnd| {
+            let piece = &self.pieces[k];
+            let mut nodes: Vec<&[f64; STATES]> = piece.nodes.iter().collect();
+            if end == StretchEnd::First {
+                nodes.reverse();
+            }
+            let on_edge = nodes.iter().take_while(|u| !is_clear(u)).count();
+            let is_long_enough = on_edge >= LEAST_NODES_ON_EDGE && on_edge < nodes.len();
+            (is_long_enough && piece.contact.is_some_and(line)).then_some((k, end, on_edge))
+        };
+        let inner = (0..self.pieces.len()).filter(|&k| inner(k));
+        let found = inner.flat_map(|k| [StretchEnd::First, StretchEnd::Last].map(|end| (k, end)));
+        let found = found.filter_map(|(k, end)| ends_beyond(k, end)).next();
+        found.is_some_and(|(k, end, on_edge)| self.end_before_corner(problem, k, end, on_edge).is_some())
+    }
+
+    /// Lets stretch `k`, which lies beyond the corner of its line at one end but for `on_edge` of its
+    /// nodes, end half-way to the corner, and touch that in a point.
+    fn end_before_corner(&mut self, problem: &Problem, k: usize, end: StretchEnd, on_edge: usize) -> Option<()> {
+        let piece = &self.pieces[k];
+        let (count, on_line) = (piece.nodes.len(), piece.contact?);
+        let line = *self.contacts.get(on_line)?;
+        let cuts = |first: usize, second: usize| {
+            let (before, rest) = split(piece, first);
+            let (middle, after) = split(&rest, second - first);
+            [before, middle, after]
+        };
+        let (beyond, [mut a, b, mut c]) = match end {
+            StretchEnd::Last => (on_edge, cuts(on_edge / 2, on_edge - 1)),
+            StretchEnd::First => (count - 1 - on_edge, cuts(count - on_edge, count - 1 - on_edge / 2)),
+        };
+        let on = match end {
+            StretchEnd::Last => beyond - 1,
+            StretchEnd::First => beyond + 1,
+        };
+        // Just beyond the corner nothing else is nearer.
+        let [from, to] = [on, beyond].map(|i| place(&piece.nodes[i]));
+        let is_on_edge = |part: f64| !is_clear(problem, from + (to - from) * part);
+        let [_, part] = bisect([0.0, 1.0], CORNER_HALVINGS, is_on_edge);
+        let x = from + (to - from) * part;
+        let gap = problem.world.signed_gap(x, self.length)?;
+        let corner = contact_at(problem, &gap, x, tangent(&piece.nodes[on])).filter(|c| c.radius.is_some())?;
+        let corner = ContactSurface { mobilised: line.mobilised, slips: line.slips, sense: line.sense, ..corner };
+        let touches_corner = Joint::PointContact(self.contacts.len());
+        self.contacts.push(corner);
+        // What lies beyond the corner belongs to the free piece there.
+        let (joints, merged) = match end {
+            StretchEnd::Last => {
+                a.contact = Some(on_line);
+                ([Joint::ContactEnd(on_line), touches_corner], k + 2)
+            }
+            StretchEnd::First => {
+                c.contact = Some(on_line);
+                ([touches_corner, Joint::ContactBegin(on_line)], k - 1)
+            }
+        };
+        self.pieces.splice(k..=k, [a, b, c]);
+        self.joints.splice(k..k, joints);
+        self.release(merged);
+        Some(())
     }
 
     /// The first stretch of contact between free pieces that is too short to be a stretch.
