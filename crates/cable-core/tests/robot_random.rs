@@ -28,8 +28,16 @@ fn next(seed: &mut u64) -> f64 {
     *seed as f64 / 2_147_483_647.0
 }
 
+/// The bending stiffness of a cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Bending {
+    None,
+    /// Anything within the range of the preset.
+    Likely,
+}
+
 /// A robot somewhere on a map, on more cable than it needs.
-fn scene(map: &preset::MapPreset, seed: &mut u64) -> Scene {
+fn scene(map: &preset::MapPreset, seed: &mut u64, bending: Bending) -> Scene {
     let mut scene = catalog::robot_drive();
     scene.obstacles = map.obstacles.clone();
     let presets = preset::robot_presets();
@@ -45,6 +53,9 @@ fn scene(map: &preset::MapPreset, seed: &mut u64) -> Scene {
     cable.length_m = (1.05 + 0.3 * next(seed)) * way_m + 1.0;
     cable.segments = Some(40);
     cable.route_m.clear();
+    if bending == Bending::Likely {
+        cable.bending_stiffness_n_m2 = 10f64.powf(1.5 * next(seed) - 1.0);
+    }
     scene
 }
 
@@ -103,9 +114,9 @@ enum Check {
 }
 
 /// One drive by keys; its fingerprint, and whether the solver stopped in it.
-fn drive(map: &preset::MapPreset, number: u64, check: Check) -> (Fingerprint, bool) {
+fn drive(map: &preset::MapPreset, number: u64, check: Check, bending: Bending) -> (Fingerprint, bool) {
     let mut seed = number;
-    let scene = scene(map, &mut seed);
+    let scene = scene(map, &mut seed, bending);
     let top = preset::robot_preset(&scene.robot.as_ref().unwrap().preset).unwrap().speed_m_per_s.value;
     let mut simulation = Simulation::new(scene, Model::Auto).unwrap();
     let mut print = Fingerprint::default();
@@ -135,7 +146,7 @@ fn whatever_is_pressed_on_whatever_map_nothing_gets_into_anything() {
     let (mut touched, mut stopped) = (0, 0);
     for map in preset::map_presets() {
         for seed in 1..=DRIVES {
-            stopped += usize::from(drive(map, 7919 * seed, Check::Burial).1);
+            stopped += usize::from(drive(map, 7919 * seed, Check::Burial, Bending::None).1);
             touched += 1;
         }
     }
@@ -150,7 +161,7 @@ fn issue_017_a_heap_of_slack_cable_behind_the_robot_does_not_stop_it() {
     let maps = preset::map_presets();
     let map = maps.iter().find(|map| map.name.starts_with("Saltcake mounded")).unwrap();
     for number in [918_604, 1_140_336, 1_457_096, 2_264_834, 2_850_840] {
-        assert!(!drive(map, number, Check::Burial).1, "{number}");
+        assert!(!drive(map, number, Check::Burial, Bending::None).1, "{number}");
     }
 }
 
@@ -159,15 +170,12 @@ fn asked(name: &str, default: u64) -> u64 {
     std::env::var(name).map_or(default, |value| value.parse().unwrap())
 }
 
-/// 60 over each map: `cargo test --locked --test robot_random -- --ignored --nocapture`; others
-/// with `FROM=61 TO=600` before it.
-#[test]
-#[ignore = "minutes: 360 drives"]
-fn hundreds_of_drives_go_on_to_their_end() {
+/// Drives over each map, as many as are asked for.
+fn hundreds(bending: Bending) {
     let (mut stopped, mut all) = (0, 0);
     for map in preset::map_presets() {
         for seed in asked("FROM", 1)..=asked("TO", 60) {
-            stopped += usize::from(drive(map, 7919 * seed, Check::Burial).1);
+            stopped += usize::from(drive(map, 7919 * seed, Check::Burial, bending).1);
             all += 1;
         }
     }
@@ -175,9 +183,34 @@ fn hundreds_of_drives_go_on_to_their_end() {
     assert_eq!(stopped, 0);
 }
 
+/// 60 over each map: `cargo test --locked --test robot_random -- --ignored --nocapture`; others
+/// with `FROM=61 TO=600` before it.
+#[test]
+#[ignore = "minutes: 360 drives"]
+fn hundreds_of_drives_go_on_to_their_end() {
+    hundreds(Bending::None);
+}
+
+#[test]
+#[ignore = "minutes: 360 drives with stiff cables"]
+fn hundreds_of_drives_with_stiff_cables_go_on_to_their_end() {
+    hundreds(Bending::Likely);
+}
+
+/// Slack of a stiff cable that comes down upon the robot, or beside it, was found no rest: all of
+/// the stiffness at once kept it from where it falls.
+#[test]
+fn issue_017_a_slack_stiff_cable_comes_to_rest_about_the_robot() {
+    for (name, number) in [("Small tank", 87_109), ("Small tank", 102_947), ("Saltcake mounded", 538_492)] {
+        let map = preset::map_presets().iter().find(|map| map.name.starts_with(name)).unwrap();
+        assert!(!drive(map, number, Check::Burial, Bending::Likely).1, "{name} {number}");
+    }
+}
+
 #[test]
 fn the_same_keys_give_the_same_bits() {
     for map in preset::map_presets() {
-        assert_eq!(drive(map, 104_729, Check::Nothing), drive(map, 104_729, Check::Nothing), "{}", map.name);
+        let drive = || drive(map, 104_729, Check::Nothing, Bending::None);
+        assert_eq!(drive(), drive(), "{}", map.name);
     }
 }

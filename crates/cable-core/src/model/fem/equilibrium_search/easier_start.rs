@@ -9,7 +9,7 @@ use crate::math::larger;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
-use crate::model::{Mechanics, Settings};
+use crate::model::{Mechanics, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::Warning;
 
@@ -25,7 +25,41 @@ pub(in crate::model::fem) enum SpansStart {
     Slides(SolveError),
 }
 
+/// Parts of its bending stiffness by which a stiff cable is stiffened. Fewer: a heap of slack
+/// springs open where it is laid on the next; more: time for cables that are found nowhere.
+const STIFFENING: [f64; 6] = [0.0, 1e-3, 1e-2, 0.1, 0.3, 1.0];
+
 impl FemModel {
+    /// Finds the equilibrium of a stiff cable from that of a flexible one, which is stiffened in
+    /// steps. Slack that falls upon a robot, or beside it, comes to rest as a flexible cable; all
+    /// of the stiffness at once keeps it from there. Returns None where a step is not found.
+    pub(in crate::model::fem) fn rest_by_stiffening(&mut self) -> Option<StepReport> {
+        let (whole, time_s) = (self.problem.bending_stiffness, self.stepper.cable.time());
+        if !(whole > 0.0) {
+            return None;
+        }
+        let mut softer: Option<Self> = None;
+        for part in STIFFENING {
+            let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
+            let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
+            let mut model = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..model };
+            if let Some(to) = self.robot_pose {
+                model.set_robot_pose(to);
+            }
+            model.stepper.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
+            match &softer {
+                None => drop(model.settle().ok()?),
+                Some(softer) => model.stepper.warm_start(&softer.solution(), time_s, &self.dragged).ok()?,
+            }
+            if !model.stepper.rested {
+                return None;
+            }
+            softer = Some(model);
+        }
+        self.stepper = softer?.stepper;
+        self.stepper.settle(&self.dragged).ok()
+    }
+
     /// Starts from the equilibrium of `spans` with the least slide, if it has one: a cable that
     /// relaxes by itself forms folds, which friction then holds. Returns the outcome, and the
     /// solution of `spans` if it belongs to this cable.
