@@ -111,6 +111,9 @@ struct EnergySnapshot {
     accounted_s: Option<f64>,
     /// Work of edits in that account, J.
     edits_j: Option<f64>,
+    /// True if the answer is of a run that accounts for its energy. A first rest is not, and may be
+    /// another model's, on other bars: 1.7 J of 8 kJ in a cable drawn tight between posts.
+    is_accounted: bool,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².
     moment: Vec2,
@@ -134,6 +137,7 @@ impl EnergyGrowth {
                 && b.breaks == now.breaks
                 && holds(b) == holds(now)
                 && b.accounted_s.is_some() == now.accounted_s.is_some()
+                && b.is_accounted == now.is_accounted
                 && b.accounted_s <= now.accounted_s
         };
         match before.filter(goes_on) {
@@ -240,6 +244,7 @@ impl EnergySnapshot {
             bending,
             accounted_s,
             edits_j,
+            is_accounted: answer.energy_account.is_some(),
             moment,
             outline_force,
             max_speed,
