@@ -101,8 +101,8 @@ fn three_hundred_rests_and_a_hundred_motions() {
     }
 }
 
-/// Such a scene whose hitch is moved within a second or two, with a cable that stretches more, and a
-/// bending stiffness if it is `stiff`.
+/// Such a scene whose hitch is moved within a second or two, with a cable that stretches more, and
+/// a bending stiffness if it is `stiff`.
 fn quick_scene(seed: u64, stiff: bool) -> Scene {
     let (mut scene, mut r) = (scene(seed), Dice(seed + 77));
     let cable = &mut scene.cables[0];
@@ -145,9 +145,9 @@ fn laws_in_motion(seeds: std::ops::Range<u64>, stiff: bool) -> (usize, BTreeMap<
     (steps, broken)
 }
 
-/// A cable drawn tight between posts was told to have 1.7 J from nowhere from its first step on: its
-/// rest is another model's. The momentum of slack cables was found wrong by the rounding of their
-/// places.
+/// A cable drawn tight between posts was told to have 1.7 J from nowhere from its first step on:
+/// its rest is another model's. The momentum of slack cables was found wrong by the rounding of
+/// their places.
 #[test]
 fn issue_016_motions_in_plan_view_obey_the_laws() {
     for (seeds, stiff) in [(3..4, false), (20..21, false), (20..21, true)] {

@@ -153,9 +153,9 @@ fn whatever_is_pressed_on_whatever_map_nothing_gets_into_anything() {
     assert!(touched >= 50 && stopped == 0, "{stopped} of {touched} drives stopped");
 }
 
-/// The slack of these cables falls into the notch between the robot and a knee of the saltcake, onto
-/// one place. The contacts of bars a micrometre long depended on their directions, and no step,
-/// however short, found its balance.
+/// The slack of these cables falls into the notch between the robot and a knee of the saltcake,
+/// onto one place. The contacts of bars a micrometre long depended on their directions, and no
+/// step, however short, found its balance.
 #[test]
 fn issue_017_a_heap_of_slack_cable_behind_the_robot_does_not_stop_it() {
     let maps = preset::map_presets();

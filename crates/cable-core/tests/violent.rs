@@ -393,8 +393,8 @@ fn edited_campaign(scenes: std::ops::Range<u64>, seconds: f64) {
     assert!(worst < 1e-4, "momentum from nowhere: {worst:e}");
 }
 
-/// The momentum that nodes gave to obstacles where an edit divided a stiff cable anew was counted in
-/// the next step: 1.1e-3 of its impulse.
+/// The momentum that nodes gave to obstacles where an edit divided a stiff cable anew was counted
+/// in the next step: 1.1e-3 of its impulse.
 #[test]
 fn issue_016_the_momentum_that_an_edit_gives_is_no_impulse_of_obstacles() {
     edited_campaign(3495..3496, 1.6);
@@ -444,9 +444,9 @@ fn issue_016_a_cable_that_falls_asleep_is_in_balance() {
     check_all(&found);
 }
 
-/// The contact of a stiff cable with an edge went on along the line of the edge where that had ended:
-/// wholly beyond a beam (105), and from the top of a hill into the air (173). The checker saw it, so
-/// that there was no answer.
+/// The contact of a stiff cable with an edge went on along the line of the edge where that had
+/// ended: wholly beyond a beam (105), and from the top of a hill into the air (173). The checker
+/// saw it, so that there was no answer.
 #[test]
 fn issue_016_a_stiff_cable_lies_on_no_edge_beyond_its_end() {
     for number in [105, 173] {

@@ -34,8 +34,8 @@ const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 /// are solutions, and without this hysteresis the contact would alternate for ever.
 const POINT_CURVATURE_TOLERANCE: f64 = 1e-3;
 
-/// Nodes of a stretch on its edge with which it can end before the corner. Fewer: what is left of it
-/// has no length; more: a short stretch beyond a corner is refused.
+/// Nodes of a stretch on its edge with which it can end before the corner. Fewer: what is left of
+/// it has no length; more: a short stretch beyond a corner is refused.
 const LEAST_NODES_ON_EDGE: usize = 4;
 
 /// Halvings of the bar in which a stretch leaves its edge: to less than a thousandth of it.
@@ -132,9 +132,9 @@ impl Elastica {
         true
     }
 
-    /// Lifts the cable off a line where the edge along which the line runs has ended: a point beyond
-    /// the end opens, a stretch that lies wholly beyond it, too, and one that lies beyond it in part
-    /// ends before the corner, over which the cable goes on. Returns whether there was one.
+    /// Lifts the cable off a line where the edge along which the line runs has ended: a point
+    /// beyond the end opens, a stretch that lies wholly beyond it, too, and one that lies beyond it
+    /// in part ends before the corner, over which the cable goes on. Returns whether there was one.
     fn leave_ends_of_lines(&mut self, problem: &Problem) -> bool {
         let line =
             |k: usize| self.contacts.get(k).is_some_and(|c| c.radius.is_none() && !matches!(c.owner, Owner::Pulley(_)));
@@ -169,8 +169,8 @@ impl Elastica {
         found.is_some_and(|(k, end, on_edge)| self.end_before_corner(problem, k, end, on_edge).is_some())
     }
 
-    /// Lets stretch `k`, which lies beyond the corner of its line at one end but for `on_edge` of its
-    /// nodes, end half-way to the corner, and touch that in a point.
+    /// Lets stretch `k`, which lies beyond the corner of its line at one end but for `on_edge` of
+    /// its nodes, end half-way to the corner, and touch that in a point.
     fn end_before_corner(&mut self, problem: &Problem, k: usize, end: StretchEnd, on_edge: usize) -> Option<()> {
         let piece = &self.pieces[k];
         let (count, on_line) = (piece.nodes.len(), piece.contact?);
