@@ -39,6 +39,7 @@ impl FemModel {
             return None;
         }
         let mut softer: Option<Self> = None;
+        let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
         for part in STIFFENING {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
             let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
@@ -46,10 +47,13 @@ impl FemModel {
             if let Some(to) = self.robot_pose {
                 model.set_robot_pose(to);
             }
-            model.stepper.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
             match &softer {
                 None => drop(model.settle().ok()?),
-                Some(softer) => model.stepper.warm_start(&softer.solution(), time_s, &self.dragged).ok()?,
+                Some(softer) => {
+                    model.stepper.solver.work_left = work;
+                    model.stepper.warm_start(&softer.solution(), time_s, &self.dragged).ok()?;
+                    work = std::mem::replace(&mut model.stepper.solver.work_left, WorkBudget::Unlimited);
+                }
             }
             if !model.stepper.rested {
                 return None;
