@@ -5,13 +5,14 @@
 use std::sync::Arc;
 
 use crate::error::SolveError;
-use crate::math::larger;
+use crate::math::{Vec2, larger};
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
 use crate::model::{Mechanics, Settings, StepReport};
 use crate::problem::Problem;
-use crate::solution::Warning;
+use crate::solution::{CableSolution, Warning};
 
 /// The outcome of starting from the solution of `spans`.
 pub(in crate::model::fem) enum SpansStart {
@@ -25,21 +26,23 @@ pub(in crate::model::fem) enum SpansStart {
     Slides(SolveError),
 }
 
-/// Parts of its bending stiffness by which a stiff cable is stiffened. Fewer: a heap of slack
-/// springs open where it is laid on the next; more: time for cables that are found nowhere.
-const STIFFENING: [f64; 6] = [0.0, 1e-3, 1e-2, 0.1, 0.3, 1.0];
+/// Parts of its bending stiffness by which a stiff cable is stiffened before it has all of it.
+/// Fewer: a heap of slack springs open where it is laid on the next; more: time for cables that are
+/// found nowhere.
+const STIFFENING: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 
 impl FemModel {
-    /// Finds the equilibrium of a stiff cable from that of a flexible one, which is stiffened in
-    /// steps. Slack that falls upon a robot, or beside it, comes to rest as a flexible cable; all
-    /// of the stiffness at once keeps it from there. Returns None where a step is not found.
+    /// Finds the first equilibrium of a stiff cable from that of a flexible one, which is stiffened
+    /// in steps. Slack that falls upon a robot, or beside it, comes to rest as a flexible cable;
+    /// all of the stiffness at once keeps it from there. Returns None, without a change, where a
+    /// step is not found.
     pub(in crate::model::fem) fn rest_by_stiffening(&mut self) -> Option<StepReport> {
         let (whole, time_s) = (self.problem.bending_stiffness, self.stepper.cable.time());
         if !(whole > 0.0) {
             return None;
         }
-        let mut softer: Option<Self> = None;
         let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
+        let mut softer: Option<CableSolution> = None;
         for part in STIFFENING {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
             let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
@@ -49,19 +52,18 @@ impl FemModel {
             }
             match &softer {
                 None => drop(model.settle().ok()?),
-                Some(softer) => {
-                    model.stepper.solver.work_left = work;
-                    model.stepper.warm_start(&softer.solution(), time_s, &self.dragged).ok()?;
-                    work = std::mem::replace(&mut model.stepper.solver.work_left, WorkBudget::Unlimited);
-                }
+                Some(softer) => model.stepper.rest_from(softer, time_s, &self.dragged, &mut work)?,
             }
-            if !model.stepper.rested {
-                return None;
-            }
-            softer = Some(model);
+            softer = Some(model.solution());
         }
-        self.stepper = softer?.stepper;
-        self.stepper.settle(&self.dragged).ok()
+        let before = self.stepper.clone();
+        self.stepper.rested = false;
+        let found = self.stepper.rest_from(&softer?, time_s, &self.dragged, &mut work);
+        let report = found.and_then(|()| self.settle_unknown().ok());
+        if report.is_none() {
+            self.stepper = before;
+        }
+        report
     }
 
     /// Starts from the equilibrium of `spans` with the least slide, if it has one: a cable that
@@ -146,5 +148,21 @@ impl FemModel {
             self.stepper.start_from_shape(&self.statics.state(), &self.dragged);
         }
         self.start_from_easier_cable(eased_loads, work);
+    }
+}
+
+impl Stepper {
+    /// Comes to rest from an answer with all the `work` that is left; None if it does not.
+    fn rest_from(
+        &mut self,
+        answer: &CableSolution,
+        time_s: f64,
+        dragged: &[Option<Vec2>],
+        work: &mut WorkBudget,
+    ) -> Option<()> {
+        let own = std::mem::replace(&mut self.solver.work_left, *work);
+        let started = self.warm_start(answer, time_s, dragged);
+        *work = std::mem::replace(&mut self.solver.work_left, own);
+        (started.is_ok() && self.rested).then_some(())
     }
 }

@@ -98,7 +98,7 @@ impl FemModel {
             SpansStart::Slides(slides) => self.rest_after_slide(found, &first, slides),
             SpansStart::Rejected | SpansStart::Unknown => found,
         };
-        let found = found.or_else(|why| self.rest_by_stiffening().ok_or(why));
+        let found = if begins { found.or_else(|why| self.rest_by_stiffening().ok_or(why)) } else { found };
         if let (Err(_), Some(before)) = (&found, before) {
             self.stepper = before;
         }
