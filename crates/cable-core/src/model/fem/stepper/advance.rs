@@ -131,6 +131,7 @@ impl Stepper {
         self.forget_history();
         // What trembles stands still in the balance about which it trembles.
         let done = self.polish(Converged::default(), dragged);
+        self.time_control.sleep.note_balance(&mut self.cable, dragged);
         if self.accounts_energy {
             energies.fall_asleep(stored_energy(&self.cable));
         }

@@ -44,7 +44,7 @@ impl Sleep {
     /// Checks after a step whether the cable has been still since the last check; returns true if
     /// it falls asleep now.
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
-        let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
+        let (motion, mesh) = (&cable.motion, &cable.mesh);
         let distance = sleep_distance(cable);
         let same = self.place.len() == motion.positions.len();
         if same && motion.time - self.since < mesh.tuning.step.sleep_delay_s && motion.time >= self.since {
@@ -63,10 +63,23 @@ impl Sleep {
         self.since = motion.time;
         self.place.clone_from(&motion.positions);
         self.arc_length.clone_from(&mesh.arc_length);
-        self.force.clone_from(&input.loads.force);
-        self.target.clone_from(&input.supports.target);
-        self.held.clone_from(&mesh.held);
+        self.note_input(cable);
         falls_asleep
+    }
+
+    /// Notes the forces and targets under which the cable sleeps.
+    fn note_input(&mut self, cable: &CableState) {
+        self.force.clone_from(&cable.input.loads.force);
+        self.target.clone_from(&cable.input.supports.target);
+        self.held.clone_from(&cable.mesh.held);
+    }
+
+    /// Notes them where the cable, that has just fallen asleep, has come to its balance: they
+    /// depend on where bars meet rounds.
+    pub(in crate::model::fem) fn note_balance(&mut self, cable: &mut CableState, dragged: &[Option<Vec2>]) {
+        let now = cable.motion.time;
+        prepare_input(cable, now, Some(dragged));
+        self.note_input(cable);
     }
 
     /// True if the forces and targets of the cable are those of the last check.
