@@ -163,8 +163,8 @@ fn many_motions_in_plan_view_obey_the_laws() {
     let (steps, broken) = laws_in_motion(number("FROM", 0)..number("TO", 60), number("STIFF", 0) == 1);
     println!("{steps} steps: {broken:#?}");
     assert!(!["stop", Law::Penetration.name(), Law::Finite.name()].iter().any(|law| broken.contains_key(*law)));
-    // What nothing acts on but its ends has no scale: growths of 1e-4 J and momenta of 1e-5 N s are
-    // told.
+    // A cable that only its ends act on has no scale of forces: growths of 1e-4 J and momenta of
+    // 1e-5 N s are told.
     assert!(broken.values().map(|(count, _)| count).sum::<usize>() * 50 <= steps, "{broken:#?}");
 }
 

@@ -291,7 +291,7 @@ pub(super) fn check_momentum(checked: &CheckedCable<'_>, found: &mut Verificatio
     let sum: Vec2 = impulses.iter().sum();
     let largest = impulses.iter().map(|i| i.norm()).fold((after - before).norm(), larger);
     let value = (after - before - sum).norm();
-    // Where nothing acts, what may be left unbalanced at rest may be left in a step.
+    // A step may leave unbalanced as much as a rest may, even if nothing acts in it.
     let limit = larger(MOMENTUM * largest, BALANCE_FRACTION * checked.scale * account.over_s);
     if !(value <= limit) {
         found.report(checked.finding(Law::Momentum, 0, value, limit));

@@ -180,13 +180,13 @@ impl Elastica {
             let (middle, after) = split(&rest, second - first);
             [before, middle, after]
         };
-        let (beyond, [mut a, b, mut c]) = match end {
-            StretchEnd::Last => (on_edge, cuts(on_edge / 2, on_edge - 1)),
-            StretchEnd::First => (count - 1 - on_edge, cuts(count - on_edge, count - 1 - on_edge / 2)),
-        };
-        let on = match end {
-            StretchEnd::Last => beyond - 1,
-            StretchEnd::First => beyond + 1,
+        // The node before the corner, the one beyond it, and where the piece is cut.
+        let (on, beyond, [mut a, b, mut c]) = match end {
+            StretchEnd::Last => (on_edge - 1, on_edge, cuts(on_edge / 2, on_edge - 1)),
+            StretchEnd::First => {
+                let on = count - on_edge;
+                (on, on - 1, cuts(on, count - 1 - on_edge / 2))
+            }
         };
         // Just beyond the corner nothing else is nearer.
         let [from, to] = [on, beyond].map(|i| place(&piece.nodes[i]));
@@ -198,7 +198,7 @@ impl Elastica {
         let corner = ContactSurface { mobilised: line.mobilised, slips: line.slips, sense: line.sense, ..corner };
         let touches_corner = Joint::PointContact(self.contacts.len());
         self.contacts.push(corner);
-        // What lies beyond the corner belongs to the free piece there.
+        // The free piece there takes over the part beyond the corner.
         let (joints, merged) = match end {
             StretchEnd::Last => {
                 a.contact = Some(on_line);

@@ -45,25 +45,32 @@ impl FemModel {
         let mut softer: Option<CableSolution> = None;
         for part in STIFFENING {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
-            let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
-            let mut model = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..model };
-            if let Some(to) = self.robot_pose {
-                model.set_robot_pose(to);
-            }
-            match &softer {
-                None => drop(model.settle().ok()?),
-                Some(softer) => model.stepper.rest_from(softer, time_s, &self.dragged, &mut work)?,
-            }
-            softer = Some(model.solution());
+            let mut model = self.of_easier_cable(problem, self.settings)?;
+            let rests = match &softer {
+                None => model.settle().is_ok(),
+                Some(softer) => model.stepper.rests_from(softer, time_s, &self.dragged, &mut work),
+            };
+            softer = rests.then(|| model.solution());
+            softer.as_ref()?;
         }
         let before = self.stepper.clone();
         self.stepper.rested = false;
-        let found = self.stepper.rest_from(&softer?, time_s, &self.dragged, &mut work);
-        let report = found.and_then(|()| self.settle_unknown().ok());
+        let rests = self.stepper.rests_from(&softer?, time_s, &self.dragged, &mut work);
+        let report = if rests { self.settle_unknown().ok() } else { None };
         if report.is_none() {
             self.stepper = before;
         }
         report
+    }
+
+    /// The model of an easier cable at the same supports; None if there is none.
+    fn of_easier_cable(&self, problem: Problem, settings: Settings) -> Option<Self> {
+        let model = Self::with_tuning(Arc::new(problem), settings, self.tuning().clone()).ok()?;
+        let mut model = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..model };
+        if let Some(to) = self.robot_pose {
+            model.set_robot_pose(to);
+        }
+        Some(model)
     }
 
     /// Starts from the equilibrium of `spans` with the least slide, if it has one: a cable that
@@ -105,13 +112,9 @@ impl FemModel {
     /// whole loads, are not eased like this. All searches share the `work`.
     pub(in crate::model::fem) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
-        let tuning = self.tuning().clone();
-        let segments = if fine > tuning.start.two_mesh_bars {
-            Some(fine / tuning.start.mesh_ratio)
-        } else {
-            self.settings.segments
-        };
-        let (own, load, start) = (self.problem.axial_stiffness, self.problem.whole_load(), tuning.start);
+        let start = self.tuning().start;
+        let segments = if fine > start.two_mesh_bars { Some(fine / start.mesh_ratio) } else { self.settings.segments };
+        let (own, load) = (self.problem.axial_stiffness, self.problem.whole_load());
         let is_eased = load > 0.0 && own >= eased_loads * load;
         let axial_stiffness = if is_eased { own / start.stiffness_ratio } else { own };
         if segments == self.settings.segments && axial_stiffness == own {
@@ -119,11 +122,7 @@ impl FemModel {
         }
         let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
         let settings = Settings { segments, ..self.settings };
-        let Ok(easier) = Self::with_tuning(Arc::new(problem), settings, tuning.clone()) else { return };
-        let mut easier = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..easier };
-        if let Some(to) = self.robot_pose {
-            easier.set_robot_pose(to);
-        }
+        let Some(mut easier) = self.of_easier_cable(problem, settings) else { return };
         easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
         easier.stepper.solver.work_left = *work;
@@ -134,9 +133,7 @@ impl FemModel {
         }
         let before = self.stepper.clone();
         let time_s = before.cable.time();
-        let own = std::mem::replace(&mut self.stepper.solver.work_left, *work);
-        let started = self.stepper.warm_start(&easier.solution(), time_s, &self.dragged);
-        *work = std::mem::replace(&mut self.stepper.solver.work_left, own);
+        let started = self.stepper.warm_start_within(&easier.solution(), time_s, &self.dragged, work);
         if started.is_err() {
             self.stepper = before;
         }
@@ -152,17 +149,32 @@ impl FemModel {
 }
 
 impl Stepper {
-    /// Comes to rest from an answer with all the `work` that is left; None if it does not.
-    fn rest_from(
+    /// As [`Self::warm_start`], with all the `work` that is left.
+    ///
+    /// # Errors
+    /// As `warm_start`.
+    fn warm_start_within(
         &mut self,
         answer: &CableSolution,
         time_s: f64,
         dragged: &[Option<Vec2>],
         work: &mut WorkBudget,
-    ) -> Option<()> {
+    ) -> Result<(), SolveError> {
         let own = std::mem::replace(&mut self.solver.work_left, *work);
         let started = self.warm_start(answer, time_s, dragged);
         *work = std::mem::replace(&mut self.solver.work_left, own);
-        (started.is_ok() && self.rested).then_some(())
+        started
+    }
+
+    /// Starts from an answer with all the `work` that is left; returns whether the cable comes to
+    /// rest.
+    fn rests_from(
+        &mut self,
+        answer: &CableSolution,
+        time_s: f64,
+        dragged: &[Option<Vec2>],
+        work: &mut WorkBudget,
+    ) -> bool {
+        self.warm_start_within(answer, time_s, dragged, work).is_ok() && self.rested
     }
 }

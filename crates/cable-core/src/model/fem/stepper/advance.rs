@@ -129,7 +129,7 @@ impl Stepper {
         self.cable.motion.slide_rates.fill(0.0);
         let mut energies = self.cable.motion.energies;
         self.forget_history();
-        // What trembles stands still in the balance about which it trembles.
+        // A trembling cable stands still in the balance about which it trembles.
         let done = self.polish(Converged::default(), dragged);
         self.time_control.sleep.note_balance(&mut self.cable, dragged);
         if self.accounts_energy {
