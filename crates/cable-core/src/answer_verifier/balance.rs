@@ -217,7 +217,13 @@ fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {
     checked
         .wheels
         .iter()
-        .any(|&(center, radius, _)| piece.nodes.iter().any(|&k| checked.is_on_wheel(k, center, radius)))
+        .any(|&(center, radius, _)| bars_at(checked, piece).any(|bar| checked.touches_wheel(bar, center, radius).is_some()))
+}
+
+/// The bars of a piece, the one before it and the one after it.
+fn bars_at(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> std::ops::Range<usize> {
+    let [from, to] = piece.nodes;
+    from.saturating_sub(1)..(to + 1).min(checked.answer.nodes.len() - 1)
 }
 
 /// Returns two sums, N: the friction that the bars' own weight may add or hide where the ground
@@ -276,6 +282,10 @@ fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPie
     for &(center, radius, friction) in &checked.wheels {
         for k in (from..=to).filter(|&k| checked.is_on_wheel(k, center, radius)) {
             add((checked.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
+        }
+        // A stiff cable may touch the wheel between two nodes.
+        for at in bars_at(checked, piece).filter_map(|bar| checked.touches_wheel(bar, center, radius)) {
+            add((at - center).try_normalize(0.0).unwrap_or_default(), friction);
         }
     }
     turns

@@ -2,7 +2,7 @@
 //! alone.
 
 use super::support_hold::{Role, SupportHold, series, support_holds};
-use super::surroundings::{Neighbours, Surroundings};
+use super::surroundings::{Neighbours, Surroundings, nearest};
 use super::tolerance::{LENGTH, MATERIAL_TOLERANCE, MIN_STRAIN, REACH_DIAMETERS, REACH_M};
 use crate::math::{Vec2, larger, vec2};
 use crate::scene::{Cable, Scene, View};
@@ -200,6 +200,15 @@ impl CheckedCable<'_> {
     pub fn is_on_wheel(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
+    }
+
+    /// Returns the point of the bar from node k to the next that is nearest to the centre of a
+    /// wheel, m, if it is on the wheel.
+    pub fn touches_wheel(&self, k: usize, center: Vec2, radius: f64) -> Option<Vec2> {
+        let [from, to] = [k, k + 1].map(|k| self.answer.nodes[k].at());
+        let at = nearest(center, from, to);
+        let reach = self.reach() - 0.5 * self.cable.diameter_m;
+        ((at - center).norm() <= radius + reach).then_some(at)
     }
 
     /// Weight and wind of the cable from node k to the next and of its neighbours, N.

@@ -323,7 +323,7 @@ fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
 }
 
 /// The point of a straight line nearest to another, m.
-fn nearest(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
+pub(super) fn nearest(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
     let d = b - a;
     let square = d.norm_squared();
     let f = if square > 0.0 { ((p - a).dot(&d) / square).clamp(0.0, 1.0) } else { 0.0 };

@@ -14,10 +14,11 @@ use std::sync::Arc;
 use super::Layer;
 use crate::contact::distance::{nearest_fraction, segment_segment};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
-use crate::math::{RigidPose, Vec2};
+use crate::math::{RigidPose, Vec2, cross, larger};
 use crate::model::mechanics::Constructor;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
+use crate::problem::wheel_passage::facing;
 use crate::problem::wheels_as_posts::{StandIn, WheelLeft};
 use crate::problem::{CableWheels, Problem, SupportPoint, WheelsLeft};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
@@ -27,6 +28,28 @@ use crate::state::State;
 /// come back. Smaller: a cable that leaves is taken back, because it still lies on the wheel to
 /// round-off; larger: it comes back late, and jumps on it. A choice, tuned on no campaign.
 const RETURN_DEPTH: f64 = 1e-3;
+
+/// Multiple of that depth up to which a moving cable may have come back when it is laid on the
+/// wheel. Smaller: the instant of the return is harder to find; larger: the cable jumps on the
+/// wheel. A choice, tuned on no campaign.
+const RETURN_DEPTHS: f64 = 2.0;
+
+/// Trials for the instant at which a moving cable comes back to a wheel: each halves what is left
+/// of the step at least every other time.
+const MAX_RETURN_TRIALS: usize = 40;
+
+/// Fraction of a step that is lost in the rounding of its times.
+const SAME_TIME_FRACTION: f64 = 1e-9;
+
+/// A wheel with nothing in its place, and the part of the cable nearest to it.
+#[derive(Clone, Copy, Debug)]
+struct WheelNearby {
+    support: usize,
+    /// Depth to which the cable lies within it, in radii; negative if it is clear.
+    depth: f64,
+    /// True if the cable runs past it on the side on which it is led.
+    on_its_side: bool,
+}
 
 /// A model of a cable over wheels, and of the same without those that it leaves.
 pub struct LeavableWheels {
@@ -405,6 +428,10 @@ impl LeavableWheels {
                 Err(error) => error,
             };
             if self.let_go_of(&error, inertia) {
+                // A wheel that a hand leads goes on.
+                if inertia == Inertia::Dynamic {
+                    self.move_led(end_s - self.inner.time_s())?;
+                }
                 continue;
             }
             let (from_s, state, answer) = (self.inner.time_s(), self.inner.state(), self.inner.solution());
@@ -414,34 +441,98 @@ impl LeavableWheels {
         }
     }
 
+    /// The wheels that were left and have nothing in their place.
+    fn wheels_nearby(&self) -> Vec<WheelNearby> {
+        let gone = self.left.iter().flat_map(|left| &left.wheels).filter(|wheel| wheel.post.is_none());
+        let gone: Vec<usize> = gone.map(|wheel| wheel.support).collect();
+        if gone.is_empty() {
+            return Vec::new();
+        }
+        let state = self.inner.state();
+        let nearby = gone.into_iter().filter_map(|k| {
+            let support = &self.problem.supports[k];
+            let center = self.places[k].or_else(|| support.position_at(state.time_s).map(|place| place.0))?;
+            let by_distance = |a: &&[Vec2], b: &&[Vec2]| {
+                distance(center, a[0], a[1]).total_cmp(&distance(center, b[0], b[1]))
+            };
+            let bar = state.position_m.windows(2).min_by(by_distance)?;
+            let travel = bar[1] - bar[0];
+            let outward = bar[0] + travel * nearest_fraction(center, bar[0], bar[1]) - center;
+            let on_its_side = cross(travel, outward) * facing(support.side, travel) > 0.0;
+            let depth = 1.0 - outward.norm() / support.wheel_radius;
+            Some(WheelNearby { support: k, depth, on_its_side })
+        });
+        nearby.collect()
+    }
+
+    /// The greatest depth to which the cable lies within a wheel that it had left, in radii.
+    fn return_depth(&self) -> f64 {
+        self.wheels_nearby().iter().map(|wheel| wheel.depth).fold(f64::NEG_INFINITY, larger)
+    }
+
+    /// Advances up to a time (s), or to the instant at which a moving cable comes back to a wheel:
+    /// laid on it later, it would jump out of it, and pull with 37 kN from 0.3.
+    fn advance_until_return(
+        &mut self,
+        end_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
+        let may_return = inertia == Inertia::Dynamic && !self.wheels_nearby().is_empty();
+        if !may_return {
+            return self.advance_to(end_s, inertia, gauge);
+        }
+        let kept = (self.around(self.inner.boxed_clone()), gauge.clone());
+        // The times between which it comes back, with its depth in excess of the one asked for.
+        let asked = 0.5 * (1.0 + RETURN_DEPTHS) * RETURN_DEPTH;
+        let mut clear = (self.inner.time_s(), self.return_depth() - asked);
+        let mut report = self.advance_to(end_s, inertia, gauge)?;
+        let mut within = (end_s, self.return_depth() - asked);
+        for trial in 0..MAX_RETURN_TRIALS {
+            let depth = self.return_depth();
+            if !(depth > RETURN_DEPTHS * RETURN_DEPTH) && (depth > RETURN_DEPTH || trial == 0) {
+                break;
+            }
+            let part = if trial % 2 == 0 { clear.1 / (clear.1 - within.1) } else { 0.5 };
+            let time_s = clear.0 + (within.0 - clear.0) * part;
+            if !(time_s > clear.0 && time_s < within.0) {
+                break;
+            }
+            *self = kept.0.around(kept.0.inner.boxed_clone());
+            *gauge = kept.1.clone();
+            report = self.advance_to(time_s, inertia, gauge)?;
+            let there = (time_s, self.return_depth() - asked);
+            if there.1 > 0.0 { within = there } else { clear = there }
+        }
+        Ok(report)
+    }
+
     /// Lays the cable on the wheels again that it left and to which it has come back, where no post
     /// stands.
     ///
-    /// # Errors Those of the model on these wheels.
+    /// # Errors Those of the model on these wheels; `BackOnWheel` where the model does not follow
+    /// that.
     fn come_back(&mut self, inertia: Inertia) -> Result<(), SolveError> {
-        let moves = |left: &&Arc<WheelsLeft>| left.wheels.iter().any(|wheel| wheel.post.is_none());
-        let Some(left) = self.left.as_ref().filter(moves) else { return Ok(()) };
-        let state = self.inner.state();
-        let is_within = |wheel: &&WheelLeft| {
-            let support = &self.problem.supports[wheel.support];
-            let center = self.places[wheel.support].or_else(|| support.position_at(state.time_s).map(|place| place.0));
-            let near = support.wheel_radius * (1.0 - RETURN_DEPTH);
-            let meets = |center| state.position_m.windows(2).any(|bar| distance(center, bar[0], bar[1]) < near);
-            wheel.post.is_none() && center.is_some_and(meets)
-        };
-        let back: Vec<usize> = left.wheels.iter().filter(is_within).map(|wheel| wheel.support).collect();
+        let back = self.wheels_nearby().into_iter().filter(|wheel| wheel.depth > RETURN_DEPTH);
+        let back: Vec<WheelNearby> = back.collect();
         if back.is_empty() {
             return Ok(());
         }
-        // The wheel would push its node out at once, and stretch its two elements by all of that.
-        if inertia == Inertia::Dynamic && self.inner.model() == Model::MassSpring {
-            let support = back.iter().filter_map(|k| self.problem.supports.get(*k)).map(|s| s.name.clone()).next();
-            let feature = Unsupported::BackOnWheel { support: support.unwrap_or_default() };
-            return Err(SolveError::Unsupported { model: Model::MassSpring, feature });
+        let state = self.inner.state();
+        // From its other side a wheel would have to pass through the cable. In mass-spring it would
+        // push its node out at once, and stretch its two elements by all of that.
+        let by_springs = self.inner.model() == Model::MassSpring;
+        let lost = back.iter().find(|wheel| by_springs || !wheel.on_its_side);
+        if let Some(wheel) = lost.filter(|_| inertia == Inertia::Dynamic) {
+            let support = self.problem.supports[wheel.support].name.clone();
+            return Err(SolveError::Unsupported {
+                model: self.inner.model(),
+                feature: Unsupported::BackOnWheel { support },
+            });
         }
         let mut replaced = self.replaced();
-        for k in back {
-            replaced[k] = false;
+        for wheel in back {
+            replaced[wheel.support] = false;
         }
         let stand_ins = self.stand_ins(&replaced, inertia);
         if inertia == Inertia::Dynamic
@@ -600,7 +691,11 @@ impl Layer for LeavableWheels {
             Inertia::QuasiStatic => self.put_at_rest(),
         }
         let end_s = self.inner.time_s() + dt_s;
-        let report = self.advance_to(end_s, inertia, gauge)?;
+        let mut report = self.advance_until_return(end_s, inertia, gauge)?;
+        while end_s - self.inner.time_s() > SAME_TIME_FRACTION * dt_s {
+            self.come_back(inertia)?;
+            report.add(self.advance_until_return(end_s, inertia, gauge)?);
+        }
         let told = self.told(report);
         self.come_back(inertia)?;
         Ok(told)

@@ -21,7 +21,7 @@ use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::{CableState, attribute_to, renew_input};
+use crate::model::fem::state::{CableState, MovingMass, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
 use crate::numerics::bisect;
 
@@ -71,7 +71,7 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
 
 /// Removes the sliding nodes that press on nothing, except those on `kept`; returns whether there
 /// were any.
-fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], inertia: Inertia) -> bool {
+pub(in crate::model::fem) fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], inertia: Inertia) -> bool {
     let rests = inertia == Inertia::QuasiStatic;
     let mut changed = false;
     let mut k = 1;
@@ -154,6 +154,7 @@ pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bo
 
 fn make_material(cable: &mut CableState, k: usize) -> bool {
     keep_answer(cable);
+    let had = MovingMass::of(cable).momenta();
     let before = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length / cable.mesh.rest_length[e]);
     let half = (0.5 * cable.mesh.turn(k, &cable.motion.positions)).abs();
     let out = 1.0
@@ -197,10 +198,15 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let m = &mut cable.motion;
     let slid = floor_friction::as_move(cable.contacts.floor_slip[k], along.try_normalize(0.0).unwrap_or_default());
     cable.contacts.floor_slip[k] = slid;
-    m.velocities[k] -= along * (0.5 * m.slide_rates[k]);
+    m.slide_rates[k] = 0.0;
+    m.previous_slide_rates[k] = 0.0;
+    // It has the momentum of the material that was on the round, and that which neighbours gave up.
+    let have = MovingMass::of(cable).momenta();
+    let mass = cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
+    let m = &mut cable.motion;
+    m.velocities[k] += (had[0] - have[0]) / mass;
     m.previous_velocities[k] = m.velocities[k];
     m.previous_positions[k] = m.positions[k] - m.velocities[k] * m.step_before;
-    m.slide_rates[k] = 0.0;
     true
 }
 

@@ -71,7 +71,7 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
 /// Removes node `k`.
 pub(in crate::model::fem) fn remove(cable: &mut CableState, k: usize) {
     match cable.mesh.sliding.get(k).copied().flatten() {
-        Some(node) => attribute_to(cable, node.slide_over, |d| take_out(d, k)),
+        Some(node) => attribute_to(cable, node.slide_over, |d| merge(d, k)),
         None => remove_plain(cable, k),
     }
 }
@@ -98,14 +98,9 @@ fn remove_plain(cable: &mut CableState, k: usize) {
 }
 
 fn merge(cable: &mut CableState, k: usize) {
-    let momentum = |d: &CableState| {
-        let (m, mass) = (&d.motion, MovingMass::of(d));
-        [(&m.velocities, &m.slide_rates), (&m.previous_velocities, &m.previous_slide_rates)]
-            .map(|(v, w)| mass.moved_by(v) + mass.slid_by(v, w))
-    };
-    let had = momentum(cable);
+    let had = MovingMass::of(cable).momenta();
     take_out(cable, k);
-    let have = momentum(cable);
+    let have = MovingMass::of(cable).momenta();
     let free = [k - 1, k].map(|j| cable.mesh.is_free(j));
     let node_mass = |j: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, j);
     let mass = |j: usize| if free[j + 1 - k] { node_mass(j) } else { 0.0 };

@@ -5,8 +5,10 @@
 use std::sync::Arc;
 
 use crate::contact::geometry::Body;
+use crate::model::Inertia;
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::remesh::adapt::remove_sliding_nodes;
 use crate::model::fem::state::{CableState, MovingOutline, renew_input};
 use crate::problem::{Departure, Problem, SupportPoint};
 
@@ -19,6 +21,21 @@ pub(in crate::model::fem) fn lifted_wheel(cable: &CableState) -> Option<&Support
         let support = cable.problem.supports.get(support)?;
         let holds = support.departure == Departure::Possible && support.holds_from(cable.motion.time);
         (holds && mesh.turn(k, &cable.motion.positions) < 0.0).then_some(support)
+    })
+}
+
+/// The pulley that a load between the ends of the cable has come to within a radius of the cable,
+/// and the arc length of the load, m. The load moves with its material, and none can run over a
+/// pulley: in an eye it would jam, with 600 N from 60.
+pub(in crate::model::fem) fn load_at_pulley(cable: &CableState) -> Option<(&SupportPoint, f64)> {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    (1..mesh.nodes().saturating_sub(1)).find_map(|k| {
+        let SlideOver::Pulley(support) = mesh.sliding[k]?.slide_over else { return None };
+        let carries = |j: &usize| mesh.sliding[*j].is_none() && mesh.is_free(*j) && !cable.meshing.removable(mesh, *j);
+        let inner = |j: &usize| *j > 0 && *j + 1 < mesh.nodes();
+        let near = |j: &usize| !(mesh.path(k.min(*j), x).straight > cable.problem.radius);
+        let load = [k - 1, k + 1].into_iter().filter(inner).filter(carries).find(near)?;
+        Some((cable.problem.supports.get(support)?, mesh.arc_length[load]))
     })
 }
 
@@ -44,6 +61,8 @@ pub(in crate::model::fem) fn change_wheels(cable: &mut CableState, problem: Arc<
     let x = std::mem::take(&mut cable.motion.positions);
     cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
     cable.motion.positions = x;
+    // Material on a wheel that moved goes on with its velocity.
+    remove_sliding_nodes(cable, &[], Inertia::Dynamic);
     renew_input(cable);
 }
 

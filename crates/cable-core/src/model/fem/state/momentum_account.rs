@@ -65,7 +65,7 @@ impl MomentumSums {
     /// momentum of the cable (kg m/s) if the account does not know it.
     pub(in crate::model::fem) fn begun(self, now: f64, momentum: impl FnOnce() -> Vec2) -> Self {
         let known = if self.to == now { self } else { Self { reached: momentum(), ..Self::default() } };
-        Self { from: now, to: now, before: known.reached, sum: known.late, late: [Vec2::zeros(); 4], ..known }
+        Self { from: now, to: now, before: known.reached, sum: known.late, ..known }
     }
 
     /// Extends it to the time `now` (s), at which the cable has a momentum (kg m/s) on the mesh

@@ -30,6 +30,13 @@ impl<'a> MovingMass<'a> {
         self.moved_by(&self.motion.velocities) + pulleys + rounds
     }
 
+    /// Momentum of all material now and one step ago, kg m/s.
+    pub(in crate::model::fem) fn momenta(&self) -> [Vec2; 2] {
+        let m = self.motion;
+        [(&m.velocities, &m.slide_rates), (&m.previous_velocities, &m.previous_slide_rates)]
+            .map(|(v, w)| self.moved_by(v) + self.slid_by(v, w))
+    }
+
     /// Momentum of the material nodes at velocities `v` (m/s), kg m/s.
     pub(in crate::model::fem) fn moved_by(&self, v: &[Vec2]) -> Vec2 {
         let mesh = self.mesh;

@@ -14,6 +14,14 @@ use crate::model::fem::time::{
 };
 use crate::solution::Energy;
 
+/// What the accounts need of the start of a step.
+struct AtStart {
+    /// Its energy, if an account of energy is kept.
+    energy: Option<Energy>,
+    /// Momentum of the material on pulleys and on rounds of obstacles, kg m/s.
+    slid: [Vec2; 2],
+}
+
 impl Stepper {
     /// Takes one step of `h` (s) with inertia.
     pub(in crate::model::fem) fn dynamic_step(
@@ -23,6 +31,8 @@ impl Stepper {
     ) -> Result<Converged, Failure> {
         self.cable.follow_edit(h);
         let before = self.accounts_energy.then(|| self.begin_energy_account());
+        // Pulleys that move are at the end of the step from here on.
+        let slid = MovingMass::of(&self.cable).sliding_momentum();
         let weights = self.begin_step(h, dragged);
         let predicted = self.solver.predicted_unknowns(&self.cable, h);
         let (mut unknowns, mut done) = self.minimise_step(predicted)?;
@@ -32,7 +42,7 @@ impl Stepper {
             (unknowns, done) = self.minimise_step(unknowns)?;
             done.iterations += first;
         }
-        self.accept_step(unknowns, weights, h, before);
+        self.accept_step(unknowns, weights, h, AtStart { energy: before, slid });
         self.take_off_rebounds(weights, h);
         self.remesh_after_step(done.residual)?;
         Ok(done)
@@ -63,14 +73,13 @@ impl Stepper {
     }
 
     /// Accepts the unknowns of a step of `h` (s) as the state of the cable, and accounts for
-    /// momentum and energy; `before` is the energy at its start if an account is kept.
-    fn accept_step(&mut self, unknowns: Unknowns, weights: Weights, h: f64, before: Option<Energy>) {
+    /// momentum and energy.
+    fn accept_step(&mut self, unknowns: Unknowns, weights: Weights, h: f64, start: AtStart) {
         hands::report_held_back(&mut self.cable, &unknowns);
         hands::keep_forces(&mut self.cable, &unknowns);
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
-        let slid = MovingMass::of(&self.cable).sliding_momentum();
-        let work = before.map(|before| {
+        let work = start.energy.map(|before| {
             self.solver.ways.end(&unknowns.positions);
             (before, work_in_step(&self.cable, &unknowns, &self.solver))
         });
@@ -78,7 +87,7 @@ impl Stepper {
         self.cable.commit_contacts(&unknowns);
         self.move_to(&unknowns, weights);
         self.cable.mesh.slide(&unknowns.slides);
-        account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
+        account_for_step(&mut self.cable, weights, given, start.slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
         if let Some((before, work)) = &work {

@@ -1,0 +1,348 @@
+//! These tests draw scenes that mix what the other random campaigns ask one at a time: pulleys,
+//! loads with mass, clamps, wind, temperature, stiffness, self-contact and two cables, over ground
+//! with things on it, moved with inertia and without by the model that the program chooses.
+//!
+//! `FROM=0 TO=300 cargo test --locked -p cable-core --test mixed_random -- --ignored --nocapture`;
+//! `TELL=balance` tells each finding of a law.
+
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
+
+mod dice;
+mod momentum_balance;
+
+use std::collections::BTreeMap;
+
+use cable_core::answer_verifier::Law;
+use cable_core::model::{Inertia, Question};
+use cable_core::scene::{
+    Environment, Load, Motion, Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog,
+};
+use cable_core::solution::{Node, WarningKind};
+use cable_core::{Model, Settings, Simulation};
+use dice::Dice;
+
+/// The ground, and up to three things above it.
+fn obstacles(r: &mut Dice) -> Vec<Obstacle> {
+    let rough = if r.chance(0.5) { 0.0 } else { r.within(0.02, 0.4) };
+    let step = r.pick(&[0.25, 0.5, 2.0]);
+    let points_m =
+        (0..=(40.0 / step) as i32).map(|k| [-20.0 + step * f64::from(k), r.within(-rough, rough)]).collect();
+    let mut all = vec![Obstacle {
+        name: "ground".to_owned(),
+        shape: Shape::Terrain { points_m },
+        friction: Some(r.within(0.0, 1.0)),
+    }];
+    for k in 0..3 {
+        if r.chance(0.6) {
+            continue;
+        }
+        let at = [-3.0 + 2.4 * f64::from(k) + r.within(-0.4, 0.4), r.within(0.9, 1.8)];
+        let shape = if r.chance(0.5) {
+            let (b, h) = (r.within(0.05, 0.6), r.within(0.05, 0.3));
+            Shape::Polygon { points_m: vec![at, [at[0] + b, at[1]], [at[0] + b, at[1] + h], [at[0], at[1] + h]] }
+        } else {
+            Shape::Circle { center_m: at, radius_m: r.within(0.04, 0.3) }
+        };
+        all.push(Obstacle { name: format!("thing {k}"), shape, friction: Some(r.within(0.0, 1.0)) });
+    }
+    all
+}
+
+/// A way through the neighbourhood of a place, in `knots` legs of `leg_s`.
+fn motion(r: &mut Dice, home: [f64; 2], reach_m: f64, leg_s: f64) -> Motion {
+    let knots = 5;
+    let mut points_m = vec![home];
+    points_m.extend((1..knots).map(|_| {
+        [home[0] + r.within(-reach_m, reach_m), (home[1] + r.within(-reach_m, reach_m)).max(2.2)]
+    }));
+    Motion { times_s: (0..knots).map(|k| leg_s * k as f64).collect(), points_m }
+}
+
+/// Such a scene; ends are moved a leg in `leg_s`.
+fn scene(seed: u64, leg_s: f64) -> Scene {
+    let mut r = Dice(seed.wrapping_mul(0x2000_0003) + 11);
+    let mut scene = catalog::hanging_span();
+    scene.obstacles = obstacles(&mut r);
+    scene.loads.clear();
+    if r.chance(0.25) {
+        let wind = |r: &mut Dice| [r.within(-6.0, 6.0), r.within(-2.0, 2.0)];
+        let (times_s, winds) = ((0..4).map(|k| leg_s * f64::from(k)).collect(), (0..4).map(|_| wind(&mut r)).collect());
+        (scene.environment.wind_times_s, scene.environment.winds_n_per_m) = (times_s, winds);
+    }
+    if r.chance(0.2) {
+        scene.environment = Environment { temperature_change_k: r.within(-40.0, 40.0), ..scene.environment };
+    }
+    let model = scene.cables[0].clone();
+    scene.cables.clear();
+    let cables = if r.chance(0.2) { 2 } else { 1 };
+    for number in 0..cables {
+        let mut c = model.clone();
+        c.name = format!("cable {number}");
+        c.length_m = r.within(8.2, 12.0);
+        c.axial_stiffness_n = r.log(1e4, 1e7);
+        c.linear_density_kg_per_m = r.log(0.2, 3.0);
+        c.friction = r.within(0.0, 1.0);
+        c.segments = r.pick(&[None, Some(40), Some(90)]);
+        c.thermal_expansion_per_k = 2e-5;
+        c.self_contact = r.chance(0.15);
+        c.bending_stiffness_n_m2 = if r.chance(0.4) { r.log(0.01, 20.0) } else { 0.0 };
+        (c.service_tension_n, c.breaking_tension_n) = (1e12, 1e12);
+        let height = 3.0 + 0.8 * f64::from(number);
+        let mut first = Support::fixed("left", [-4.0, height]);
+        if r.chance(0.25) {
+            (first.kind, first.angle_deg) = (SupportKind::Clamped, Some(r.within(-90.0, 60.0)));
+        }
+        let mut last = Support::fixed("right", [4.0, height]);
+        let fate = r.unit();
+        if fate < 0.5 {
+            last.motion = Some(motion(&mut r, [4.0, height], 1.3, leg_s));
+        } else if fate < 0.65 {
+            last.release_s = Some(r.within(0.05, 2.0) * leg_s);
+        } else if fate < 0.8 {
+            (last.kind, last.at_m) = (SupportKind::Load, None);
+            last.force_n = Some([r.within(-5.0, 60.0), r.within(-80.0, 10.0)]);
+            last.mass_kg = Some(r.log(0.5, 10.0));
+        }
+        let mut supports = vec![first];
+        let middle = r.unit();
+        if middle < 0.3 {
+            let at = [r.within(-1.5, 1.5), height + r.within(-0.2, 1.2)];
+            let mut wheel = Support::fixed("wheel", at);
+            wheel.kind = SupportKind::Pulley;
+            wheel.radius_m = Some(r.pick(&[0.0, 0.1, 0.25]));
+            wheel.side = Some(if r.chance(0.8) { PulleySide::Over } else { PulleySide::Under });
+            wheel.friction = Some(r.pick(&[0.0, 0.1, 0.3]));
+            if r.chance(0.4) {
+                wheel.motion = Some(motion(&mut r, at, 0.5, leg_s));
+            }
+            supports.push(wheel);
+            c.length_m += 1.5;
+        } else if middle < 0.45 {
+            let mut weight = Support::fixed("weight", [0.0, 0.0]);
+            (weight.kind, weight.at_m) = (SupportKind::Load, None);
+            weight.arc_length_m = Some(c.length_m * r.within(0.3, 0.7));
+            weight.force_n = Some([0.0, r.within(-60.0, 0.0)]);
+            weight.mass_kg = Some(r.log(0.2, 8.0));
+            supports.push(weight);
+        }
+        supports.push(last);
+        c.supports = supports;
+        if r.chance(0.2) {
+            let arc_length_m = c.length_m * r.within(0.2, 0.8);
+            let force = |r: &mut Dice| [r.within(-30.0, 30.0), r.within(-50.0, 30.0)];
+            scene.loads.push(Load {
+                cable: c.name.clone(),
+                arc_length_m,
+                force_n: None,
+                times_s: (0..4).map(|k| leg_s * f64::from(k)).collect(),
+                forces_n: (0..4).map(|_| force(&mut r)).collect(),
+            });
+        }
+        scene.cables.push(c);
+    }
+    scene
+}
+
+/// What was found in a campaign: each law, or other fault, with the number of steps it was in, and
+/// the first of them.
+#[derive(Debug, Default)]
+struct Found {
+    scenes: usize,
+    steps: usize,
+    faults: BTreeMap<String, (usize, Vec<String>)>,
+    imbalance: Vec<(f64, String)>,
+}
+
+impl Found {
+    fn note(&mut self, what: &str, place: String) {
+        if std::env::var("TELL").is_ok_and(|t| what.starts_with(&t)) {
+            println!("{what}: {place}");
+        }
+        let (count, places) = self.faults.entry(what.to_owned()).or_default();
+        *count += 1;
+        let scene = |line: &str| line.split(' ').next().map(str::to_owned);
+        if places.last().is_none_or(|last| scene(last) != scene(&place)) {
+            places.push(place);
+        }
+    }
+
+    fn count(&self, what: &str) -> usize {
+        self.faults.get(what).map_or(0, |(count, _)| *count)
+    }
+}
+
+/// Runs a scene: two seconds of motion, or eight legs without inertia.
+fn run(seed: u64, inertia: Inertia, found: &mut Found) {
+    let (leg_s, steps) = match inertia {
+        Inertia::Dynamic => (0.35, 480),
+        Inertia::QuasiStatic => (2.0, 100),
+    };
+    let question = Question::History(inertia);
+    let made = Simulation::for_question(scene(seed, leg_s), Model::Auto, Settings::default(), question);
+    let Ok(mut sim) = made else { return };
+    found.scenes += 1;
+    if let Err(why) = sim.settle() {
+        found.note("first rest", format!("{seed}: {why}"));
+        return;
+    }
+    for step in 0..steps {
+        found.steps += 1;
+        let done = match inertia {
+            Inertia::Dynamic => sim.step(1.0 / 240.0),
+            Inertia::QuasiStatic => sim.step_quasi_static(0.1),
+        };
+        if let Err(why) = done {
+            found.note("stop", format!("{seed} at step {step}: {why}"));
+            return;
+        }
+        let answer = sim.solution();
+        for grown in answer.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows) {
+            found.note("energy", format!("{seed} at step {step}: {grown}"));
+        }
+        let sound = |n: &Node| n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite();
+        for cable in &answer.cables {
+            if !cable.nodes.iter().all(sound) {
+                found.note("no number", format!("{seed} at step {step}"));
+            }
+            if let Some(account) = &cable.momentum {
+                let place = format!("scene {seed} step {step}: {account:?}");
+                found.imbalance.push((momentum_balance::imbalance(account), place));
+            }
+        }
+        for finding in answer.verification.iter().flat_map(|v| &v.findings) {
+            found.note(finding.law.name(), format!("{seed} at step {step}: {finding}"));
+        }
+    }
+}
+
+fn campaign(seeds: std::ops::Range<u64>, inertia: Inertia) -> Found {
+    let mut found = Found::default();
+    for seed in seeds {
+        run(seed, inertia, &mut found);
+    }
+    println!("{inertia:?}: {} scenes, {} steps", found.scenes, found.steps);
+    for (what, (count, places)) in &found.faults {
+        println!("  {what}: {count} steps of {} scenes", places.len());
+        for place in places {
+            println!("    {place}");
+        }
+    }
+    momentum_balance::tell_imbalance(&found.imbalance);
+    found
+}
+
+fn check(found: &Found) {
+    for what in ["no number", Law::Penetration.name(), Law::Finite.name()] {
+        assert_eq!(found.count(what), 0, "{what}: {:?}", found.faults);
+    }
+    assert!(1000 * found.count("stop") <= found.steps, "{:?}", found.faults);
+}
+
+#[test]
+fn mixed_scenes_obey_the_laws() {
+    for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
+        check(&campaign(0..8, inertia));
+    }
+}
+
+#[test]
+#[ignore = "minutes: many mixed scenes, FROM and TO"]
+fn many_mixed_scenes_obey_the_laws() {
+    let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
+    for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
+        check(&campaign(number("FROM", 0)..number("TO", 200), inertia));
+    }
+}
+
+#[test]
+#[ignore = "zz: describe"]
+fn zz_describe() {
+    let list = std::env::var("LIST").unwrap();
+    for n in list.split(',') {
+        let n: u64 = n.parse().unwrap();
+        let s = scene(n, 0.35);
+        println!("{n}: {} obstacles, wind {}", s.obstacles.len(), s.environment.winds_n_per_m.len());
+        for c in &s.cables {
+            print!("   {} L {:.2} EI {:.3} EA {:.1e} m {:.2} self {} |", c.name, c.length_m, c.bending_stiffness_n_m2, c.axial_stiffness_n, c.linear_density_kg_per_m, c.self_contact);
+            for p in &c.supports {
+                print!(" {:?} r{:?} f{:?} {}{} m{:?} |", p.kind, p.radius_m, p.friction, if p.motion.is_some() {"moves"} else {""}, if p.release_s.is_some() {"released"} else {""}, p.mass_kg);
+            }
+            println!();
+        }
+    }
+}
+
+#[test]
+#[ignore = "zz: momentum"]
+fn zz_momentum() {
+    let n: u64 = std::env::var("LIST").unwrap().parse().unwrap();
+    let strip = std::env::var("STRIP").unwrap_or_default();
+    let mut s = scene(n, 0.35);
+    if strip.contains('o') { s.obstacles.clear(); }
+    if strip.contains('1') { s.cables.truncate(1); }
+    if strip.contains('l') { s.loads.clear(); }
+    for c in &mut s.cables {
+        if strip.contains('f') { c.supports[1].friction = Some(0.0); }
+        if strip.contains('b') { c.bending_stiffness_n_m2 = 0.0; }
+        if strip.contains('d') { c.damping_ratio = 0.0; }
+        if strip.contains('w') { c.supports[1].motion = None; }
+        if strip.contains('m') { c.supports[2].mass_kg = None; }
+        if strip.contains('M') { c.supports[2].motion = None; }
+    }
+    let mut sim = Simulation::for_question(s, Model::Auto, Settings::default(), Question::History(Inertia::Dynamic)).unwrap();
+    sim.settle().unwrap();
+    let rate: f64 = std::env::var("RATE").map_or(240.0, |r| r.parse().unwrap());
+    for step in 0..(0.2 * rate) as usize {
+        sim.step(1.0 / rate).unwrap();
+        let a = sim.solution();
+        for c in &a.cables {
+            let Some(m) = &c.momentum else { continue };
+            let i = m.impulses_n_s();
+            let d: Vec<f64> = (0..2).map(|j| m.after_kg_m_per_s[j] - m.before_kg_m_per_s[j] - i.iter().map(|v| v[j]).sum::<f64>()).collect();
+            let w = a.cables[0].supports.get(1).map(|s| s.arc_length_m);
+            println!("{step} {} off {:.3e} {:.3e} nodes {} arc {w:?} inner {:.2e} sup {:?}", c.name, d[0], d[1], c.nodes.len(), a.cost.inner_step_s, m.supports_n_s);
+        }
+    }
+}
+
+#[test]
+#[ignore = "zz: scene"]
+fn zz_toml() {
+    let n: u64 = std::env::var("LIST").unwrap().parse().unwrap();
+    let mut s = scene(n, std::env::var("LEG").map_or(0.35, |l| l.parse().unwrap()));
+    let strip = std::env::var("STRIP").unwrap_or_default();
+    if strip.contains('o') { s.obstacles.clear(); }
+    if strip.contains('1') { s.cables.truncate(1); }
+    if strip.contains('l') { s.loads.clear(); }
+    for c in &mut s.cables {
+        if strip.contains('b') { c.bending_stiffness_n_m2 = 0.0; }
+        if strip.contains('f') { c.supports[1].friction = Some(0.0); }
+    }
+    println!("{}", s.to_toml());
+}
+
+#[test]
+#[ignore = "zz: file"]
+fn zz_file() {
+    let s = Scene::from_toml(&std::fs::read_to_string(std::env::var("FILE").unwrap()).unwrap()).unwrap();
+    let dt: f64 = std::env::var("DT").map_or(0.1, |l| l.parse().unwrap());
+    let quasi = std::env::var("QUASI").is_ok();
+    let steps: usize = std::env::var("STEPS").map_or(3, |l| l.parse().unwrap());
+    let near: f64 = std::env::var("NEAR").map_or(-9.0, |l| l.parse().unwrap());
+    let inertia = if quasi { Inertia::QuasiStatic } else { Inertia::Dynamic };
+    let mut sim = Simulation::for_question(s, Model::Auto, Settings::default(), Question::History(inertia)).unwrap();
+    let mut done = sim.settle().map(|_| ());
+    for step in 0..=steps {
+        let a = sim.solution();
+        println!("step {step} {:?} model {:?}", done.as_ref().err().map(|e| e.to_string()), a.model);
+        for w in a.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows) { println!("   warning {w}"); }
+        for f in a.verification.iter().flat_map(|v| &v.findings) { println!("   finding {f}"); }
+        for c in &a.cables {
+            for s in &c.supports { println!("   {} s {:.4} R {:.3} {:.3} T {:?} {:?}", s.name, s.arc_length_m, s.reaction_x_n, s.reaction_y_n, s.tension_before_n, s.tension_after_n); }
+            for k in &c.contacts { println!("   {} s {:.4} [{:.3} {:.3}] N {:.3} F {:.3} {:?} turn {:.2} T {:.3} {:.3}", k.obstacle, k.arc_length_m, k.begins_m, k.ends_m, k.normal_n, k.friction_n, k.state, k.turn_deg, k.tension_before_n, k.tension_after_n); }
+            for n in c.nodes.iter().filter(|n| (n.arc_length_m - near).abs() < 0.4) { println!("      s {:.4} at {:.4} {:.4} T {:.3} M {:.3}", n.arc_length_m, n.x_m, n.y_m, n.tension_n, n.curvature_per_m); }
+        }
+        if done.is_err() { break; }
+        done = if quasi { sim.step_quasi_static(dt) } else { sim.step(dt) };
+    }
+}
