@@ -13,10 +13,9 @@ mod momentum_balance;
 use std::collections::BTreeMap;
 
 use cable_core::answer_verifier::Law;
+use cable_core::error::SolveError;
 use cable_core::model::{Inertia, Question};
-use cable_core::scene::{
-    Environment, Load, Motion, Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog,
-};
+use cable_core::scene::{Environment, Load, Motion, Obstacle, PulleySide, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::solution::{Node, WarningKind};
 use cable_core::{Model, Settings, Simulation};
 use dice::Dice;
@@ -25,8 +24,7 @@ use dice::Dice;
 fn obstacles(r: &mut Dice) -> Vec<Obstacle> {
     let rough = if r.chance(0.5) { 0.0 } else { r.within(0.02, 0.4) };
     let step = r.pick(&[0.25, 0.5, 2.0]);
-    let points_m =
-        (0..=(40.0 / step) as i32).map(|k| [-20.0 + step * f64::from(k), r.within(-rough, rough)]).collect();
+    let points_m = (0..=(40.0 / step) as i32).map(|k| [-20.0 + step * f64::from(k), r.within(-rough, rough)]).collect();
     let mut all = vec![Obstacle {
         name: "ground".to_owned(),
         shape: Shape::Terrain { points_m },
@@ -52,9 +50,9 @@ fn obstacles(r: &mut Dice) -> Vec<Obstacle> {
 fn motion(r: &mut Dice, home: [f64; 2], reach_m: f64, leg_s: f64) -> Motion {
     let knots = 5;
     let mut points_m = vec![home];
-    points_m.extend((1..knots).map(|_| {
-        [home[0] + r.within(-reach_m, reach_m), (home[1] + r.within(-reach_m, reach_m)).max(2.2)]
-    }));
+    points_m.extend(
+        (1..knots).map(|_| [home[0] + r.within(-reach_m, reach_m), (home[1] + r.within(-reach_m, reach_m)).max(2.2)]),
+    );
     Motion { times_s: (0..knots).map(|k| leg_s * k as f64).collect(), points_m }
 }
 
@@ -171,15 +169,23 @@ impl Found {
     }
 }
 
-/// Runs a scene: two seconds of motion, or eight legs without inertia.
-fn run(seed: u64, inertia: Inertia, found: &mut Found) {
-    let (leg_s, steps) = match inertia {
-        Inertia::Dynamic => (0.35, 480),
-        Inertia::QuasiStatic => (2.0, 100),
+/// A run of such a scene; None if it is not valid.
+fn made(seed: u64, inertia: Inertia) -> Option<Simulation> {
+    let leg_s = match inertia {
+        Inertia::Dynamic => 0.35,
+        Inertia::QuasiStatic => 2.0,
     };
     let question = Question::History(inertia);
-    let made = Simulation::for_question(scene(seed, leg_s), Model::Auto, Settings::default(), question);
-    let Ok(mut sim) = made else { return };
+    Simulation::for_question(scene(seed, leg_s), Model::Auto, Settings::default(), question).ok()
+}
+
+/// Runs a scene: two seconds of motion, or five legs without inertia.
+fn run(seed: u64, inertia: Inertia, found: &mut Found) {
+    let steps = match inertia {
+        Inertia::Dynamic => 480,
+        Inertia::QuasiStatic => 100,
+    };
+    let Some(mut sim) = made(seed, inertia) else { return };
     found.scenes += 1;
     if let Err(why) = sim.settle() {
         found.note("first rest", format!("{seed}: {why}"));
@@ -192,7 +198,9 @@ fn run(seed: u64, inertia: Inertia, found: &mut Found) {
             Inertia::QuasiStatic => sim.step_quasi_static(0.1),
         };
         if let Err(why) = done {
-            found.note("stop", format!("{seed} at step {step}: {why}"));
+            // What a model lacks is told as that.
+            let beyond = matches!(why, SolveError::Unsupported { .. });
+            found.note(if beyond { "beyond the model" } else { "stop" }, format!("{seed} at step {step}: {why}"));
             return;
         }
         let answer = sim.solution();
@@ -238,6 +246,73 @@ fn check(found: &Found) {
     assert!(1000 * found.count("stop") <= found.steps, "{:?}", found.faults);
 }
 
+/// Runs one of these scenes; returns what was found.
+fn found_in(seed: u64, inertia: Inertia) -> Found {
+    let mut found = Found::default();
+    run(seed, inertia, &mut found);
+    found
+}
+
+/// The momentum of the material on a wheel was taken after the wheel had moved: up to a tenth of an
+/// impulse came from nowhere in each step. It was lost where a cable left a wheel and came back in
+/// one step (270).
+#[test]
+fn issue_016_momentum_is_kept_over_wheels_that_move() {
+    for seed in [17, 36, 37, 270] {
+        let found = found_in(seed, Inertia::Dynamic);
+        assert_eq!(found.count(Law::Momentum.name()), 0, "{seed}: {:?}", found.faults);
+        let worst = found.imbalance.iter().map(|i| i.0).fold(0.0, f64::max);
+        assert!(found.steps > 240 && worst < 1e-4, "{seed}: {worst:e}");
+    }
+}
+
+/// The cable was laid on a moving wheel again at the end of the step in which it had come back,
+/// deep within: it was pulled with 17 kN for 1.1 kN, and had 119 J from nowhere (270). The tip of a
+/// fold that strikes a wheel does not run round it (17): that is told.
+#[test]
+fn issue_016_a_cable_comes_back_to_a_moving_wheel_without_a_jump() {
+    let mut sim = made(270, Inertia::Dynamic).unwrap();
+    sim.settle().unwrap();
+    for _ in 0..480 {
+        sim.step(1.0 / 240.0).unwrap();
+        let answer = sim.solution();
+        let greatest = answer.cables[0].nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+        assert!(greatest < 2e3, "at {} s: {greatest} N", sim.time_s());
+        assert!(answer.warnings.iter().all(|w| w.kind != WarningKind::EnergyGrows), "at {} s", sim.time_s());
+    }
+    let found = found_in(17, Inertia::Dynamic);
+    assert!(found.count("beyond the model") == 1 && found.count("energy") == 0, "{:?}", found.faults);
+}
+
+/// A load that came to an eye jammed there, with 600 N from 60 N, and one that came to a wheel went
+/// into it. It is told when it is there.
+#[test]
+fn issue_016_a_load_that_comes_to_a_pulley_is_told() {
+    for (seed, inertia) in [(99, Inertia::Dynamic), (42, Inertia::QuasiStatic)] {
+        let found = found_in(seed, inertia);
+        let told =
+            found.faults.get("beyond the model").is_some_and(|(_, places)| places[0].contains("comes to the pulley"));
+        assert!(told && found.faults.len() == 1, "{seed}: {:?}", found.faults);
+    }
+}
+
+/// A stiff cable that bends over a wheel kept no moment there in its first step: 30 N for 5.5 N
+/// beside the wheel (147), and runs without inertia were refused (117, 147). One that had left its
+/// wheel for a post touched that between two nodes, where the checker did not look (15).
+#[test]
+fn issue_016_a_stiff_cable_keeps_its_bend_over_a_wheel() {
+    for seed in [15, 117, 147] {
+        let found = found_in(seed, Inertia::QuasiStatic);
+        assert!(found.steps == 100 && found.faults.is_empty(), "{seed}: {:?}", found.faults);
+    }
+    let mut sim = made(147, Inertia::Dynamic).unwrap();
+    let rest = sim.settle().unwrap();
+    sim.step(1e-3).unwrap();
+    let [before, after] = [rest, sim.solution()].map(|answer| answer.cables[0].supports[1].clone());
+    let off = (after.reaction_x_n - before.reaction_x_n).hypot(after.reaction_y_n - before.reaction_y_n);
+    assert!(off < 0.01 * before.reaction_x_n.hypot(before.reaction_y_n), "{before:?} {after:?}");
+}
+
 #[test]
 fn mixed_scenes_obey_the_laws() {
     for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
@@ -251,98 +326,5 @@ fn many_mixed_scenes_obey_the_laws() {
     let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
     for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
         check(&campaign(number("FROM", 0)..number("TO", 200), inertia));
-    }
-}
-
-#[test]
-#[ignore = "zz: describe"]
-fn zz_describe() {
-    let list = std::env::var("LIST").unwrap();
-    for n in list.split(',') {
-        let n: u64 = n.parse().unwrap();
-        let s = scene(n, 0.35);
-        println!("{n}: {} obstacles, wind {}", s.obstacles.len(), s.environment.winds_n_per_m.len());
-        for c in &s.cables {
-            print!("   {} L {:.2} EI {:.3} EA {:.1e} m {:.2} self {} |", c.name, c.length_m, c.bending_stiffness_n_m2, c.axial_stiffness_n, c.linear_density_kg_per_m, c.self_contact);
-            for p in &c.supports {
-                print!(" {:?} r{:?} f{:?} {}{} m{:?} |", p.kind, p.radius_m, p.friction, if p.motion.is_some() {"moves"} else {""}, if p.release_s.is_some() {"released"} else {""}, p.mass_kg);
-            }
-            println!();
-        }
-    }
-}
-
-#[test]
-#[ignore = "zz: momentum"]
-fn zz_momentum() {
-    let n: u64 = std::env::var("LIST").unwrap().parse().unwrap();
-    let strip = std::env::var("STRIP").unwrap_or_default();
-    let mut s = scene(n, 0.35);
-    if strip.contains('o') { s.obstacles.clear(); }
-    if strip.contains('1') { s.cables.truncate(1); }
-    if strip.contains('l') { s.loads.clear(); }
-    for c in &mut s.cables {
-        if strip.contains('f') { c.supports[1].friction = Some(0.0); }
-        if strip.contains('b') { c.bending_stiffness_n_m2 = 0.0; }
-        if strip.contains('d') { c.damping_ratio = 0.0; }
-        if strip.contains('w') { c.supports[1].motion = None; }
-        if strip.contains('m') { c.supports[2].mass_kg = None; }
-        if strip.contains('M') { c.supports[2].motion = None; }
-    }
-    let mut sim = Simulation::for_question(s, Model::Auto, Settings::default(), Question::History(Inertia::Dynamic)).unwrap();
-    sim.settle().unwrap();
-    let rate: f64 = std::env::var("RATE").map_or(240.0, |r| r.parse().unwrap());
-    for step in 0..(0.2 * rate) as usize {
-        sim.step(1.0 / rate).unwrap();
-        let a = sim.solution();
-        for c in &a.cables {
-            let Some(m) = &c.momentum else { continue };
-            let i = m.impulses_n_s();
-            let d: Vec<f64> = (0..2).map(|j| m.after_kg_m_per_s[j] - m.before_kg_m_per_s[j] - i.iter().map(|v| v[j]).sum::<f64>()).collect();
-            let w = a.cables[0].supports.get(1).map(|s| s.arc_length_m);
-            println!("{step} {} off {:.3e} {:.3e} nodes {} arc {w:?} inner {:.2e} sup {:?}", c.name, d[0], d[1], c.nodes.len(), a.cost.inner_step_s, m.supports_n_s);
-        }
-    }
-}
-
-#[test]
-#[ignore = "zz: scene"]
-fn zz_toml() {
-    let n: u64 = std::env::var("LIST").unwrap().parse().unwrap();
-    let mut s = scene(n, std::env::var("LEG").map_or(0.35, |l| l.parse().unwrap()));
-    let strip = std::env::var("STRIP").unwrap_or_default();
-    if strip.contains('o') { s.obstacles.clear(); }
-    if strip.contains('1') { s.cables.truncate(1); }
-    if strip.contains('l') { s.loads.clear(); }
-    for c in &mut s.cables {
-        if strip.contains('b') { c.bending_stiffness_n_m2 = 0.0; }
-        if strip.contains('f') { c.supports[1].friction = Some(0.0); }
-    }
-    println!("{}", s.to_toml());
-}
-
-#[test]
-#[ignore = "zz: file"]
-fn zz_file() {
-    let s = Scene::from_toml(&std::fs::read_to_string(std::env::var("FILE").unwrap()).unwrap()).unwrap();
-    let dt: f64 = std::env::var("DT").map_or(0.1, |l| l.parse().unwrap());
-    let quasi = std::env::var("QUASI").is_ok();
-    let steps: usize = std::env::var("STEPS").map_or(3, |l| l.parse().unwrap());
-    let near: f64 = std::env::var("NEAR").map_or(-9.0, |l| l.parse().unwrap());
-    let inertia = if quasi { Inertia::QuasiStatic } else { Inertia::Dynamic };
-    let mut sim = Simulation::for_question(s, Model::Auto, Settings::default(), Question::History(inertia)).unwrap();
-    let mut done = sim.settle().map(|_| ());
-    for step in 0..=steps {
-        let a = sim.solution();
-        println!("step {step} {:?} model {:?}", done.as_ref().err().map(|e| e.to_string()), a.model);
-        for w in a.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows) { println!("   warning {w}"); }
-        for f in a.verification.iter().flat_map(|v| &v.findings) { println!("   finding {f}"); }
-        for c in &a.cables {
-            for s in &c.supports { println!("   {} s {:.4} R {:.3} {:.3} T {:?} {:?}", s.name, s.arc_length_m, s.reaction_x_n, s.reaction_y_n, s.tension_before_n, s.tension_after_n); }
-            for k in &c.contacts { println!("   {} s {:.4} [{:.3} {:.3}] N {:.3} F {:.3} {:?} turn {:.2} T {:.3} {:.3}", k.obstacle, k.arc_length_m, k.begins_m, k.ends_m, k.normal_n, k.friction_n, k.state, k.turn_deg, k.tension_before_n, k.tension_after_n); }
-            for n in c.nodes.iter().filter(|n| (n.arc_length_m - near).abs() < 0.4) { println!("      s {:.4} at {:.4} {:.4} T {:.3} M {:.3}", n.arc_length_m, n.x_m, n.y_m, n.tension_n, n.curvature_per_m); }
-        }
-        if done.is_err() { break; }
-        done = if quasi { sim.step_quasi_static(dt) } else { sim.step(dt) };
     }
 }

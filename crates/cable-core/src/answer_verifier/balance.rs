@@ -214,10 +214,9 @@ fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -
 }
 
 fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {
-    checked
-        .wheels
-        .iter()
-        .any(|&(center, radius, _)| bars_at(checked, piece).any(|bar| checked.touches_wheel(bar, center, radius).is_some()))
+    checked.wheels.iter().any(|&(center, radius, _)| {
+        bars_at(checked, piece).any(|bar| checked.touches_wheel(bar, center, radius).is_some())
+    })
 }
 
 /// The bars of a piece, the one before it and the one after it.

@@ -211,6 +211,12 @@ pub trait Mechanics: Send {
         false
     }
 
+    /// Returns the supports that are wheels over which the cable bends as the model would neglect
+    /// in its steps: there it lies better on posts.
+    fn wheels_bent_over(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// Returns the energy of the cable as its energy account counts it; None if it keeps none.
     fn stored_energy(&self) -> Option<Energy> {
         None

@@ -53,9 +53,9 @@ use crate::model::fem::state::stored_energy;
 use crate::model::fem::system::WorkBudget;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{BreakPlace, Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
-use crate::problem::Problem;
+use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Energy, ErrorEstimates};
+use crate::solution::{CableSolution, Energy, ErrorEstimates, SupportReaction};
 use crate::state::State;
 
 pub use crate::model::fem::settings::Tuning;
@@ -365,6 +365,20 @@ impl Mechanics for FemModel {
         (self.statics, self.problem) = (statics, problem.clone());
         self.stepper.change_wheels(problem);
         true
+    }
+
+    fn wheels_bent_over(&self) -> Vec<usize> {
+        let (mesh, meshing) = (&self.stepper.cable.mesh, &self.stepper.cable.meshing);
+        if mesh.is_flexible() || self.problem.supports.iter().all(|s| !(s.wheel_radius > 0.0)) {
+            return Vec::new();
+        }
+        let answer = self.solution();
+        let bends = |(support, reaction): (&SupportPoint, &SupportReaction)| {
+            let tension = [reaction.tension_before_n, reaction.tension_after_n].into_iter().flatten().fold(0.0, larger);
+            support.wheel_radius > 0.0 && meshing.bends_visibly(mesh, mesh.bending_stiffness, tension)
+        };
+        let pairs = self.problem.supports.iter().zip(&answer.supports).map(bends);
+        pairs.enumerate().filter(|(_, bends)| *bends).map(|(k, _)| k).collect()
     }
 
     fn stored_energy(&self) -> Option<Energy> {

@@ -18,7 +18,7 @@ use crate::math::{RigidPose, Vec2, cross, larger};
 use crate::model::mechanics::Constructor;
 use crate::model::tension_gauge::TensionGauge;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::problem::wheel_passage::facing;
+use crate::problem::wheel_passage::{facing, turn_through_centre};
 use crate::problem::wheels_as_posts::{StandIn, WheelLeft};
 use crate::problem::{CableWheels, Problem, SupportPoint, WheelsLeft};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
@@ -41,14 +41,20 @@ const MAX_RETURN_TRIALS: usize = 40;
 /// Fraction of a step that is lost in the rounding of its times.
 const SAME_TIME_FRACTION: f64 = 1e-9;
 
+/// Turn away from a wheel up to which a cable can be laid on it, rad: as long a path then differs
+/// by 1e-4 radii. Larger: the tip of a fold is laid on a wheel as if it ran round it; smaller: a
+/// cable that comes to a wheel where it is bent is refused. A choice, tuned on no campaign.
+const MOST_TURN_AWAY: f64 = 0.1;
+
 /// A wheel with nothing in its place, and the part of the cable nearest to it.
 #[derive(Clone, Copy, Debug)]
 struct WheelNearby {
     support: usize,
     /// Depth to which the cable lies within it, in radii; negative if it is clear.
     depth: f64,
-    /// True if the cable runs past it on the side on which it is led.
-    on_its_side: bool,
+    /// True if the cable can be laid on it there: it runs past on the side on which it is led, and
+    /// does not turn away from the wheel.
+    can_bear: bool,
 }
 
 /// A model of a cable over wheels, and of the same without those that it leaves.
@@ -68,6 +74,8 @@ pub struct LeavableWheels {
     /// Present places of wheels that were led while the cable was clear of them, m.
     places: Vec<Option<Vec2>>,
     robot_pose: Option<RigidPose>,
+    /// True if the cable was brought to rest and has not moved since.
+    rests: bool,
 }
 
 /// A place to which a support was moved, m.
@@ -145,7 +153,19 @@ impl LeavableWheels {
     ) -> Self {
         let n = problem.supports.len();
         let (led, places) = (vec![None; n], vec![None; n]);
-        Self { problem, wheels, settings, construct, inner, left: None, let_go: false, led, places, robot_pose: None }
+        Self {
+            problem,
+            wheels,
+            settings,
+            construct,
+            inner,
+            left: None,
+            let_go: false,
+            led,
+            places,
+            robot_pose: None,
+            rests: false,
+        }
     }
 
     /// Index that a support has in the inner model; None for a wheel that was left.
@@ -156,6 +176,11 @@ impl LeavableWheels {
             Some(false) if !self.let_go => Some(replaced[..support].iter().filter(|r| !**r).count()),
             _ => Some(support),
         }
+    }
+
+    /// The support that has an index in the inner model.
+    fn outer_index(&self, inner: usize) -> Option<usize> {
+        (0..self.problem.supports.len()).find(|&k| self.inner_index(k) == Some(inner))
     }
 
     /// Continues a cable that had left some of its wheels before an edit of the scene; returns
@@ -452,15 +477,20 @@ impl LeavableWheels {
         let nearby = gone.into_iter().filter_map(|k| {
             let support = &self.problem.supports[k];
             let center = self.places[k].or_else(|| support.position_at(state.time_s).map(|place| place.0))?;
-            let by_distance = |a: &&[Vec2], b: &&[Vec2]| {
-                distance(center, a[0], a[1]).total_cmp(&distance(center, b[0], b[1]))
-            };
-            let bar = state.position_m.windows(2).min_by(by_distance)?;
-            let travel = bar[1] - bar[0];
-            let outward = bar[0] + travel * nearest_fraction(center, bar[0], bar[1]) - center;
-            let on_its_side = cross(travel, outward) * facing(support.side, travel) > 0.0;
+            let x = &state.position_m;
+            let away = |e: &usize| distance(center, x[*e], x[*e + 1]);
+            let bar = (0..x.len().saturating_sub(1)).min_by(|a, b| away(a).total_cmp(&away(b)))?;
+            let travel = x[bar + 1] - x[bar];
+            let at = x[bar] + travel * nearest_fraction(center, x[bar], x[bar + 1]);
+            let outward = at - center;
+            let side = facing(support.side, travel);
+            // At a node it may turn.
+            let next = x[(bar + 1..x.len()).find(|&j| x[j] != at)?];
+            let before = x[(0..=bar).rev().find(|&j| x[j] != at)?];
+            let turn = turn_through_centre(side, at - before, next - at);
+            let can_bear = cross(travel, outward) * side > 0.0 && turn > -MOST_TURN_AWAY;
             let depth = 1.0 - outward.norm() / support.wheel_radius;
-            Some(WheelNearby { support: k, depth, on_its_side })
+            Some(WheelNearby { support: k, depth, can_bear })
         });
         nearby.collect()
     }
@@ -468,6 +498,26 @@ impl LeavableWheels {
     /// The greatest depth to which the cable lies within a wheel that it had left, in radii.
     fn return_depth(&self) -> f64 {
         self.wheels_nearby().iter().map(|wheel| wheel.depth).fold(f64::NEG_INFINITY, larger)
+    }
+
+    /// Lays a stiff cable at rest on posts in place of the wheels that stand, before it is moved,
+    /// where the model would neglect its bend on a wheel: a sliding node carries no moment. It
+    /// stays on the wheels if it cannot be laid so.
+    fn lay_bends_on_posts(&mut self) {
+        let bent = self.inner.wheels_bent_over();
+        let mut replaced = self.replaced();
+        for support in bent.iter().filter_map(|&k| self.outer_index(k)) {
+            replaced[support] |= self.wheels.standing[support] && self.led[support].is_none();
+        }
+        let state = self.inner.state();
+        if replaced == self.replaced() || state.moves() {
+            return;
+        }
+        let Some(posts) = self.without(&replaced, Inertia::QuasiStatic) else { return };
+        let start = self.inner.solution();
+        if let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) {
+            self.continue_with(inner, Some(posts));
+        }
     }
 
     /// Advances up to a time (s), or to the instant at which a moving cable comes back to a wheel:
@@ -519,10 +569,11 @@ impl LeavableWheels {
             return Ok(());
         }
         let state = self.inner.state();
-        // From its other side a wheel would have to pass through the cable. In mass-spring it would
+        // From its other side a wheel would have to pass through the cable; the tip of a fold that
+        // strikes it does not run round it. In mass-spring it would
         // push its node out at once, and stretch its two elements by all of that.
         let by_springs = self.inner.model() == Model::MassSpring;
-        let lost = back.iter().find(|wheel| by_springs || !wheel.on_its_side);
+        let lost = back.iter().find(|wheel| by_springs || !wheel.can_bear);
         if let Some(wheel) = lost.filter(|_| inertia == Inertia::Dynamic) {
             let support = self.problem.supports[wheel.support].name.clone();
             return Err(SolveError::Unsupported {
@@ -614,6 +665,7 @@ impl Layer for LeavableWheels {
             led: self.led.clone(),
             places: self.places.clone(),
             robot_pose: self.robot_pose,
+            rests: self.rests,
         }
     }
 
@@ -663,6 +715,7 @@ impl Layer for LeavableWheels {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
+        self.rests = true;
         self.put_at_rest();
         let found = self.inner.settle();
         let refusal = match &found {
@@ -689,6 +742,9 @@ impl Layer for LeavableWheels {
         match inertia {
             Inertia::Dynamic => self.move_led(dt_s)?,
             Inertia::QuasiStatic => self.put_at_rest(),
+        }
+        if std::mem::take(&mut self.rests) {
+            self.lay_bends_on_posts();
         }
         let end_s = self.inner.time_s() + dt_s;
         let mut report = self.advance_until_return(end_s, inertia, gauge)?;

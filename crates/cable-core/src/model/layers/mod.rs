@@ -167,6 +167,10 @@ impl<L: Layer> Mechanics for Layered<L> {
         self.0.refusal()
     }
 
+    fn wheels_bent_over(&self) -> Vec<usize> {
+        self.0.inner().wheels_bent_over()
+    }
+
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let outcome = self.0.settle();
         self.report(outcome)

@@ -71,7 +71,11 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
 
 /// Removes the sliding nodes that press on nothing, except those on `kept`; returns whether there
 /// were any.
-pub(in crate::model::fem) fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], inertia: Inertia) -> bool {
+pub(in crate::model::fem) fn remove_sliding_nodes(
+    cable: &mut CableState,
+    kept: &[SlideOver],
+    inertia: Inertia,
+) -> bool {
     let rests = inertia == Inertia::QuasiStatic;
     let mut changed = false;
     let mut k = 1;
