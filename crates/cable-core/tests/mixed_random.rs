@@ -313,6 +313,18 @@ fn issue_016_a_stiff_cable_keeps_its_bend_over_a_wheel() {
     assert!(off < 0.01 * before.reaction_x_n.hypot(before.reaction_y_n), "{before:?} {after:?}");
 }
 
+/// A cable that is an obstacle to itself was refused over every pulley; over wheels that stand it
+/// lies as on posts.
+#[test]
+fn issue_016_a_cable_that_meets_itself_runs_over_wheels_that_stand() {
+    for seed in [69, 97] {
+        for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
+            let found = found_in(seed, inertia);
+            assert!(found.steps >= 100 && found.faults.is_empty(), "{seed}: {:?}", found.faults);
+        }
+    }
+}
+
 #[test]
 fn mixed_scenes_obey_the_laws() {
     for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {

@@ -142,6 +142,15 @@ fn wheels_left_by(error: &SolveError) -> Vec<&str> {
     }
 }
 
+/// True if an error says that the cable is an obstacle to itself and runs over pulleys.
+fn asks_for_posts(error: &SolveError) -> bool {
+    match error {
+        SolveError::Unsupported { feature, .. } => *feature == Unsupported::SelfContactWithPulleys,
+        SolveError::Neither { told, other } => asks_for_posts(told) || asks_for_posts(other),
+        _ => false,
+    }
+}
+
 impl LeavableWheels {
     /// Wraps a model of the cable; `construct` builds those without some of its wheels.
     pub fn new(
@@ -357,14 +366,14 @@ impl LeavableWheels {
         self.left.as_ref().map_or_else(|| vec![false; self.problem.supports.len()], |left| left.replaced.clone())
     }
 
-    /// The wheels that were left already and those that the cable leaves by an error; None if the
-    /// error names no other wheel.
+    /// The wheels that were left already and those that the cable leaves by an error, or all that
+    /// stand if it asks for posts; None if there is no other wheel.
     fn also_left(&self, mut replaced: Vec<bool>, error: &SolveError) -> Option<Vec<bool>> {
-        let names = wheels_left_by(error);
+        let (names, posts) = (wheels_left_by(error), asks_for_posts(error));
         let before = replaced.clone();
-        for ((replaced, is_wheel), support) in replaced.iter_mut().zip(&self.wheels.wheels).zip(&self.problem.supports)
-        {
-            *replaced |= *is_wheel && names.contains(&support.name.as_str());
+        for (k, support) in self.problem.supports.iter().enumerate() {
+            let leaves = self.wheels.wheels[k] && names.contains(&support.name.as_str());
+            replaced[k] |= leaves || posts && self.wheels.standing[k];
         }
         (replaced != before).then_some(replaced)
     }
@@ -424,6 +433,9 @@ impl LeavableWheels {
     /// Lets the wheels go that the cable leaves by this error, in the model that holds the state;
     /// returns whether it can do so.
     fn let_go_of(&mut self, error: &SolveError, inertia: Inertia) -> bool {
+        if asks_for_posts(error) {
+            return false;
+        }
         let Some(replaced) = self.also_left(self.replaced(), error) else { return false };
         self.note_places(&replaced);
         self.without(&replaced, inertia).is_some_and(|left| self.goes_on(left))
