@@ -34,9 +34,9 @@ const PEAK_HALVINGS: usize = 24;
 /// reached this order.
 const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 
-/// Excess of the straight line between two nodes over its arc, of the square of the turn of the arc,
-/// above which elements are halved: as much as a chord is shorter. Smaller: more elements than the
-/// shape needs; larger: ways are drawn that are no way of the cable.
+/// Excess of the straight line between two nodes over its arc, of the square of the turn of the
+/// arc, above which elements are halved: as much as a chord is shorter. Smaller: more elements than
+/// the shape needs; larger: ways are drawn that are no way of the cable.
 const CHORD_EXCESS: f64 = 1.0 / 24.0;
 
 /// Round-off of the straight line between two nodes, of the length of the cable.
