@@ -21,7 +21,7 @@ use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::wheel_passage::{facing, turn_through_centre};
 use crate::problem::wheels_as_posts::{StandIn, WheelLeft};
 use crate::problem::{CableWheels, Problem, SupportPoint, WheelsLeft};
-use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
+use crate::solution::{CableSolution, ModelReason, MomentumAccount, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
 /// Depth to which a cable may lie within a wheel that it left, in radii: beyond it the cable has
@@ -32,11 +32,20 @@ const RETURN_DEPTH: f64 = 1e-3;
 /// Multiple of that depth up to which a moving cable may have come back when it is laid on the
 /// wheel. Smaller: the instant of the return is harder to find; larger: the cable jumps on the
 /// wheel. A choice, tuned on no campaign.
-const RETURN_DEPTHS: f64 = 2.0;
+const DEEPEST_RETURN_FACTOR: f64 = 2.0;
 
 /// Trials for the instant at which a moving cable comes back to a wheel: each halves what is left
 /// of the step at least every other time.
 const MAX_RETURN_TRIALS: usize = 40;
+
+/// Change of the greatest tension up to which a stiff cable on posts rests as it did on wheels, of
+/// that tension. Smaller: meshes that show the bend less well than the rest are not used; larger: a
+/// rest that was not found again is. A choice, tuned on no campaign.
+const SAME_REST: f64 = 0.05;
+
+/// Number of times that a cable may come back to wheels in one step. More: cables that tremble on a
+/// wheel take long; fewer: they are laid on it late. A choice, tuned on no campaign.
+const MAX_RETURNS: usize = 8;
 
 /// Fraction of a step that is lost in the rounding of its times.
 const SAME_TIME_FRACTION: f64 = 1e-9;
@@ -76,6 +85,8 @@ pub struct LeavableWheels {
     robot_pose: Option<RigidPose>,
     /// True if the cable was brought to rest and has not moved since.
     rests: bool,
+    /// The account of momentum of the parts of the present step before the last one.
+    account: Option<MomentumAccount>,
 }
 
 /// A place to which a support was moved, m.
@@ -174,6 +185,7 @@ impl LeavableWheels {
             places,
             robot_pose: None,
             rests: false,
+            account: None,
         }
     }
 
@@ -317,27 +329,47 @@ impl LeavableWheels {
         }
     }
 
-    /// Moves wheels that were left to where they have been led in a step of `dt_s` (s), no faster
-    /// than a hand. Posts stand still, so one that stands for a wheel that is led is taken away.
+    /// Moves the wheels that were left to where they have been led in a step of `dt_s` (s), no
+    /// faster than a hand; those that were `known` to be left have been moved already.
     ///
-    /// # Errors Those of the model without it.
-    fn move_led(&mut self, dt_s: f64) -> Result<(), SolveError> {
-        let led = self.led_away();
-        let is_post = |support: usize| self.wheel_left(support).is_some_and(|wheel| wheel.post.is_some());
-        if led.iter().any(|(support, _)| is_post(*support)) {
-            let left = self.without(&self.replaced(), Inertia::Dynamic);
-            if !left.as_ref().is_some_and(|left| self.goes_on(left.clone())) {
-                let inner = self.built(left.as_ref(), &Start::Motion(&self.inner.state()))?;
-                self.continue_with(inner, left);
-            }
-        }
+    /// # Errors Those of the model without the posts of wheels that are led.
+    fn move_led(&mut self, dt_s: f64, known: &[bool]) -> Result<(), SolveError> {
+        self.take_led_posts()?;
         let most = self.settings.hand_speed_m_per_s * dt_s;
-        for (support, to) in led {
+        for (support, to) in self.led_away() {
             let center = self.wheel_left(support).map(|wheel| wheel.center);
-            let Some(from) = self.places[support].or(center) else { continue };
+            let Some(from) = self.places[support].or(center).filter(|_| !known[support]) else { continue };
             let way = to - from;
             let part = if way.norm() > most { most / way.norm() } else { 1.0 };
             self.places[support] = Some(if part < 1.0 { from + way * part } else { to });
+        }
+        Ok(())
+    }
+
+    /// Posts stand still: a cable that lies on the post of a wheel that is led is laid on the wheel
+    /// again; else the post is taken away.
+    ///
+    /// # Errors Those of the model without the post.
+    fn take_led_posts(&mut self) -> Result<(), SolveError> {
+        let led = self.led_away();
+        if led.is_empty() {
+            return Ok(());
+        }
+        let mut replaced = self.replaced();
+        let (mut any, answer) = (false, self.inner.solution());
+        for (support, _) in led {
+            let Some(post) = self.wheel_left(support).and_then(|wheel| wheel.post.as_ref()) else { continue };
+            any = true;
+            replaced[support] = answer.contacts.iter().all(|c| c.obstacle != *post);
+        }
+        if !any {
+            return Ok(());
+        }
+        let left = self.without(&replaced, Inertia::Dynamic);
+        let same = replaced == self.replaced();
+        if !(same && left.as_ref().is_some_and(|left| self.goes_on(left.clone()))) {
+            let inner = self.built(left.as_ref(), &Start::Motion(&self.inner.state()))?;
+            self.continue_with(inner, left);
         }
         Ok(())
     }
@@ -373,7 +405,7 @@ impl LeavableWheels {
         let before = replaced.clone();
         for (k, support) in self.problem.supports.iter().enumerate() {
             let leaves = self.wheels.wheels[k] && names.contains(&support.name.as_str());
-            replaced[k] |= leaves || posts && self.wheels.standing[k];
+            replaced[k] |= leaves || posts && self.wheels.standing[k] && self.led[k].is_none();
         }
         (replaced != before).then_some(replaced)
     }
@@ -464,10 +496,12 @@ impl LeavableWheels {
                 Ok(report) => return Ok(report),
                 Err(error) => error,
             };
+            let known = self.replaced();
             if self.let_go_of(&error, inertia) {
+                self.keep_account();
                 // A wheel that a hand leads goes on.
                 if inertia == Inertia::Dynamic {
-                    self.move_led(end_s - self.inner.time_s())?;
+                    self.move_led(end_s - self.inner.time_s(), &known)?;
                 }
                 continue;
             }
@@ -493,7 +527,8 @@ impl LeavableWheels {
             let away = |e: &usize| distance(center, x[*e], x[*e + 1]);
             let bar = (0..x.len().saturating_sub(1)).min_by(|a, b| away(a).total_cmp(&away(b)))?;
             let travel = x[bar + 1] - x[bar];
-            let at = x[bar] + travel * nearest_fraction(center, x[bar], x[bar + 1]);
+            let fraction = nearest_fraction(center, x[bar], x[bar + 1]);
+            let at = if fraction >= 1.0 { x[bar + 1] } else { x[bar] + travel * fraction };
             let outward = at - center;
             let side = facing(support.side, travel);
             // At a node it may turn.
@@ -512,6 +547,20 @@ impl LeavableWheels {
         self.wheels_nearby().iter().map(|wheel| wheel.depth).fold(f64::NEG_INFINITY, larger)
     }
 
+    /// Adds the momentum that the model accounts for in a part of the step to that of the parts
+    /// before.
+    fn keep_account(&mut self) {
+        self.account = self.whole_account(self.inner.solution().momentum);
+    }
+
+    /// The account of momentum of the parts of the step before, and of the present one.
+    fn whole_account(&self, now: Option<MomentumAccount>) -> Option<MomentumAccount> {
+        match (self.account, now) {
+            (Some(before), Some(now)) => Some(before.then(&now)),
+            (before, now) => now.or(before),
+        }
+    }
+
     /// Lays a stiff cable at rest on posts in place of the wheels that stand, before it is moved,
     /// where the model would neglect its bend on a wheel: a sliding node carries no moment. It
     /// stays on the wheels if it cannot be laid so.
@@ -527,7 +576,10 @@ impl LeavableWheels {
         }
         let Some(posts) = self.without(&replaced, Inertia::QuasiStatic) else { return };
         let start = self.inner.solution();
-        if let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) {
+        let greatest = |answer: &CableSolution| answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) else { return };
+        let (before, after) = (greatest(&start), greatest(&inner.solution()));
+        if (after - before).abs() <= SAME_REST * before {
             self.continue_with(inner, Some(posts));
         }
     }
@@ -546,13 +598,13 @@ impl LeavableWheels {
         }
         let kept = (self.around(self.inner.boxed_clone()), gauge.clone());
         // The times between which it comes back, with its depth in excess of the one asked for.
-        let asked = 0.5 * (1.0 + RETURN_DEPTHS) * RETURN_DEPTH;
+        let asked = 0.5 * (1.0 + DEEPEST_RETURN_FACTOR) * RETURN_DEPTH;
         let mut clear = (self.inner.time_s(), self.return_depth() - asked);
         let mut report = self.advance_to(end_s, inertia, gauge)?;
         let mut within = (end_s, self.return_depth() - asked);
         for trial in 0..MAX_RETURN_TRIALS {
             let depth = self.return_depth();
-            if !(depth > RETURN_DEPTHS * RETURN_DEPTH) && (depth > RETURN_DEPTH || trial == 0) {
+            if !(depth > DEEPEST_RETURN_FACTOR * RETURN_DEPTH) && (depth > RETURN_DEPTH || trial == 0) {
                 break;
             }
             let part = if trial % 2 == 0 { clear.1 / (clear.1 - within.1) } else { 0.5 };
@@ -581,9 +633,9 @@ impl LeavableWheels {
             return Ok(());
         }
         let state = self.inner.state();
-        // From its other side a wheel would have to pass through the cable; the tip of a fold that
-        // strikes it does not run round it. In mass-spring it would
-        // push its node out at once, and stretch its two elements by all of that.
+        // From its other side a wheel would have to pass through the cable, and the tip of a fold
+        // that strikes it does not run round it. In `mass-spring` the wheel would push its node out
+        // at once, and stretch its two elements by all of that.
         let by_springs = self.inner.model() == Model::MassSpring;
         let lost = back.iter().find(|wheel| by_springs || !wheel.can_bear);
         if let Some(wheel) = lost.filter(|_| inertia == Inertia::Dynamic) {
@@ -678,6 +730,7 @@ impl Layer for LeavableWheels {
             places: self.places.clone(),
             robot_pose: self.robot_pose,
             rests: self.rests,
+            account: self.account,
         }
     }
 
@@ -688,6 +741,7 @@ impl Layer for LeavableWheels {
 
     /// A moving cable is on the wheels on which its state lies; it has left the others.
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        self.account = None;
         let off = |(k, support): (usize, &SupportPoint)| {
             let center = self.places[k].or_else(|| support.position_at(state.time_s).map(|place| place.0));
             let far = support.wheel_radius * (1.0 + RETURN_DEPTH);
@@ -727,7 +781,7 @@ impl Layer for LeavableWheels {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        self.rests = true;
+        (self.rests, self.account) = (true, None);
         self.put_at_rest();
         let found = self.inner.settle();
         let refusal = match &found {
@@ -751,8 +805,9 @@ impl Layer for LeavableWheels {
         inertia: Inertia,
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
+        self.account = None;
         match inertia {
-            Inertia::Dynamic => self.move_led(dt_s)?,
+            Inertia::Dynamic => self.move_led(dt_s, &vec![false; self.led.len()])?,
             Inertia::QuasiStatic => self.put_at_rest(),
         }
         if std::mem::take(&mut self.rests) {
@@ -760,9 +815,15 @@ impl Layer for LeavableWheels {
         }
         let end_s = self.inner.time_s() + dt_s;
         let mut report = self.advance_until_return(end_s, inertia, gauge)?;
+        let mut returns = 0;
         while end_s - self.inner.time_s() > SAME_TIME_FRACTION * dt_s {
+            self.keep_account();
             self.come_back(inertia)?;
-            report.add(self.advance_until_return(end_s, inertia, gauge)?);
+            returns += 1;
+            report.add(match returns < MAX_RETURNS {
+                true => self.advance_until_return(end_s, inertia, gauge)?,
+                false => self.advance_to(end_s, inertia, gauge)?,
+            });
         }
         let told = self.told(report);
         self.come_back(inertia)?;
@@ -801,6 +862,7 @@ impl Layer for LeavableWheels {
     }
 
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
+        answer.momentum = self.whole_account(answer.momentum);
         let Some(left) = &self.left else { return answer };
         for wheel in &left.wheels {
             let led = self.places.get(wheel.support).copied().flatten();

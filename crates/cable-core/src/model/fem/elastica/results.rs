@@ -58,8 +58,9 @@ pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: 
 }
 
 /// Halves the elements until the forces change by less than the fraction `tolerance` of the
-/// greatest tension, or until the next halving fails. Returns the answer's error relative to the
-/// greatest tension, and None if the first halving fails: then nothing is known of the error.
+/// greatest tension and no chord is longer than its arc, or until the next halving fails. Returns
+/// the answer's error relative to the greatest tension, and None if the first halving fails: then
+/// nothing is known of the error.
 pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
     let mut known = None;
     loop {

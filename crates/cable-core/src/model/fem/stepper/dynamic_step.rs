@@ -31,7 +31,7 @@ impl Stepper {
     ) -> Result<Converged, Failure> {
         self.cable.follow_edit(h);
         let before = self.accounts_energy.then(|| self.begin_energy_account());
-        // Pulleys that move are at the end of the step from here on.
+        // Taken before `begin_step`, which puts pulleys that move at the end of the step.
         let slid = MovingMass::of(&self.cable).sliding_momentum();
         let weights = self.begin_step(h, dragged);
         let predicted = self.solver.predicted_unknowns(&self.cable, h);
