@@ -141,7 +141,7 @@ fn scene(seed: u64, leg_s: f64) -> Scene {
     scene
 }
 
-/// What was found in a campaign: each law, or other fault, with the number of steps it was in, and
+/// The findings of a campaign: each law, or other fault, with the number of steps it was in, and
 /// the first of them.
 #[derive(Debug, Default)]
 struct Found {

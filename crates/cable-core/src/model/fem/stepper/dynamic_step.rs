@@ -14,7 +14,7 @@ use crate::model::fem::time::{
 };
 use crate::solution::Energy;
 
-/// What the accounts need of the start of a step.
+/// The start of a step, for the accounts of energy and momentum.
 struct AtStart {
     /// Its energy, if an account of energy is kept.
     energy: Option<Energy>,
