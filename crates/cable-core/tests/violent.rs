@@ -387,8 +387,7 @@ fn edited_campaign(scenes: impl IntoIterator<Item = u64>, seconds: f64) {
     assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0, "{:?}", found.broken);
     assert!(found.grown.is_empty(), "{:?}", found.grown.first());
     assert!((found.stopped.len() as f64) <= 1e-3 * found.steps as f64, "{:?}", found.stopped);
-    // While a length changes, nodes that stick are now and then beyond their cone.
-    assert!((count(&found, Law::Friction) as f64) < 1e-3 * found.steps as f64, "{:?}", found.broken);
+    assert_eq!(count(&found, Law::Friction), 0, "{:?}", found.broken);
     let worst = found.imbalance.iter().map(|i| i.0).fold(0.0, f64::max);
     assert!(worst < 1e-4, "momentum from nowhere: {worst:e}");
 }
@@ -398,6 +397,13 @@ fn edited_campaign(scenes: impl IntoIterator<Item = u64>, seconds: f64) {
 #[test]
 fn issue_016_the_momentum_that_an_edit_gives_is_no_impulse_of_obstacles() {
     edited_campaign(3495..3496, 1.6);
+}
+
+/// While the length of a cable changed, friction at corners where it stuck was reported up to 5.4 N
+/// beyond its cone: forces on material were taken for forces on the cable, which has another length.
+#[test]
+fn issue_016_friction_is_within_its_cone_while_a_length_changes() {
+    edited_campaign([3501, 3618], 2.0);
 }
 
 /// Cables that got a bending stiffness, of which the bars were slack or stretched by the mesh on

@@ -89,7 +89,7 @@ fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNode
     // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
     // cable meets the round is a result of the step: when it was tested, friction jumped on and
     // off, and no state was lawful.)
-    let turn = load.turn_with_inertia(inertia);
+    let turn = load.turn_with_inertia(inertia / cable.mesh.thermal_stretch);
     let momentum_flux = cable.input.inertial.momentum_flux[k];
     let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
     let exponent = if presses { node.friction * turn } else { 0.0 };

@@ -81,7 +81,8 @@ impl StepContext<'_> {
         // stretched cable weighs less per metre.
         let compliance = 1.0 / mesh.axial_stiffness;
         let lifted = [0, 1].map(|j| {
-            let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + body.dot(&(weight[j].center - x[k]));
+            let lift = body.dot(&(weight[j].center - x[k])) / mesh.thermal_stretch;
+            let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + lift;
             2.0 * theta / (1.0 + larger(1.0 + 2.0 * compliance * theta, 0.0).sqrt())
         });
         Some(SlidingNodeLoad { floor, lifted, at_material, ..load })

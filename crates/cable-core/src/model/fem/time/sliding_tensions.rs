@@ -14,9 +14,11 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
         let momentum_flux = cable.input.inertial.momentum_flux[k];
         if let Some(node) = &mut cable.mesh.sliding[k] {
             let [comes, leaves] = load.at_round();
-            // The step balances derivatives by the slide, in which inertia is multiplied by the
-            // stretch.
-            let [before, after] = load.at_material;
+            // The step balances derivatives by the slide of material. They are greater than forces
+            // by the stretch, and by the part by which heat or a length that is being changed makes
+            // the unstretched cable longer.
+            let (thermal, inertia) = (cable.mesh.thermal_stretch, inertia / cable.mesh.thermal_stretch);
+            let [before, after] = load.at_material.map(|pull| pull / thermal);
             let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;
             let pulls = match node.stick_slip {
                 _ if load.floor != [0.0; 3] => comes - inertia,
