@@ -273,13 +273,16 @@ fn change_bending_stiffness(cable: &mut CableState) {
 /// none.
 fn resolve_bends(cable: &mut CableState, stiffness: f64) {
     let stretched_before = StretchedBars::of(cable).without_slack();
-    for k in 1..cable.mesh.nodes().max(1) - 1 {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    // Of several nodes on a round, each that is changed stretches the bar to the next.
+    let neglects_bend = |&k: &usize| {
         let slides = |node: SlidingNode| matches!(node.slide_over, SlideOver::Obstacle { .. });
-        let length = cable.mesh.path(k - 1, &cable.motion.positions).length;
-        let tension = cable.mesh.tension(k - 1, length);
-        if cable.mesh.sliding[k].is_some_and(slides) && cable.meshing.bends_visibly(&cable.mesh, stiffness, tension) {
-            settle_down(cable, k);
-        }
+        let tension = mesh.tension(k - 1, mesh.path(k - 1, x).length);
+        mesh.sliding[k].is_some_and(slides) && cable.meshing.bends_visibly(mesh, stiffness, tension)
+    };
+    let changed: Vec<usize> = (1..mesh.nodes().max(1) - 1).filter(neglects_bend).collect();
+    for k in changed {
+        settle_down(cable, k);
     }
     stretched_before.restore(cable);
 }
