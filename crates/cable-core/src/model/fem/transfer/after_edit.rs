@@ -120,6 +120,15 @@ fn can_share_a_mesh(a: &CableState, b: &CableState) -> bool {
         && a.problem.floor_friction.is_some() == b.problem.floor_friction.is_some()
 }
 
+/// True if the cable `a` is `b` without its bending stiffness, which `b` has while it moves.
+pub(in crate::model::fem) fn loses_bending(a: &CableState, b: &CableState) -> bool {
+    a.mesh.is_flexible()
+        && !b.mesh.is_flexible()
+        && moves(b)
+        && a.problem.length == b.problem.length
+        && b.mesh.breaks().next().is_none()
+}
+
 /// True if the cable does not lie still.
 fn moves(cable: &CableState) -> bool {
     cable.motion.velocities.iter().any(|v| v.norm() > STILL_M_PER_S)
@@ -263,7 +272,7 @@ fn change_bending_stiffness(cable: &mut CableState) {
     let change = BendingChange::between(from, to);
     cable.motion.bending_change = Some(change).filter(|change| !change.is_over());
     cable.mesh.bending_stiffness = change.stiffness();
-    if from == 0.0 && to > 0.0 {
+    if to > from {
         resolve_bends(cable, to);
     }
 }

@@ -18,10 +18,10 @@ use crate::math::Vec2;
 use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
 use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
-use crate::model::fem::remesh::change_wheels;
+use crate::model::fem::remesh::{StretchedBars, change_wheels};
 use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::{Drag, after_edit};
+use crate::model::fem::transfer::after_edit::{Drag, after_edit, loses_bending};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
@@ -107,7 +107,9 @@ impl Stepper {
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
         let pulled = &self.hand_drive.pulled;
         let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
-        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else { return false };
+        let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else {
+            return loses_bending(&self.cable, &old.cable) && self.adopt_stretched(old);
+        };
         self.cable = cable;
         let heavier = self.cable.problem.linear_density * self.cable.problem.length
             / (old.cable.problem.linear_density * old.cable.problem.length);
@@ -117,6 +119,18 @@ impl Stepper {
         self.time_control.sleep.wake();
         self.time_control.step_size.continue_from(&old.time_control.step_size);
         self.rested = true;
+        true
+    }
+
+    /// Adopts the state of `old`, a cable on another mesh, with the stretch of its bars, which
+    /// would be that of chords through its nodes: 144 kN for 46 N where a cable lost its bending
+    /// stiffness.
+    fn adopt_stretched(&mut self, old: &Self) -> bool {
+        if self.set_state(&old.cable.state()).is_err() {
+            return false;
+        }
+        StretchedBars::of(&old.cable).restore(&mut self.cable);
+        renew_input(&mut self.cable);
         true
     }
 
