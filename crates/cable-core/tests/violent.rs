@@ -387,8 +387,10 @@ fn edited_campaign(scenes: impl IntoIterator<Item = u64>, seconds: f64) {
 
 fn campaign_of_edits(scenes: impl IntoIterator<Item = u64>, seconds: f64, only: Option<usize>) {
     let mut found = Found::default();
+    let stiff = std::env::var("STIFF").is_ok();
     for number in scenes {
-        run_with((number, scene(number)), seconds, Some(Edits { dice: Dice(number + 99), only }), &mut found);
+        let scene = if stiff { stiff_scene(number) } else { scene(number) };
+        run_with((number, scene), seconds, Some(Edits { dice: Dice(number + 99), only }), &mut found);
     }
     tell(&found);
     println!("{} edits, {} refused", found.edits, found.refused.len());
@@ -441,7 +443,7 @@ fn issue_016_a_cable_that_gets_a_bending_stiffness_obeys_the_laws() {
 }
 
 #[test]
-#[ignore = "minutes: random edits of violent scenes"]
+#[ignore = "minutes: random edits of violent scenes, of EDIT=kind, of STIFF=1 cables"]
 fn many_edited_scenes_obey_the_laws() {
     let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
     edited_campaign(number("FROM", 0)..number("TO", 200), 2.0);
