@@ -11,15 +11,9 @@
 //!   cable that is not held at both ends would run away, and keeps its friction.
 //! - **Slack.** The spans of a slack cable are not determined by its ends. The cable is shrunk
 //!   until a tension of a few weights draws it taut along its route, and paid out again step by
-//!   step; with more tension if the first was not enough.
+//!   step.
 //! - **Tension.** A contact that would be compressed shows that the cable has no tension left there
 //!   ([`Failure::Compressed`]): only then may it lie loose on the ground.
-//! - **Posts as polygons.** A cable held by friction alone may pass between the points that
-//!   represent a post: such a cable gets more points ([`posts_seen_nearer`]).
-
-use crate::model::spans::initial::{POST_POLYGONS, PostPolygon};
-use crate::model::spans::section_layout::SectionLayout;
-use crate::model::spans::settings::ContinuationSettings;
 
 /// A first shape from which an equilibrium is sought.
 #[derive(Clone, Copy, Debug)]
@@ -27,8 +21,6 @@ pub(in crate::model::spans) struct FirstShape {
     pub(super) friction: FirstFriction,
     pub(super) length: FirstLength,
     pub(super) slack: SlackCable,
-    /// The points that represent a post.
-    pub(super) posts: PostPolygon,
 }
 
 /// The friction with which an equilibrium is sought.
@@ -45,10 +37,8 @@ pub(in crate::model::spans) enum FirstFriction {
 pub(in crate::model::spans) enum FirstLength {
     /// All of it.
     Whole,
-    /// Shrunk to `first_tension_weights`, then let out.
+    /// Shrunk until it has a tension of `first_tension_weights`, then let out.
     Taut,
-    /// Shrunk to `second_tension_weights`, then let out.
-    VeryTaut,
 }
 
 /// The places at which a cable may lie without tension.
@@ -64,51 +54,22 @@ pub(in crate::model::spans) enum SlackCable {
 }
 
 /// The whole cable along its route with friction: most cables rest near it.
-pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
-    friction: FirstFriction::FromTheStart,
-    length: FirstLength::Whole,
-    slack: SlackCable::AlongRoute,
-    posts: POST_POLYGONS[0],
-};
+pub(super) const ALONG_ROUTE: FirstShape =
+    FirstShape { friction: FirstFriction::FromTheStart, length: FirstLength::Whole, slack: SlackCable::AlongRoute };
 
 /// The same cable, drawn taut.
 pub(super) const TAUT: FirstShape = FirstShape { length: FirstLength::Taut, ..ALONG_ROUTE };
 
 /// The first shapes in the order in which they are tried, each with the reason for it.
-pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
+pub(super) const FIRST_SHAPES: [FirstShape; 4] = [
     ALONG_ROUTE,
-    // Friction holds no equilibrium near the route.
-    FirstShape { friction: FirstFriction::OnceAtRest, ..ALONG_ROUTE },
-    // Slack keeps Newton's method from the frictionless equilibrium.
+    // Friction, or slack, keeps Newton's method from the equilibrium near the route.
     FirstShape { friction: FirstFriction::OnceAtRest, ..TAUT },
     // A contact would be compressed, so the cable there has no tension.
     FirstShape { slack: SlackCable::WhereTensionEnds, ..ALONG_ROUTE },
     // Slack keeps Newton's method from the equilibrium with friction.
     TAUT,
-    // A stiff cable stretches so little that a few weights do not draw it taut.
-    FirstShape { friction: FirstFriction::OnceAtRest, length: FirstLength::VeryTaut, ..ALONG_ROUTE },
 ];
 
-/// The first shapes that are tried after [`FIRST_SHAPES`] if friction alone holds a section.
-pub(super) fn posts_seen_nearer(layout: &SectionLayout) -> impl Iterator<Item = FirstShape> {
-    shapes_with_friction(layout).into_iter().skip(1)
-}
-
 /// The first shapes with friction from which the friction that a cable needs is found.
-pub(in crate::model::spans) fn shapes_with_friction(layout: &SectionLayout) -> Vec<FirstShape> {
-    let held_by_friction = layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none));
-    let rings = if held_by_friction { &POST_POLYGONS[..] } else { &POST_POLYGONS[..1] };
-    let shapes = rings.iter().map(|posts| FirstShape { posts: *posts, ..ALONG_ROUTE });
-    shapes.chain(held_by_friction.then_some(TAUT)).collect()
-}
-
-impl FirstLength {
-    /// The tension, in weights of the cable, to which it is shrunk; None if it is not shrunk.
-    pub(super) fn tension_weights(self, tuned: &ContinuationSettings) -> Option<f64> {
-        match self {
-            Self::Whole => None,
-            Self::Taut => Some(tuned.first_tension_weights),
-            Self::VeryTaut => Some(tuned.second_tension_weights),
-        }
-    }
-}
+pub(in crate::model::spans) const SHAPES_WITH_FRICTION: [FirstShape; 2] = [ALONG_ROUTE, TAUT];

@@ -33,7 +33,7 @@ impl CableEquilibrium {
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
-        let taut = shape.length.tension_weights(tuned);
+        let taut = (shape.length == FirstLength::Taut).then_some(tuned.first_tension_weights);
         let mut begin = goal.clone();
         layout.set_context(&mut self.context, &begin);
         let routes = self.lay_sections(layout, &begin, shape)?;
@@ -85,7 +85,7 @@ impl CableEquilibrium {
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = section_along_route::section_along_route(layout, k, &self.context, begin, shape.posts);
+            let laid = section_along_route::section_along_route(layout, k, &self.context, begin);
             let no_way = Failure::ContactImpossible { s: layout.sections[k].material[0], at: begin.places[0] };
             let (section, route) = laid.ok_or(no_way)?;
             self.sections.push(section);

@@ -2,7 +2,7 @@
 //! it would need, and the equilibrium after the cable was drawn.
 
 use crate::model::spans::contact::impending_slip;
-use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
+use crate::model::spans::first_equilibrium::{FirstShape, SHAPES_WITH_FRICTION};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection};
 use crate::model::spans::section_layout::SectionLayout;
@@ -40,7 +40,7 @@ impl CableEquilibrium {
                 return None;
             }
             let high = 1.0 + step;
-            if let Some(shape) = shapes_with_friction(layout).into_iter().find(|shape| rests(high, *shape).is_some()) {
+            if let Some(shape) = SHAPES_WITH_FRICTION.into_iter().find(|shape| rests(high, *shape).is_some()) {
                 break (high, shape);
             }
             (low, step) = (high, 2.0 * step);

@@ -14,14 +14,12 @@ mod length_homotopy;
 mod missing_friction;
 mod multiple_equilibria;
 
-pub(super) use first_shapes::{FirstShape, shapes_with_friction};
+pub(super) use first_shapes::{FirstShape, SHAPES_WITH_FRICTION};
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::Mode;
 use crate::model::spans::continuation::StepStats;
-use crate::model::spans::first_equilibrium::first_shapes::{
-    FIRST_SHAPES, FirstFriction, FirstLength, SlackCable, posts_seen_nearer,
-};
+use crate::model::spans::first_equilibrium::first_shapes::{FIRST_SHAPES, FirstFriction, FirstLength, SlackCable};
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::{BoundaryConditions, CableEquilibrium, CableSection, Failure};
@@ -82,7 +80,9 @@ impl CableEquilibrium {
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let context = layout.context(layout.curves(), instant);
         let (mut first, mut stopped, mut pushes, mut loose) = (None, None, false, None);
-        for shape in FIRST_SHAPES.into_iter().chain(posts_seen_nearer(layout)) {
+        let tuned = &layout.settings.continuation;
+        let mut work_left = tuned.max_work;
+        for shape in FIRST_SHAPES {
             let begin = match shape.friction {
                 FirstFriction::FromTheStart => instant,
                 FirstFriction::OnceAtRest => &smooth,
@@ -96,12 +96,12 @@ impl CableEquilibrium {
             let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
             cable_equilibrium.context.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
             // If an equilibrium is known, the cost of the search for another is limited.
-            if shape.length != FirstLength::Whole {
-                let may_lie_loose = *loose.get_or_insert_with(|| Self::in_heaps(layout, instant).is_some());
-                workspace.work_left = may_lie_loose.then_some(layout.settings.continuation.max_work_beside_loose);
-            }
+            let beside_loose = shape.length != FirstLength::Whole
+                && *loose.get_or_insert_with(|| Self::in_heaps(layout, instant).is_some());
+            let most = if beside_loose { work_left.min(tuned.max_work_beside_loose) } else { work_left };
+            workspace.work_left = Some(most);
             let found = cable_equilibrium.find_from(layout, shape, [begin, instant], workspace);
-            workspace.work_left = None;
+            work_left -= most - workspace.work_left.take().unwrap_or(most);
             match found {
                 Ok(taken) => {
                     cable_equilibrium.context.loose_where_tension_ends = false;

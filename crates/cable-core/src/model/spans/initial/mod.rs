@@ -18,4 +18,3 @@ pub(in crate::model::spans) mod shortest_path;
 pub(in crate::model::spans) mod tightening;
 
 pub(in crate::model::spans) use route::section_route;
-pub(in crate::model::spans) use shortest_path::{POST_POLYGONS, PostPolygon};

@@ -7,7 +7,7 @@ use crate::model::spans::boundary::{ChainRange, Ends, Mode, TensionProfile};
 use crate::model::spans::contact::LIFT_FRACTION;
 use crate::model::spans::initial::material_distribution::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
-use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
+use crate::model::spans::initial::shortest_path::PathCorner;
 use crate::model::spans::initial::{shortest_path, tightening};
 use crate::model::spans::section::{BoundaryConditions, CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
@@ -34,11 +34,10 @@ pub(in crate::model::spans) fn section_along_route(
     index: usize,
     context: &SolveContext,
     instant: &BoundaryConditions,
-    ring: PostPolygon,
 ) -> Option<(CableSection, Vec<Vec2>)> {
     let part = layout.sections.get(index)?;
     let way = section_route(layout, part, instant);
-    let section = FirstGuess { layout, part, context, instant, way: &way, ring }.section()?;
+    let section = FirstGuess { layout, part, context, instant, way: &way }.section()?;
     Some((section, way.points))
 }
 
@@ -50,8 +49,6 @@ struct FirstGuess<'a> {
     context: &'a SolveContext,
     instant: &'a BoundaryConditions,
     way: &'a RoutePolyline,
-    /// The outline about the corners.
-    ring: PostPolygon,
 }
 
 /// The part of a route along which a string is pulled taut, by the indices of the route's points at
@@ -208,9 +205,9 @@ impl FirstGuess<'_> {
     /// The bodies that the string bends round, with the pulleys; posts are represented by rings of
     /// points.
     fn wraps(&self, TautString { first, last }: TautString) -> Option<Vec<RouteWrap>> {
-        let Self { layout, part, context, instant, way, ring } = *self;
+        let Self { layout, part, context, instant, way } = *self;
         let world = &layout.problem.world;
-        let corners = shortest_path::corners(world, ring);
+        let corners = shortest_path::corners(world);
         let mut out: Vec<RouteWrap> = Vec::new();
         let mut reached = way.along[first];
         let mut begin = (way.points[first], first);

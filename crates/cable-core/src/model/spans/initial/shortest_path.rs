@@ -10,23 +10,13 @@ use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross};
 
-/// Points that represent a post.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct PostPolygon {
-    pub points: usize,
-    /// Their distance from the centre, as a fraction of the radius: inside the post, because routes
-    /// drawn as polygons cut into it.
-    pub part: f64,
-}
-
-/// Polygons of posts: coarse at first, finer if the coarse one gives no contact and nothing else
-/// holds the cable, because a string that hardly bends round a post passes between few points far
-/// inside it. If the fine ones came first, roughly drawn routes would pass on the wrong side.
-pub(in crate::model::spans) const POST_POLYGONS: [PostPolygon; 3] = [
-    PostPolygon { points: 12, part: 0.5 },
-    PostPolygon { points: 24, part: 0.9 },
-    PostPolygon { points: 96, part: 0.99 },
-];
+/// Number of points that represent a post. Fewer: a string that turns round it passes between them;
+/// more: a search takes longer.
+const POST_POINTS: usize = 12;
+/// Distance of these points from the centre of the post, as a fraction of its radius: inside it,
+/// because routes drawn as polygons cut into it. Larger: roughly drawn routes pass on the wrong
+/// side.
+const POST_POINTS_RADIUS_FRACTION: f64 = 0.5;
 /// Displacement of the end, as a fraction of a leg, below which nothing is met: otherwise round-off
 /// could meet the corner just left again.
 const SAME: f64 = 1e-12;
@@ -45,13 +35,13 @@ pub(in crate::model::spans) struct PathCorner {
 }
 
 /// Convex corners and posts.
-pub(in crate::model::spans) fn corners(world: &World, ring: PostPolygon) -> Vec<ImpassableCorner> {
+pub(in crate::model::spans) fn corners(world: &World) -> Vec<ImpassableCorner> {
     let mut out = Vec::new();
     for (body, b) in world.geometry().bodies().iter().enumerate() {
         if let Some(center) = b.center {
-            for k in 0..ring.points {
-                let (sin, cos) = (std::f64::consts::TAU * k as f64 / ring.points as f64).sin_cos();
-                let at = center + Vec2::new(cos, sin) * (ring.part * b.offset);
+            for k in 0..POST_POINTS {
+                let (sin, cos) = (std::f64::consts::TAU * k as f64 / POST_POINTS as f64).sin_cos();
+                let at = center + Vec2::new(cos, sin) * (POST_POINTS_RADIUS_FRACTION * b.offset);
                 out.push(ImpassableCorner { at, body, feature: b.first + 1 });
             }
         }
