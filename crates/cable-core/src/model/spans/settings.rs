@@ -120,7 +120,7 @@ pub struct ContinuationSettings {
     /// Work of a search for the first equilibrium, from all first shapes together, in contacts and
     /// spans times iterations. Smaller: equilibria far from the route are not found. Larger: a cable
     /// that has none is refused later. Of 2360 random scenes none that was found took more than
-    /// 37 630, and none that was not took more than 229 407 without this limit.
+    /// 37 152, and none that was not more than 229 407, from four shapes and without this limit.
     pub max_work: usize,
     /// Work of one search in tension for a cable that could also lie loose, in contacts and spans
     /// times iterations. Smaller: it lies loose although it could rest in tension. Larger: slack
@@ -165,9 +165,12 @@ pub struct ContinuationSettings {
     pub max_pockets: usize,
     /// Tension with which an equilibrium is first sought, in weights of the cable: so taut that it
     /// touches only the obstacles that its route bends round. Smaller: it touches more than the
-    /// taut string of the route, or a stiff cable keeps corners of the string that it does not
-    /// touch. Larger: more steps from there.
+    /// taut string of the route. Larger: more steps from there.
     pub first_tension_weights: f64,
+    /// Tension of a second search, if the first finds nothing: corners that the string bends round
+    /// and the cable does not touch need more length than the first shrinkage. Smaller: those
+    /// corners remain. Larger: more steps.
+    pub second_tension_weights: f64,
     /// Fraction of the load that acts at first. Smaller: nothing gained. Larger: a long span sags
     /// into obstacles below it before they can be met step by step.
     pub first_load_fraction: f64,
@@ -311,7 +314,7 @@ impl Default for ContinuationSettings {
             grown_step: 0.2,
             runaway_step_fraction: 1e-3,
             max_short_step_halvings: 24,
-            max_work: 400_000,
+            max_work: 1_000_000,
             max_work_beside_loose: 40_000,
             drag_factor: 10.0,
             rest_drag_fraction: 1e-3,
@@ -324,7 +327,8 @@ impl Default for ContinuationSettings {
             missing_friction_fraction: 3e-4,
             landing_step_fraction: 1.0 / 64.0,
             max_pockets: 3,
-            first_tension_weights: 40.0,
+            first_tension_weights: 4.0,
+            second_tension_weights: 400.0,
             first_load_fraction: 1e-3,
             unused_cone_fractions: [1e-5, 1e-3, 1e-2],
             first_missing_part: 0.04,

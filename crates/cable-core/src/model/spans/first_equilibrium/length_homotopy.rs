@@ -33,7 +33,7 @@ impl CableEquilibrium {
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
-        let taut = (shape.length == FirstLength::Taut).then_some(tuned.first_tension_weights);
+        let taut = shape.length.tension_weights(tuned);
         let mut begin = goal.clone();
         layout.set_context(&mut self.context, &begin);
         let routes = self.lay_sections(layout, &begin, shape)?;
