@@ -118,9 +118,10 @@ pub struct ContinuationSettings {
     /// few short steps would do. Larger: the path is covered in steps of a millionth.
     pub max_short_step_halvings: u32,
     /// Work of a search for the first equilibrium, from all first shapes together, in contacts and
-    /// spans times iterations. Smaller: equilibria far from the route are not found. Larger: a cable
-    /// that has none is refused later. Of 2360 random scenes none that was found took more than
-    /// 37 152, and none that was not more than 229 407, from four shapes and without this limit.
+    /// spans times iterations. Smaller: equilibria far from the route are not found. Larger: a
+    /// cable that has none is refused later. Of 2360 random scenes none that was found took more
+    /// than 37 152, and none that was not more than 229 407, from four shapes and without this
+    /// limit.
     pub max_work: usize,
     /// Work of one search in tension for a cable that could also lie loose, in contacts and spans
     /// times iterations. Smaller: it lies loose although it could rest in tension. Larger: slack
