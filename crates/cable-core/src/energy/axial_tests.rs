@@ -16,7 +16,7 @@
 use proptest::prelude::*;
 
 use super::axial::Bar;
-use super::{Blocks, Curvature, Energy, check};
+use super::{Blocks, Curvature, ElementEnergy, check};
 use crate::math::{Mat2, Vec2};
 
 impl Bar {
@@ -39,7 +39,7 @@ impl Bar {
     }
 }
 
-impl Energy<2> for Bar {
+impl ElementEnergy<2> for Bar {
     fn value(&self, x: &[Vec2; 2]) -> f64 {
         let stretch = (x[1] - x[0]).norm() - self.rest_length;
         0.5 * self.stiffness * stretch * stretch / self.rest_length

@@ -13,7 +13,7 @@
 //! bar: **l̄ = l₀/2**. With l₀ instead the clamp would stand half a bar away, an error of 1 % of
 //! the clamp moment on a usual mesh. [`Curvature::Clipped`] leaves the term with ψ out.
 
-use super::{Blocks, Curvature, Energy};
+use super::{Blocks, Curvature, ElementEnergy};
 use crate::math::{Mat2, Vec2, cross};
 
 /// The bend at a node between two bars.
@@ -63,7 +63,7 @@ fn angle_hessian(v: Vec2) -> Mat2 {
     Mat2::new(twice, mixed, mixed, -twice) / (square * square)
 }
 
-impl Energy<3> for BendingEnergy {
+impl ElementEnergy<3> for BendingEnergy {
     fn value(&self, x: &[Vec2; 3]) -> f64 {
         let psi = turn(x[1] - x[0], x[2] - x[1]) - self.from;
         0.5 * self.stiffness * psi * psi / self.length
@@ -107,7 +107,7 @@ pub(crate) fn turn_gradient(a: Vec2, b: Vec2) -> [Vec2; 3] {
     [ga, -ga - gb, gb]
 }
 
-impl Energy<2> for ClampBend {
+impl ElementEnergy<2> for ClampBend {
     fn value(&self, x: &[Vec2; 2]) -> f64 {
         let psi = turn(self.direction, x[1] - x[0]) - self.from;
         0.5 * self.stiffness * psi * psi / self.length

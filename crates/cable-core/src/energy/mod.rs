@@ -30,7 +30,7 @@ pub enum Curvature {
 pub type Blocks<const N: usize> = [[Mat2; N]; N];
 
 /// An energy of `N` neighbouring nodes.
-pub trait Energy<const N: usize> {
+pub trait ElementEnergy<const N: usize> {
     /// Energy, J. Positions in m.
     fn value(&self, x: &[Vec2; N]) -> f64;
 
@@ -48,7 +48,7 @@ pub(crate) mod check {
     use super::*;
 
     /// Asserts both derivatives at `x`, relative to the given force scale (N) and length scale (m).
-    pub fn derivatives<const N: usize>(energy: &impl Energy<N>, x: &[Vec2; N], force: f64, length: f64) {
+    pub fn derivatives<const N: usize>(energy: &impl ElementEnergy<N>, x: &[Vec2; N], force: f64, length: f64) {
         let h = 1e-6 * length;
         let (gradient, hessian) = (energy.gradient(x), energy.hessian(x, Curvature::Exact));
         for i in 0..N {

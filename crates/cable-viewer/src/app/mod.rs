@@ -94,9 +94,9 @@ pub struct ViewerApp {
     /// Every model and mesh being compared.
     work_precision_job: Option<work_precision::Job>,
     /// The effect of neglecting bending stiffness, computed or being computed.
-    neglected_bending_job: Option<neglected_bending::Job>,
+    neglected_bending_job: Option<neglected_bending::NeglectedBendingJob>,
     /// The ribbon of less and more friction, computed or being computed.
-    friction_range_job: Option<friction_range::Job>,
+    friction_range_job: Option<friction_range::FrictionRangeJob>,
 }
 
 impl ViewerApp {
@@ -327,16 +327,18 @@ impl ViewerApp {
             self.state.analysis.neglected_bending = neglected_bending::NeglectedBendingState::default();
         }
         let Some(ask) = self.state.analysis.neglected_bending.query.clone() else { return };
-        let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
+        let runs = |job: &neglected_bending::NeglectedBendingJob| {
+            matches!(job.progress(), neglected_bending::Progress::Running(..))
+        };
         // One that still runs cannot be stopped within its solve: the next waits for it.
         if self.neglected_bending_job.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
             let shown = ctx.clone();
             self.neglected_bending_job =
-                Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
+                Some(neglected_bending::NeglectedBendingJob::start(ask.clone(), move || shown.request_repaint()));
         }
         let own = self.neglected_bending_job.as_ref().filter(|job| job.is_of(&ask));
-        self.state.analysis.neglected_bending.progress =
-            own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
+        self.state.analysis.neglected_bending.progress = own
+            .map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::NeglectedBendingJob::progress);
     }
 
     /// Looks after the ribbon of less and more friction: one of another question ends, a missing
@@ -354,10 +356,13 @@ impl ViewerApp {
             && let Some(ask) = friction_query(state)
         {
             let shown = ctx.clone();
-            self.friction_range_job = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
+            self.friction_range_job =
+                Some(friction_range::FrictionRangeJob::start(ask, move || shown.request_repaint()));
         }
-        state.analysis.friction_range.progress =
-            self.friction_range_job.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
+        state.analysis.friction_range.progress = self
+            .friction_range_job
+            .as_ref()
+            .map_or(friction_range::Progress::None, friction_range::FrictionRangeJob::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.

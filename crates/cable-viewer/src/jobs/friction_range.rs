@@ -38,12 +38,12 @@ impl Default for FrictionRangeState {
 
 /// A ribbon being computed.
 #[derive(Debug)]
-pub struct Job {
+pub struct FrictionRangeJob {
     job: background::Job<Outcome>,
     query: Arc<FrictionQuery>,
 }
 
-impl Job {
+impl FrictionRangeJob {
     /// Starts a job; `shown` is called whenever there is a new result to show.
     #[must_use]
     pub fn start(query: FrictionQuery, shown: impl Fn() + Send + 'static) -> Self {

@@ -20,7 +20,7 @@ pub struct ModelAnswer {
 
 /// The answers of all models, and the scene they were asked about.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct ModelComparison {
     /// The scene.
     pub scene: Arc<Scene>,
     /// The models so far, in the order they are listed everywhere.
@@ -28,15 +28,15 @@ pub struct Outcome {
 }
 
 /// Its progress.
-pub type Progress = background::Progress<Outcome>;
+pub type Progress = background::Progress<ModelComparison>;
 /// Models being asked.
-pub type Job = background::Job<Outcome>;
+pub type Job = background::Job<ModelComparison>;
 
 /// Asks every model; `shown` is called whenever there is something new to show.
 #[must_use]
 pub fn start(scene: Scene, settings: Settings, shown: impl Fn() + Send + 'static) -> Job {
-    let work = move |listen: background::Listener<'_, Outcome>| {
-        let mut found = Outcome { scene: Arc::new(scene), answers: Vec::new() };
+    let work = move |listen: background::Listener<'_, ModelComparison>| {
+        let mut found = ModelComparison { scene: Arc::new(scene), answers: Vec::new() };
         let all = Model::SOLVERS;
         for (k, model) in all.into_iter().enumerate() {
             if listen(k as f64 / all.len() as f64, Some(found.clone())) == ControlFlow::Break(()) {

@@ -34,12 +34,12 @@ pub struct NeglectedBendingState {
 
 /// A running job.
 #[derive(Debug)]
-pub struct Job {
+pub struct NeglectedBendingJob {
     job: background::Job<Outcome>,
     answer: Arc<Solution>,
 }
 
-impl Job {
+impl NeglectedBendingJob {
     /// Starts the job; `shown` is called when there is something new to show.
     #[must_use]
     pub fn start(query: Query, shown: impl Fn() + Send + 'static) -> Self {

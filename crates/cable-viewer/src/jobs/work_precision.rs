@@ -28,7 +28,7 @@ pub struct MeasuredSetting {
 
 /// The results of all settings, and the answer they are compared with.
 #[derive(Clone, Debug)]
-pub struct Outcome {
+pub struct WorkPrecision {
     /// The scene.
     pub scene: Arc<Scene>,
     /// Its answer with the settings in use, and the wall time that took, s.
@@ -38,14 +38,14 @@ pub struct Outcome {
 }
 
 /// Progress so far.
-pub type Progress = background::Progress<Outcome>;
+pub type Progress = background::Progress<WorkPrecision>;
 /// Settings being compared.
-pub type Job = background::Job<Outcome>;
+pub type Job = background::Job<WorkPrecision>;
 
 /// Compares all settings; `shown` is called whenever there is something new to show.
 #[must_use]
 pub fn start(scene: Scene, model: Model, settings: Settings, shown: impl Fn() + Send + 'static) -> Job {
-    let work = move |listen: background::Listener<'_, Outcome>| {
+    let work = move |listen: background::Listener<'_, WorkPrecision>| {
         let ended = || "it was ended".to_owned();
         let all: Vec<Setting> = Setting::all().collect();
         let share = |done: usize| done as f64 / (all.len() + 1) as f64;
@@ -53,7 +53,8 @@ pub fn start(scene: Scene, model: Model, settings: Settings, shown: impl Fn() + 
             return Err(ended());
         }
         let (given, given_s) = timed(|| at_rest(&scene, model, settings)).map_err(|e| sentence(&e))?;
-        let mut found = Outcome { scene: Arc::new(scene), given: (Arc::new(given), given_s), entries: Vec::new() };
+        let mut found =
+            WorkPrecision { scene: Arc::new(scene), given: (Arc::new(given), given_s), entries: Vec::new() };
         for (k, setting) in all.iter().enumerate() {
             if listen(share(k + 1), Some(found.clone())) == ControlFlow::Break(()) {
                 return Err(ended());
@@ -86,7 +87,7 @@ fn timed<T>(solve: impl Fn() -> Result<T, Error>) -> Result<(T, f64), Error> {
     Ok((found, shortest_s))
 }
 
-impl Outcome {
+impl WorkPrecision {
     /// The quickest setting whose answer is within a part of the greatest tension of the given one.
     #[must_use]
     pub fn quickest(&self, within: f64) -> Option<(Setting, f64)> {
@@ -113,7 +114,7 @@ mod tests {
         };
         let scene = cable_core::scene::catalog::hanging_span();
         let given = at_rest(&scene, Model::Catenary, Settings::default()).unwrap();
-        let outcome = Outcome {
+        let outcome = WorkPrecision {
             scene: Arc::new(scene),
             given: (Arc::new(given), 1.0),
             entries: vec![entry(25, 1e-2, 1e-3), entry(50, 2e-3, 2e-3), entry(100, 5e-4, 4e-3)],

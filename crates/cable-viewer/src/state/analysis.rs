@@ -7,7 +7,7 @@ use std::sync::Arc;
 use cable_core::scene::Change;
 use cable_core::{Scene, Solution};
 
-use crate::jobs::model_comparison::{self, Outcome};
+use crate::jobs::model_comparison::{self, ModelComparison};
 use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision};
 use crate::record::kept_run::KeptRun;
 
@@ -82,7 +82,7 @@ impl Reference {
 
 /// Holds each answer, in place of one held before of the same scene and model at rest, as far as
 /// there is room. `saved`: the scene as it was opened or saved.
-pub fn hold(analysis: &mut Analysis, found: &Outcome, saved: &Scene) {
+pub fn hold(analysis: &mut Analysis, found: &ModelComparison, saved: &Scene) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };
         let (scene, changes) = (Arc::clone(&found.scene), analysis.changes_to(&found.scene, saved));

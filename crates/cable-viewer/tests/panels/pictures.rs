@@ -131,7 +131,7 @@ fn compare_models() {
         let why = SolveError::Unsupported { model, feature }.into();
         let answers = vec![model_comparison::ModelAnswer { model, result: Err(why) }];
         let scene = std::sync::Arc::new(state.document.scene.clone());
-        state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
+        state.analysis.models = model_comparison::Progress::Done(model_comparison::ModelComparison { scene, answers });
         state
     };
     picture("compare_models", asked, panels::analysis::compare::ui, [320.0, 280.0]);

@@ -291,7 +291,10 @@ impl Mechanics for FemModel {
         let Some(Continuation { stepper, errors }) = before.downcast_ref() else { return false };
         let continues = self.stepper.continue_from(stepper, &self.dragged);
         if continues {
-            (self.present, self.meshes) = (PresentPart::Stepper, TwoMeshes::after_edit(*errors));
+            self.present = PresentPart::Stepper;
+            // Those of the mesh of a stiff cable are not those of the mesh that follows.
+            let same_mesh = self.stepper.cable.mesh.is_flexible() <= stepper.cable.mesh.is_flexible();
+            self.meshes = if same_mesh { TwoMeshes::after_edit(*errors) } else { TwoMeshes::default() };
             (self.elastica_answer, self.bending_error) = (None, None);
             if let Some(pose) = self.robot_pose {
                 self.set_robot_pose(pose);

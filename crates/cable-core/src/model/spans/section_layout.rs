@@ -26,7 +26,7 @@ struct SectionLoad {
 
 /// A pulley between the ends of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Pulley {
+pub(in crate::model::spans) struct SectionPulley {
     pub support: usize,
     /// Index of its boundary with sense +1.
     pub curve: usize,
@@ -54,7 +54,7 @@ pub(in crate::model::spans) struct SectionLayout {
 pub(in crate::model::spans) struct SectionBounds {
     pub material: [f64; 2],
     pub supports: [Option<usize>; 2],
-    pub pulleys: Vec<Pulley>,
+    pub pulleys: Vec<SectionPulley>,
 }
 
 /// The error for a feature that the model lacks.
@@ -119,7 +119,7 @@ fn sections_of(p: &Problem) -> Result<Vec<SectionBounds>, SolveError> {
             SupportKind::Load | SupportKind::Free => {}
             SupportKind::Pulley if s.departure == Departure::Done => {}
             SupportKind::Pulley => {
-                part.pulleys.push(Pulley { support: k, curve: next_wheel, facing: 0.0 });
+                part.pulleys.push(SectionPulley { support: k, curve: next_wheel, facing: 0.0 });
                 next_wheel += 2;
             }
             SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {

@@ -9,7 +9,7 @@ use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, P
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::jobs::work_precision::{MeasuredSetting, Outcome};
+use crate::jobs::work_precision::{MeasuredSetting, WorkPrecision};
 use crate::panels::display_names::capital;
 use crate::plot::TIME_MARK;
 use crate::render::colour;
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn outcome(ui: &mut Ui, state: &AppState, found: &Outcome) {
+fn outcome(ui: &mut Ui, state: &AppState, found: &WorkPrecision) {
     if *found.scene != state.document.scene {
         ui.colored_label(ui.visuals().warn_fg_color, "Out of date: edited since");
     }
@@ -90,7 +90,7 @@ fn place(entry: &MeasuredSetting) -> Option<[f64; 2]> {
     Some([(wall_s * 1e3).max(1e-6).log10(), compared.force_difference.max(MIN_DIFFERENCE).log10()])
 }
 
-fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
+fn chart(ui: &mut Ui, found: &WorkPrecision, tolerance: f64) {
     let places: Vec<[f64; 2]> = found.entries.iter().filter_map(place).collect();
     let ends = |k: usize, also: f64| {
         let all = places.iter().map(|p| p[k]).chain([also]);
@@ -142,7 +142,7 @@ fn spoken(entry: &MeasuredSetting) -> Option<String> {
     Some(format!("{}: {difference} in {}{stated}", name(entry.setting), format::duration(*wall_s)))
 }
 
-fn legend(ui: &mut Ui, found: &Outcome) {
+fn legend(ui: &mut Ui, found: &WorkPrecision) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         for model in Model::SOLVERS {

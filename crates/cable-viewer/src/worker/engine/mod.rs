@@ -93,7 +93,7 @@ impl EndedRun {
 #[derive(Clone, Copy, Debug, Default)]
 struct Steering {
     /// The support that a hand holds by a spring.
-    hand: Option<Hand>,
+    hand: Option<HeldSupport>,
     /// Number of a drag while time runs that no frame shows yet.
     drag_number: u64,
     /// Speed of the robot by hand, m/s.
@@ -156,7 +156,7 @@ struct WallTimes {
 
 /// A hand that holds a support by a spring.
 #[derive(Clone, Copy, Debug)]
-struct Hand {
+struct HeldSupport {
     /// Index of the cable.
     cable: usize,
     /// Index of the support.

@@ -9,7 +9,7 @@ use cable_core::{Error, Model, Settings, Simulation, Solution};
 
 use super::outbox::Report;
 use super::run::{Run, is_quasi_static};
-use super::{Engine, Hand, Phase};
+use super::{Engine, HeldSupport, Phase};
 use crate::state::Playback;
 use crate::worker::draft::{self, MeshResolution};
 use crate::worker::request::Drag;
@@ -58,7 +58,7 @@ impl Engine {
             self.enter_coarse();
         }
         let Drag { cable, support, to_m, .. } = drag;
-        self.steering.hand = drag.by_spring.then_some(Hand { cable, support, at_m: to_m });
+        self.steering.hand = drag.by_spring.then_some(HeldSupport { cable, support, at_m: to_m });
         if let Some(run) = &mut self.run {
             run.draw(|simulation| match drag.by_spring {
                 true => simulation.pull_support(cable, support, vec2(to_m)),

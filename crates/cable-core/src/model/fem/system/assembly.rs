@@ -6,7 +6,7 @@
 //! node is the force of the cable on its support.
 
 use crate::energy::bending::{BendingEnergy, ClampBend, turn};
-use crate::energy::{Curvature, Energy};
+use crate::energy::{Curvature, ElementEnergy};
 use crate::linalg::BandMatrix;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::mesh::Mesh;
@@ -110,7 +110,7 @@ pub fn bends_energy(mesh: &Mesh, x: &[Vec2]) -> f64 {
 /// Slope of the energy of bends (see [`System::add_bends`]) at `x` (m) times the displacements of
 /// the nodes (m), J.
 pub fn bends_slope(mesh: &Mesh, stiffness: f64, from: Option<&[f64]>, x: &[Vec2], ways: &[Vec2]) -> f64 {
-    fn along<const N: usize>(bend: &impl Energy<N>, nodes: [usize; N], x: &[Vec2], ways: &[Vec2]) -> f64 {
+    fn along<const N: usize>(bend: &impl ElementEnergy<N>, nodes: [usize; N], x: &[Vec2], ways: &[Vec2]) -> f64 {
         bend.gradient(&nodes.map(|n| x[n])).iter().zip(nodes).map(|(g, n)| g.dot(&ways[n])).sum()
     }
     let mut slope = 0.0;
@@ -193,7 +193,7 @@ impl System {
     /// Adds one energy of `N` nodes; returns its value, J.
     pub fn add_energy<const N: usize>(
         &mut self,
-        energy: &impl Energy<N>,
+        energy: &impl ElementEnergy<N>,
         nodes: [usize; N],
         x: &[Vec2],
         curvature: Curvature,

@@ -16,7 +16,7 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
             let [comes, leaves] = load.at_round();
             // The step balances derivatives by the slide of material. They are greater than forces
             // by the stretch, and by the part by which heat or a length that is being changed makes
-            // the unstretched cable longer.
+            // the unstretched cable longer. (A node that sticks has no momentum flux.)
             let (thermal, inertia) = (cable.mesh.thermal_stretch, inertia / cable.mesh.thermal_stretch);
             let [before, after] = load.at_material.map(|pull| pull / thermal);
             let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;

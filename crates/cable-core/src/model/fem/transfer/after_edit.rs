@@ -32,7 +32,7 @@ const SAME_PLACE_FRACTION: f64 = 1e-9;
 
 /// The connection of a support with what draws it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::fem) enum Drag {
+pub(in crate::model::fem) enum SupportDrag {
     Nothing,
     /// It goes where it is sent.
     Rigid,
@@ -40,7 +40,7 @@ pub(in crate::model::fem) enum Drag {
     Spring,
 }
 
-impl Drag {
+impl SupportDrag {
     /// That of a support with a target, or none.
     pub(in crate::model::fem) fn of(target: Option<Vec2>, by_spring: bool) -> Self {
         match (target, by_spring) {
@@ -110,23 +110,33 @@ fn has_other_bars(a: &CableState, b: &CableState) -> bool {
 }
 
 /// True if the mesh of the cable `b` can serve for `a`: its mass is lumped if that of `a` is, and
-/// both have bending or none, or `a` gets one while it moves, contact with themselves or none, and
-/// the same outline of a robot.
+/// both have bending or none, or `a` gets one while it moves.
 fn can_share_a_mesh(a: &CableState, b: &CableState) -> bool {
     (b.mesh.spread.is_lumped() || !a.mesh.spread.is_lumped())
         && (a.mesh.is_flexible() == b.mesh.is_flexible() || b.mesh.is_flexible() && moves(b))
-        && a.problem.cable.self_contact == b.problem.cable.self_contact
+        && meet_alike(a, b)
+}
+
+/// True if both cables meet themselves or do not, and have the same outline of a robot, and the
+/// friction of a floor or none.
+fn meet_alike(a: &CableState, b: &CableState) -> bool {
+    a.problem.cable.self_contact == b.problem.cable.self_contact
         && have_same_outline(&a.problem, &b.problem)
         && a.problem.floor_friction.is_some() == b.problem.floor_friction.is_some()
 }
 
-/// True if the cable `a` is `b` without its bending stiffness, which `b` has while it moves.
+/// True if the cable `a` is `b` without its bending stiffness, which `b` has while it moves, and
+/// what else was edited puts nothing in its way.
 pub(in crate::model::fem) fn loses_bending(a: &CableState, b: &CableState) -> bool {
+    let edited = EditedObstacles { before: b.problem.world.geometry(), after: a.problem.world.geometry() };
     a.mesh.is_flexible()
         && !b.mesh.is_flexible()
         && moves(b)
         && a.problem.length == b.problem.length
         && b.mesh.breaks().next().is_none()
+        && are_divided_alike(a, b)
+        && meet_alike(a, b)
+        && edited.adds_nothing()
 }
 
 /// True if the cable does not lie still.
@@ -145,7 +155,11 @@ fn have_same_outline(a: &Problem, b: &Problem) -> bool {
 
 /// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
 /// its mesh, or an obstacle now stands where the cable is.
-pub(in crate::model::fem) fn after_edit(old: &CableState, new: &CableState, drags: &[Drag]) -> Option<CableState> {
+pub(in crate::model::fem) fn after_edit(
+    old: &CableState,
+    new: &CableState,
+    drags: &[SupportDrag],
+) -> Option<CableState> {
     if !are_divided_alike(new, old) || !can_share_a_mesh(new, old) || old.mesh.breaks().next().is_some() {
         return None;
     }
@@ -234,7 +248,7 @@ fn push_out(cable: &mut CableState) -> Option<()> {
 }
 
 /// Lets supports that are drawn begin where they are, as fast as they are.
-fn drag_supports(cable: &mut CableState, drags: &[Drag]) {
+fn drag_supports(cable: &mut CableState, drags: &[SupportDrag]) {
     for (k, drag) in drags.iter().enumerate() {
         let begins = || {
             let at = cable.support_position(k)?;
@@ -244,10 +258,10 @@ fn drag_supports(cable: &mut CableState, drags: &[Drag]) {
                 None => SmoothedTarget::at_rest(at),
             })
         };
-        let follower = cable.motion.followers[k].filter(|_| *drag != Drag::Nothing);
-        let follower = if *drag == Drag::Rigid { follower.or_else(begins) } else { follower };
+        let follower = cable.motion.followers[k].filter(|_| *drag != SupportDrag::Nothing);
+        let follower = if *drag == SupportDrag::Rigid { follower.or_else(begins) } else { follower };
         cable.motion.followers[k] = follower;
-        cable.motion.hands[k] = cable.motion.hands[k].filter(|_| *drag == Drag::Spring);
+        cable.motion.hands[k] = cable.motion.hands[k].filter(|_| *drag == SupportDrag::Spring);
     }
 }
 
@@ -273,15 +287,15 @@ fn change_bending_stiffness(cable: &mut CableState) {
     cable.motion.bending_change = Some(change).filter(|change| !change.is_over());
     cable.mesh.bending_stiffness = change.stiffness();
     if to > from {
-        resolve_bends(cable, to);
+        let now = StretchedBars::of(cable);
+        // Bars that were slack push from now on; they have no tension at first.
+        resolve_bends(cable, to, &if from == 0.0 { now.without_slack() } else { now });
     }
 }
 
 /// Turns the sliding nodes that would neglect visible bends of a stiffness (N·m²) into nodes of the
-/// material. The bars keep their tension, and those that were slack, which push from now on, have
-/// none.
-fn resolve_bends(cable: &mut CableState, stiffness: f64) {
-    let stretched_before = StretchedBars::of(cable).without_slack();
+/// material. The bars keep the stretch that they had before.
+fn resolve_bends(cable: &mut CableState, stiffness: f64, stretched_before: &StretchedBars) {
     let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     // Of several nodes on a round, each that is changed stretches the bar to the next.
     let neglects_bend = |&k: &usize| {

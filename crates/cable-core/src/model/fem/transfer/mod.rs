@@ -21,7 +21,7 @@ use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
 use crate::model::fem::remesh::{StretchedBars, change_wheels};
 use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::{Drag, after_edit, loses_bending};
+use crate::model::fem::transfer::after_edit::{SupportDrag, after_edit, loses_bending};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
@@ -102,11 +102,13 @@ impl Stepper {
     }
 
     /// Continues from where `old`, the same cable before an edit of its scene, is, with all that it
-    /// remembers; supports are dragged to the points `dragged` (m). Returns false, without a
-    /// change, if the edit concerns the mesh.
+    /// remembers; supports are dragged to the points `dragged` (m). A cable that lost its bending
+    /// stiffness has another mesh, and keeps the stretch of its bars alone. Returns false if the
+    /// edit concerns the mesh in another way.
     pub(in crate::model::fem) fn continue_from(&mut self, old: &Self, dragged: &[Option<Vec2>]) -> bool {
         let pulled = &self.hand_drive.pulled;
-        let drags: Vec<Drag> = dragged.iter().zip(pulled).map(|(target, pulled)| Drag::of(*target, *pulled)).collect();
+        let drags: Vec<SupportDrag> =
+            dragged.iter().zip(pulled).map(|(target, pulled)| SupportDrag::of(*target, *pulled)).collect();
         let Some(cable) = after_edit(&old.cable, &self.cable, &drags) else {
             return loses_bending(&self.cable, &old.cable) && self.adopt_stretched(old);
         };
@@ -122,9 +124,9 @@ impl Stepper {
         true
     }
 
-    /// Adopts the state of `old`, a cable on another mesh, with the stretch of its bars, which
-    /// would be that of chords through its nodes: 144 kN for 46 N where a cable lost its bending
-    /// stiffness.
+    /// Adopts the state of `old`, a cable on another mesh, with the stretch of its bars. Measured
+    /// on the new mesh the stretch was that of chords through its nodes: 144 kN in place of 46 N
+    /// where a cable lost its bending stiffness.
     fn adopt_stretched(&mut self, old: &Self) -> bool {
         if self.set_state(&old.cable.state()).is_err() {
             return false;

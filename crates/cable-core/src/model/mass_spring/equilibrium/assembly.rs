@@ -5,7 +5,7 @@
 //! ∂²U/∂p² = (EA/l₀) t tᵀ + (T/L_straight)(I − t tᵀ),   ∂²U/∂σ² = λ² EA L²/l₀³,   ∂²U/∂p∂σ = λ EA L/l₀² t
 //! ```
 
-use crate::energy::{Curvature, Energy};
+use crate::energy::{Curvature, ElementEnergy};
 use crate::math::{Mat2, Vec2};
 use crate::model::mass_spring::equilibrium::system::EquilibriumSystem;
 use crate::model::mass_spring::forces::bending;

@@ -10,7 +10,7 @@ use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path::PathCorner;
 use crate::model::spans::initial::{shortest_path, tightening};
 use crate::model::spans::section::{BoundaryConditions, CableSection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
+use crate::model::spans::section_layout::{SectionBounds, SectionLayout, SectionPulley};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// A body that the cable bends round.
@@ -128,7 +128,7 @@ impl FirstGuess<'_> {
     /// support, but round a wheel from tangent to tangent.
     fn strains_unevenly(&self, material: &SpreadAlongRoute) -> bool {
         let problem = &self.layout.problem;
-        let wheel = |q: &Pulley| problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
+        let wheel = |q: &SectionPulley| problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
         material.slack > self.layout.settings.initial.route_excess_fraction
             || problem.route.len() < 2 && self.part.pulleys.iter().any(wheel)
     }
@@ -212,7 +212,7 @@ impl FirstGuess<'_> {
         let mut reached = way.along[first];
         let mut begin = (way.points[first], first);
         for k in 0..=part.pulleys.len() {
-            let pulley: Option<&Pulley> = part.pulleys.get(k);
+            let pulley: Option<&SectionPulley> = part.pulleys.get(k);
             let (stop, w) = match pulley {
                 Some(q) => {
                     let at = instant.places[q.support];

@@ -14,8 +14,8 @@ use crate::math::{Vec2, cross};
 /// more: a search takes longer.
 const POST_POINTS: usize = 12;
 /// Distance of these points from the centre of the post, as a fraction of its radius: inside it,
-/// because routes drawn as polygons cut into it. Larger: roughly drawn routes pass on the wrong
-/// side.
+/// because routes drawn as polygons cut into it. Smaller: a string that hardly bends round the post
+/// misses it; larger: roughly drawn routes pass on the wrong side.
 const POST_POINTS_RADIUS_FRACTION: f64 = 0.5;
 /// Displacement of the end, as a fraction of a leg, below which nothing is met: otherwise round-off
 /// could meet the corner just left again.

@@ -210,7 +210,7 @@ fn borders(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64],
 }
 
 /// Progress of an iteration.
-struct Progress {
+struct IterationProgress {
     iterations: usize,
     /// The residual that counts as the last progress.
     best: f64,
@@ -218,7 +218,7 @@ struct Progress {
     stalled: usize,
 }
 
-impl Progress {
+impl IterationProgress {
     fn new() -> Self {
         Self { iterations: 0, best: f64::INFINITY, stalled: 0 }
     }
@@ -262,7 +262,7 @@ pub(super) fn solve(
     let tuned = &context.settings.newton;
     section.update_end_tensions(context);
     start_modes(section, context);
-    let (mut progress, mut polished) = (Progress::new(), f64::INFINITY);
+    let (mut progress, mut polished) = (IterationProgress::new(), f64::INFINITY);
     assemble(section, context, &mut workspace.system);
     loop {
         let (mut worst, mut at) = norm(&workspace.system.residual);

@@ -8,7 +8,7 @@
 
 use crate::contact::Gap;
 use crate::energy::bending::{BendingEnergy, ClampBend};
-use crate::energy::{Curvature, Energy};
+use crate::energy::{Curvature, ElementEnergy};
 use crate::linalg::{BandFactor, BandMatrix, PivotingBand};
 use crate::math::{Mat2, Vec2, perp};
 use crate::model::fem::elastica::chain::BarChain;
