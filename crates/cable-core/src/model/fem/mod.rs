@@ -292,9 +292,9 @@ impl Mechanics for FemModel {
         let continues = self.stepper.continue_from(stepper, &self.dragged);
         if continues {
             self.present = PresentPart::Stepper;
-            // Those of the mesh of a stiff cable are not those of the mesh that follows.
-            let same_mesh = self.stepper.cable.mesh.is_flexible() <= stepper.cable.mesh.is_flexible();
-            self.meshes = if same_mesh { TwoMeshes::after_edit(*errors) } else { TwoMeshes::default() };
+            // A cable that lost its bending stiffness has another mesh, whose errors are not known.
+            let lost_bending = self.stepper.cable.mesh.is_flexible() && !stepper.cable.mesh.is_flexible();
+            self.meshes = if lost_bending { TwoMeshes::default() } else { TwoMeshes::after_edit(*errors) };
             (self.elastica_answer, self.bending_error) = (None, None);
             if let Some(pose) = self.robot_pose {
                 self.set_robot_pose(pose);

@@ -2,7 +2,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `after_edit.rs` | continues on the same mesh after an edit of the scene |
+//! | `after_edit.rs` | continues on the same mesh after an edit of the scene, if that is possible |
 //! | `from_state.rs` | adopts a state of another mesh or model |
 //! | `from_solution.rs` | adopts an answer with its tensions: sliding nodes, stretch, friction
 //! anchors |
