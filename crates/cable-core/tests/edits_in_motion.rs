@@ -393,3 +393,24 @@ fn a_wheel_that_is_put_elsewhere_does_not_take_its_cable_there_in_a_step() {
     let most = tensions(&mut edited, Inertia::Dynamic, 6).into_iter().fold(0.0, f64::max);
     assert!(most < 10.0 * run.max_tension().tension_n, "{most} N");
 }
+
+/// A stiff cable that lies on rubble is compressed in places. A greater stiffness changes that in
+/// time, not at once.
+#[test]
+fn issue_016_a_cable_that_gets_stiffer_keeps_its_compression() {
+    let mut scene = catalog::rubble_drop();
+    scene.cables[0].bending_stiffness_n_m2 = 3.0;
+    let mut alone = run(scene.clone(), Model::Fem, Inertia::Dynamic, 2.0).unwrap();
+    let least = |run: &Simulation| {
+        run.solution().cables[0].nodes.iter().map(|node| node.tension_n).fold(f64::INFINITY, f64::min)
+    };
+    let before = least(&alone);
+    scene.cables[0].bending_stiffness_n_m2 = 3.3;
+    let mut edited = alone.with_scene(scene, alone.settings()).unwrap();
+    edited.step(1.0 / 240.0).unwrap();
+    alone.step(1.0 / 240.0).unwrap();
+    let [with, without] = [least(&edited), least(&alone)];
+    println!("least tension {before:.2} N before, {with:.2} N after an edit, {without:.2} N without one");
+    assert!(before < -2.0, "it is compressed: {before} N");
+    assert!((with - without).abs() < 0.1 * before.abs(), "{with} N for {without} N");
+}
