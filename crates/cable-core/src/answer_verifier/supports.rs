@@ -50,10 +50,14 @@ pub(super) fn check_supports(checked: &CheckedCable<'_>, found: &mut Verificatio
 
 /// Returns whether the cable passes a wheel on the side that the scene says: seen from its
 /// centre, the cable from the support before to the one after turns clockwise where it runs
-/// over the wheel to the right.
+/// over the wheel to the right. A cable of which a support beside the wheel has let go may slip off
+/// to any side.
 fn passes_on_its_side(checked: &CheckedCable<'_>, k: usize) -> bool {
     let beside = |k: Option<usize>| k.and_then(|k| checked.holds.get(k));
     let (Some(before), Some(after)) = (beside(k.checked_sub(1)), beside(Some(k + 1))) else { return true };
+    if [before, after].iter().any(|hold| hold.role == Role::Released) {
+        return true;
+    }
     let (hold, nodes) = (&checked.holds[k], &checked.answer.nodes);
     let node_at = |s: f64| nodes.partition_point(|n| n.arc_length_m < s).min(nodes.len() - 1);
     let [first, last] = [before, after].map(|h| node_at(h.arc_length));

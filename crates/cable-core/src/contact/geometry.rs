@@ -54,8 +54,9 @@ pub struct Body {
     pub first: usize,
     solid: bool,
     closed: bool,
-    /// `None` if the body moves: then all of its few edges are searched.
+    /// `None` for an outline that moves: then all of its few edges are searched.
     bvh: Option<Arc<Bvh>>,
+    moves: bool,
 }
 
 /// A straight piece of a boundary; outside is left of it.
@@ -227,10 +228,10 @@ impl Body {
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
     }
 
-    /// Returns whether the body is an outline that moves.
+    /// Returns whether the body is an outline or a post that moves.
     #[must_use]
     pub fn moves(&self) -> bool {
-        self.bvh.is_none()
+        self.moves
     }
 
     /// Returns whether the body is ground: solid below an open line, so that nothing can pass round
@@ -382,6 +383,7 @@ impl Geometry {
                 solid: !matches!(o.shape, Shape::Polyline { .. }),
                 closed: ends == LineEnds::Joined,
                 bvh,
+                moves: false,
             });
         }
         Self { bodies }
@@ -400,14 +402,27 @@ impl Geometry {
             solid: true,
             closed: true,
             bvh: None,
+            moves: true,
         });
     }
 
     /// Moves the outline that was added last to its present pose.
     pub(crate) fn place_outline(&mut self, outline: &Outline, placement: RigidPose) {
-        let Some(body) = self.bodies.last_mut().filter(|b| b.moves()) else { return };
+        let Some(body) = self.bodies.last_mut().filter(|b| b.bvh.is_none()) else { return };
         for (edge, [p, q]) in Arc::make_mut(&mut body.edges).iter_mut().zip(outline.edges(placement)) {
             *edge = Edge::between(p, q);
+        }
+    }
+
+    /// Lets a circle, given by its index in the scene, move.
+    pub(crate) fn let_move(&mut self, obstacle: usize) {
+        self.bodies.iter_mut().filter(|b| b.obstacle == obstacle).for_each(|b| b.moves = true);
+    }
+
+    /// Moves the centre of a circle, given by its index in the scene, to a place (m).
+    pub(crate) fn place_circle(&mut self, obstacle: usize, center: Vec2) {
+        if let Some(at) = self.bodies.iter_mut().find(|b| b.obstacle == obstacle).and_then(|b| b.center.as_mut()) {
+            *at = center;
         }
     }
 

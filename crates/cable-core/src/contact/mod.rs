@@ -66,6 +66,16 @@ impl World {
         self.geometry.place_outline(outline, placement);
     }
 
+    /// Lets a circle, given by its index in the scene, move.
+    pub(crate) fn let_move(&mut self, obstacle: usize) {
+        self.geometry.let_move(obstacle);
+    }
+
+    /// Moves the centre of a circle, given by its index in the scene, to a place (m).
+    pub(crate) fn place_circle(&mut self, obstacle: usize, center: Vec2) {
+        self.geometry.place_circle(obstacle, center);
+    }
+
     /// Returns whether the world holds no obstacle.
     #[must_use]
     pub fn is_empty(&self) -> bool {

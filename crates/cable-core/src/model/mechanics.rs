@@ -212,8 +212,8 @@ pub trait Mechanics: Send {
     }
 
     /// Returns the supports that are wheels over which the cable bends as the model would neglect
-    /// in its steps: there it lies better on posts.
-    fn wheels_bent_over(&self) -> Vec<usize> {
+    /// in steps with or without inertia: there it lies better on posts.
+    fn wheels_bent_over(&self, _inertia: Inertia) -> Vec<usize> {
         Vec::new()
     }
 

@@ -51,6 +51,8 @@ pub struct Problem {
     pub(crate) unreachable: Option<Arc<World>>,
     /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,
+    /// The posts among its obstacles that move: they stand in for wheels.
+    pub(crate) moving_posts: Vec<MovingPost>,
     /// Plan view: friction coefficient with the floor and normal force per metre, N/m; None where
     /// there is no friction.
     pub floor_friction: Option<(f64, f64)>,
@@ -64,6 +66,23 @@ pub struct Problem {
     pub similar: Option<(Similarity, Arc<Problem>)>,
     /// Its wheels, where it has any.
     pub(crate) wheels: Option<Arc<CableWheels>>,
+}
+
+/// A post that moves as the wheel did in whose place it is.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MovingPost {
+    /// Its index among the obstacles.
+    pub obstacle: usize,
+    /// The motion of its centre.
+    pub motion: Motion,
+}
+
+impl MovingPost {
+    /// Its centre at a time (s), m.
+    #[must_use]
+    pub fn center_at(&self, time_s: f64) -> Vec2 {
+        self.motion.at(time_s).0
+    }
 }
 
 /// A support, resolved.
@@ -194,7 +213,8 @@ impl WheelsLeft {
         if !before.iter().zip(after).all(same) {
             return None;
         }
-        let mut this = Problem { world: self.problem.world.clone(), unreachable: None, ..present.clone() };
+        let (world, moving_posts) = (self.problem.world.clone(), self.problem.moving_posts.clone());
+        let mut this = Problem { world, moving_posts, unreachable: None, ..present.clone() };
         for (k, support) in this.supports.iter_mut().enumerate() {
             match (self.replaced.get(k) == Some(&true), support.departure == Departure::Done) {
                 (true, false) => (support.release, support.departure) = (Some(time_s), Departure::Done),
@@ -216,16 +236,33 @@ impl Problem {
     #[must_use]
     pub fn turn_between(&self, from: f64, to: f64) -> Option<f64> {
         let series = |s: &TimeSeries| turn_between(&s.times, &s.values, from, to, |v| *v);
-        let moves = |s: &SupportPoint| {
-            let m = s.motion.as_ref()?;
-            turn_between(&m.times_s, &m.points_m, from, to, |p| vec2(*p))
-        };
+        let way = |m: &Motion| turn_between(&m.times_s, &m.points_m, from, to, |p| vec2(*p));
+        let moves = |s: &SupportPoint| s.motion.as_ref().and_then(way);
         let supports = self.supports.iter().flat_map(|s| [moves(s), series(&s.force)]);
-        let all = supports.chain(self.loads.iter().map(|l| series(&l.force))).chain([series(&self.wind)]);
+        let posts = self.moving_posts.iter().map(|post| way(&post.motion));
+        let loads = self.loads.iter().map(|l| series(&l.force));
+        let all = supports.chain(posts).chain(loads).chain([series(&self.wind)]);
         all.flatten().fold(None, |least: Option<f64>, t| Some(least.map_or(t, |l| if t < l { t } else { l })))
     }
 
-    /// The same for a model that knows nothing of obstacles that move.
+    /// Returns whether obstacles move: the outline of a robot, or posts in place of wheels.
+    #[must_use]
+    pub(crate) fn has_moving_bodies(&self) -> bool {
+        self.outline.is_some() || !self.moving_posts.is_empty()
+    }
+
+    /// Returns whether all obstacles of its world are where they are at a time (s), and there is no
+    /// outline beside them.
+    #[must_use]
+    pub(crate) fn knows_obstacles_at(&self, time_s: f64) -> bool {
+        let bodies = self.world.geometry().bodies();
+        let is_there = |post: &MovingPost| {
+            bodies.iter().any(|body| body.obstacle == post.obstacle && body.center == Some(post.center_at(time_s)))
+        };
+        self.outline.is_none() && self.moving_posts.iter().all(is_there)
+    }
+
+    /// The same for a model that knows nothing of outlines.
     #[must_use]
     pub(crate) fn without_outline(this: Arc<Self>) -> Arc<Self> {
         if this.outline.is_none() {

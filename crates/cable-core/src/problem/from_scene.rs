@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::definition::{CableWheels, Departure, PointLoad, Problem, SupportPoint, WheelsLeft};
+use super::definition::{CableWheels, Departure, MovingPost, PointLoad, Problem, SupportPoint, WheelsLeft};
 use super::robot_outline::robot_outline;
 use super::time_series::TimeSeries;
 use super::wheels_as_posts::{StandIn, WithPosts, stands_still, wheels, with_posts};
@@ -89,7 +89,16 @@ impl CableWheels {
             route_check::check_route(&this)?;
             Ok(this)
         };
-        let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
+        let mut problem = cables.iter().find_map(|cable| lay(cable).ok())?;
+        for wheel in &wheels {
+            let motion = cable.supports[wheel.support].motion.clone();
+            let obstacle = scene.obstacles.iter().position(|o| wheel.post.as_ref() == Some(&o.name));
+            if let (Some(motion), Some(obstacle)) = (motion, obstacle) {
+                Arc::make_mut(&mut problem.world).let_move(obstacle);
+                problem.moving_posts.push(MovingPost { obstacle, motion });
+            }
+        }
+        let problem = Arc::new(problem);
         let replaced = stand_ins.iter().map(|s| *s != StandIn::Wheel).collect();
         Some(Arc::new(WheelsLeft { problem, wheels, replaced }))
     }
@@ -149,6 +158,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         outline: robot_outline(scene, cable.friction).map(Arc::new),
         floor_friction,
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
+        moving_posts: Vec::new(),
         notes: Vec::new(),
         similar: None,
         wheels: None,

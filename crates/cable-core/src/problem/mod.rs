@@ -34,7 +34,7 @@ pub(crate) mod way_over;
 pub(crate) mod wheel_passage;
 pub(crate) mod wheels_as_posts;
 
-pub(crate) use self::definition::{CableWheels, WheelsLeft};
+pub(crate) use self::definition::{CableWheels, MovingPost, WheelsLeft};
 pub use self::definition::{Departure, PointLoad, Problem, SupportPoint};
 pub use self::from_scene::{check, problems};
 pub use self::robot_outline::{OUTLINE_NAME, robot_outline};

@@ -85,7 +85,7 @@ impl Problem {
 fn is_free_of(problem: &Problem, world: &World) -> bool {
     // A robot goes where it is sent, and a cable that is let go falls without end.
     let wanders = |s: &SupportPoint| s.kind == SupportKind::Robot || s.release.is_some();
-    if problem.outline.is_some() || problem.supports.iter().any(wanders) {
+    if problem.has_moving_bodies() || problem.supports.iter().any(wanders) {
         return false;
     }
     let ellipses = ellipses(problem);

@@ -47,7 +47,7 @@ use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
 use crate::model::fem::equilibrium_search::TwoMeshes;
 use crate::model::fem::obstacle::touches_nothing;
-use crate::model::fem::obstacle::{outline_report, place_outline};
+use crate::model::fem::obstacle::{outline_report, place_bodies};
 use crate::model::fem::remesh::break_cable;
 use crate::model::fem::state::stored_energy;
 use crate::model::fem::system::WorkBudget;
@@ -370,15 +370,16 @@ impl Mechanics for FemModel {
         true
     }
 
-    fn wheels_bent_over(&self) -> Vec<usize> {
+    fn wheels_bent_over(&self, inertia: Inertia) -> Vec<usize> {
         let (mesh, meshing) = (&self.stepper.cable.mesh, &self.stepper.cable.meshing);
         if mesh.is_flexible() || self.problem.supports.iter().all(|s| !(s.wheel_radius > 0.0)) {
             return Vec::new();
         }
+        let bars = self.finest_bars(inertia);
         let answer = self.solution();
         let bends = |(support, reaction): (&SupportPoint, &SupportReaction)| {
             let tension = [reaction.tension_before_n, reaction.tension_after_n].into_iter().flatten().fold(0.0, larger);
-            support.wheel_radius > 0.0 && meshing.bends_visibly(mesh, mesh.bending_stiffness, tension)
+            support.wheel_radius > 0.0 && meshing.bends_visibly_on(bars, mesh, mesh.bending_stiffness, tension)
         };
         let pairs = self.problem.supports.iter().zip(&answer.supports).map(bends);
         pairs.enumerate().filter(|(_, bends)| *bends).map(|(k, _)| k).collect()
@@ -447,7 +448,7 @@ impl Mechanics for FemModel {
             own.unwrap_or_else(|| OwnedResources { memory: None, problem: state::with_outline(self.problem.clone()) });
         self.stepper.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.stepper.cable.problem = own.problem;
-        place_outline(&mut self.stepper.cable);
+        place_bodies(&mut self.stepper.cable);
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

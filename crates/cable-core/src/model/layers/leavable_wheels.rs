@@ -39,9 +39,10 @@ const DEEPEST_RETURN_FACTOR: f64 = 2.0;
 const MAX_RETURN_TRIALS: usize = 40;
 
 /// Change of the greatest tension up to which a stiff cable on posts rests as it did on wheels, of
-/// that tension. Smaller: meshes that show the bend less well than the rest are not used; larger: a
-/// rest that was not found again is. A choice, tuned on no campaign.
-const SAME_REST: f64 = 0.05;
+/// that tension. Smaller: coarse meshes, on which a contact in one point changes the tension by 8 %,
+/// neglect the whole bend instead; larger: a rest that was not found again is used. A choice, tuned
+/// on no campaign.
+const SAME_REST: f64 = 0.25;
 
 /// Number of times that a cable may come back to wheels in one step. More: cables that tremble on a
 /// wheel take long; fewer: they are laid on it late. A choice, tuned on no campaign.
@@ -78,6 +79,9 @@ pub struct LeavableWheels {
     /// True if those wheels are supports of the inner model which have let go; else it is one of
     /// the problem without them.
     let_go: bool,
+    /// For each support, true if it is a wheel that moves and in whose place a post moves: one on
+    /// which the cable bends by its own stiffness, or of a cable that meets itself.
+    as_moving_post: Vec<bool>,
     /// Places to which supports were moved, m, and by what.
     led: Vec<Option<SupportMove>>,
     /// Present places of wheels that were led while the cable was clear of them, m.
@@ -112,6 +116,8 @@ struct ContinuationWithoutWheels {
     replaced: Vec<bool>,
     /// As in [`LeavableWheels`].
     let_go: bool,
+    /// As in [`LeavableWheels`].
+    as_moving_post: Vec<bool>,
     /// Present places of those wheels, m.
     centers: Vec<Option<Vec2>>,
     time_s: f64,
@@ -181,6 +187,7 @@ impl LeavableWheels {
             inner,
             left: None,
             let_go: false,
+            as_moving_post: vec![false; n],
             led,
             places,
             robot_pose: None,
@@ -214,6 +221,7 @@ impl LeavableWheels {
         }
         let places = before.centers.iter().zip(&self.led).map(|(center, led)| center.filter(|_| led.is_some()));
         let kept = std::mem::replace(&mut self.places, places.collect());
+        let as_moving_post = std::mem::replace(&mut self.as_moving_post, before.as_moving_post.clone());
         let continued = self.without(&before.replaced, Inertia::Dynamic).and_then(|left| {
             let going_on = || left.going_on(&self.problem, &self.problem, &self.places, before.time_s);
             let problem = if before.let_go { going_on()? } else { left.problem.clone() };
@@ -228,7 +236,7 @@ impl LeavableWheels {
         });
         match continued {
             Some(next) => (self.inner, self.left, self.let_go) = (next.inner, next.left, next.let_go),
-            None => self.places = kept,
+            None => (self.places, self.as_moving_post) = (kept, as_moving_post),
         }
         self.left.is_some()
     }
@@ -399,15 +407,22 @@ impl LeavableWheels {
     }
 
     /// The wheels that were left already and those that the cable leaves by an error, or all that
-    /// stand if it asks for posts; None if there is no other wheel.
+    /// can be posts if it asks for posts; None if there is no other wheel.
     fn also_left(&self, mut replaced: Vec<bool>, error: &SolveError) -> Option<Vec<bool>> {
         let (names, posts) = (wheels_left_by(error), asks_for_posts(error));
         let before = replaced.clone();
         for (k, support) in self.problem.supports.iter().enumerate() {
             let leaves = self.wheels.wheels[k] && names.contains(&support.name.as_str());
-            replaced[k] |= leaves || posts && self.wheels.standing[k] && self.led[k].is_none();
+            replaced[k] |= leaves || posts && self.can_be_post(k);
         }
         (replaced != before).then_some(replaced)
+    }
+
+    /// Returns whether a post can be in the place of a support: a wheel that holds the cable for
+    /// ever, and that no hand leads.
+    fn can_be_post(&self, support: usize) -> bool {
+        let lets_go = self.problem.supports[support].release.is_some();
+        self.wheels.wheels[support] && !lets_go && self.led[support].is_none()
     }
 
     /// The things in place of wheels, some of which the cable has left.
@@ -416,6 +431,7 @@ impl LeavableWheels {
             (false, _) => StandIn::Wheel,
             (true, Some(_)) if inertia == Inertia::Dynamic => StandIn::Nothing,
             (true, _) if self.wheels.standing[k] => StandIn::Post,
+            (true, None) if self.as_moving_post[k] => StandIn::Post,
             (true, _) => StandIn::Nothing,
         };
         (0..replaced.len()).map(stand_in).collect()
@@ -443,6 +459,11 @@ impl LeavableWheels {
         mut run: impl FnMut(&mut dyn Mechanics) -> Result<StepReport, SolveError>,
     ) -> Option<StepReport> {
         let mut replaced = self.also_left(self.replaced(), error)?;
+        if asks_for_posts(error) {
+            for support in 0..replaced.len() {
+                self.as_moving_post[support] |= !self.wheels.standing[support] && self.can_be_post(support);
+            }
+        }
         loop {
             let left = self.without(&replaced, inertia)?;
             let mut inner = self.built(Some(&left), start).ok()?;
@@ -561,27 +582,41 @@ impl LeavableWheels {
         }
     }
 
-    /// Lays a stiff cable at rest on posts in place of the wheels that stand, before it is moved,
-    /// where the model would neglect its bend on a wheel: a sliding node carries no moment. It
-    /// stays on the wheels if it cannot be laid so.
-    fn lay_bends_on_posts(&mut self) {
-        let bent = self.inner.wheels_bent_over();
+    /// Lays a stiff cable at rest on posts in place of wheels, before it is moved, where the model
+    /// would neglect its bend on a wheel: a sliding node carries no moment. It stays on the wheels
+    /// if it cannot be laid so.
+    fn lay_bends_on_posts(&mut self, inertia: Inertia) {
+        let bent = self.inner.wheels_bent_over(inertia);
+        let bent: Vec<usize> = bent.into_iter().filter_map(|k| self.outer_index(k)).collect();
         let mut replaced = self.replaced();
-        for support in bent.iter().filter_map(|&k| self.outer_index(k)) {
-            replaced[support] |= self.wheels.standing[support] && self.led[support].is_none();
+        for &support in bent.iter().filter(|&&support| self.can_be_post(support)) {
+            replaced[support] = true;
         }
         let state = self.inner.state();
         if replaced == self.replaced() || state.moves() {
             return;
         }
-        let Some(posts) = self.without(&replaced, Inertia::QuasiStatic) else { return };
+        let stand_still = self.as_moving_post.clone();
+        for &support in bent.iter().filter(|&&support| replaced[support]) {
+            self.as_moving_post[support] = !self.wheels.standing[support];
+        }
+        if !self.lays_on_posts(&replaced, &state) {
+            self.as_moving_post = stand_still;
+        }
+    }
+
+    /// Lays a cable at rest on posts in place of wheels; returns whether it rests there as before.
+    fn lays_on_posts(&mut self, replaced: &[bool], state: &State) -> bool {
+        let Some(posts) = self.without(replaced, Inertia::QuasiStatic) else { return false };
         let start = self.inner.solution();
         let greatest = |answer: &CableSolution| answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-        let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) else { return };
+        let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) else { return false };
         let (before, after) = (greatest(&start), greatest(&inner.solution()));
-        if (after - before).abs() <= SAME_REST * before {
+        let same = (after - before).abs() <= SAME_REST * before;
+        if same {
             self.continue_with(inner, Some(posts));
         }
+        same
     }
 
     /// Advances up to a time (s), or to the instant at which a moving cable comes back to a wheel:
@@ -726,6 +761,7 @@ impl Layer for LeavableWheels {
             inner,
             left: self.left.clone(),
             let_go: self.let_go,
+            as_moving_post: self.as_moving_post.clone(),
             led: self.led.clone(),
             places: self.places.clone(),
             robot_pose: self.robot_pose,
@@ -770,7 +806,8 @@ impl Layer for LeavableWheels {
             centers[wheel.support].get_or_insert(wheel.center);
         }
         let (replaced, let_go, time_s) = (left.replaced.clone(), self.let_go, self.inner.time_s());
-        Some(Box::new(ContinuationWithoutWheels { replaced, let_go, centers, time_s, inner }))
+        let as_moving_post = self.as_moving_post.clone();
+        Some(Box::new(ContinuationWithoutWheels { replaced, let_go, as_moving_post, centers, time_s, inner }))
     }
 
     fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
@@ -811,7 +848,7 @@ impl Layer for LeavableWheels {
             Inertia::QuasiStatic => self.put_at_rest(),
         }
         if std::mem::take(&mut self.rests) {
-            self.lay_bends_on_posts();
+            self.lay_bends_on_posts(inertia);
         }
         let end_s = self.inner.time_s() + dt_s;
         let mut report = self.advance_until_return(end_s, inertia, gauge)?;
@@ -843,22 +880,34 @@ impl Layer for LeavableWheels {
         self.inner.set_robot_pose(to);
     }
 
-    /// A wheel that stands acts on the cable as a post does: where no answer over wheels is sound,
-    /// one over posts is asked for. The elements of `mass-spring` run round wheels, but straight
+    /// A wheel acts on the cable as a post does: where no answer over wheels is sound, one over posts
+    /// is asked for. The elements of `mass-spring` run round wheels, but straight
     /// through posts that are smaller than they are long.
     fn fall_back(&mut self, why: &SolveError) -> bool {
         if self.inner.fall_back(why) {
             return true;
         }
-        let all = self.wheels.standing.clone();
+        // Posts that move are for stiff cables: `spans` knows none.
+        let moves = |k: usize| self.problem.bending_stiffness > 0.0 && !self.wheels.standing[k] && self.can_be_post(k);
+        let moving: Vec<bool> = (0..self.led.len()).map(moves).collect();
+        let all: Vec<bool> =
+            moving.iter().zip(&self.wheels.standing).map(|(moves, stands)| *moves || *stands).collect();
         let cuts_posts = self.inner.model() == Model::MassSpring;
         if cuts_posts || self.inner.time_s() > 0.0 || self.replaced() == all {
             return false;
         }
-        let Some(posts) = self.without(&all, Inertia::QuasiStatic) else { return false };
-        let Ok(inner) = self.built(Some(&posts), &Start::Route) else { return false };
-        self.continue_with(inner, Some(posts));
-        true
+        let before = std::mem::replace(&mut self.as_moving_post, moving);
+        let posts = self.without(&all, Inertia::QuasiStatic);
+        match posts.and_then(|posts| Some((self.built(Some(&posts), &Start::Route).ok()?, posts))) {
+            Some((inner, posts)) => {
+                self.continue_with(inner, Some(posts));
+                true
+            }
+            None => {
+                self.as_moving_post = before;
+                false
+            }
+        }
     }
 
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
@@ -867,7 +916,8 @@ impl Layer for LeavableWheels {
         for wheel in &left.wheels {
             let led = self.places.get(wheel.support).copied().flatten();
             let moved = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
-            let center = led.or_else(moved).filter(|_| wheel.post.is_none()).unwrap_or(wheel.center);
+            let may_move = wheel.post.is_none() || self.as_moving_post[wheel.support];
+            let center = led.or_else(moved).filter(|_| may_move).unwrap_or(wheel.center);
             let reaction = reaction(&self.problem, wheel, center, &answer);
             match answer.supports.get_mut(wheel.support).filter(|_| self.let_go) {
                 Some(of_let_go) => *of_let_go = reaction,

@@ -167,8 +167,8 @@ impl<L: Layer> Mechanics for Layered<L> {
         self.0.refusal()
     }
 
-    fn wheels_bent_over(&self) -> Vec<usize> {
-        self.0.inner().wheels_bent_over()
+    fn wheels_bent_over(&self, inertia: Inertia) -> Vec<usize> {
+        self.0.inner().wheels_bent_over(inertia)
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {

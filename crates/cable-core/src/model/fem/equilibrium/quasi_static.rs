@@ -84,7 +84,7 @@ impl Stepper {
     /// Accepts unknowns with the corners as they are.
     pub(super) fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
         self.cable.commit_contacts(unknowns);
-        self.cable.contacts.outline_motion = None;
+        self.cable.contacts.body_motions.clear();
         self.cable.motion.positions.clone_from(&unknowns.positions);
         self.cable.motion.velocities.fill(Vec2::zeros());
         self.cable.motion.slide_rates.fill(0.0);

@@ -135,7 +135,7 @@ impl Stepper {
         // slides.
         prepare_way(&mut self.cable, [to, to], Some(dragged));
         self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
-        self.cable.contacts.outline_motion = None;
+        self.cable.contacts.body_motions.clear();
         let begun_at = self.cable.motion.positions.clone();
         let mut relaxation = Relaxation::begin(&self.cable);
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };

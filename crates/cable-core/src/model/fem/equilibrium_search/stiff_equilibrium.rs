@@ -2,6 +2,7 @@
 //! cable or from the mesh. If there is none, it warns of the bending that the mesh neglects.
 
 use crate::math::larger;
+use crate::model::Inertia;
 use crate::model::fem::elastica::{self, Elastica};
 use crate::model::fem::equilibrium_search::TwoMeshes;
 use crate::model::fem::equilibrium_search::mesh_error::MeshRefinement;
@@ -95,6 +96,18 @@ impl FemModel {
             let refinement = self.refinement();
             let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
             meshes.begin(&self.problem, self.settings, refinement, stepper, answer, &self.dragged);
+        }
+    }
+
+    /// The number of bars to which those of a stiff cable that moves may be divided to show its
+    /// bends.
+    pub(in crate::model::fem) fn finest_bars(&self, inertia: Inertia) -> usize {
+        let cable = &self.stepper.cable;
+        match (inertia, self.refinement()) {
+            (Inertia::QuasiStatic, MeshRefinement::Allowed) => {
+                cable.meshing.even_bars.max(cable.mesh.tuning.start.max_refined_bars)
+            }
+            _ => cable.meshing.even_bars,
         }
     }
 

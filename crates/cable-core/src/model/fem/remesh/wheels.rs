@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::contact::geometry::Body;
 use crate::model::Inertia;
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
-use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::obstacle::{IntersectionCheck, place_bodies};
 use crate::model::fem::remesh::adapt::remove_sliding_nodes;
 use crate::model::fem::state::{CableState, MovingOutline, renew_input};
 use crate::problem::{Departure, Problem, SupportPoint};
@@ -55,7 +55,7 @@ pub(in crate::model::fem) fn change_wheels(cable: &mut CableState, problem: Arc<
         cable.contacts.forget();
     }
     cable.contacts.search.lists.clear();
-    place_outline(cable);
+    place_bodies(cable);
     for k in 0..cable.mesh.nodes() {
         if let Some(on_post) = cable.mesh.sliding[k].and_then(|node| on_post(cable, known, node)) {
             cable.motion.shift(k, on_post.position() - cable.motion.positions[k]);

@@ -14,7 +14,7 @@ use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::system::{ContactSet, StepContext, StepInput, Unknowns, load_scale, slip_at_rest};
 use crate::model::length_change::excess_left;
 use crate::model::material_loss::Loss;
-use crate::problem::Problem;
+use crate::problem::{MovingPost, Problem};
 use crate::solution::CableSolution;
 use crate::state::State;
 
@@ -264,7 +264,11 @@ impl CableState {
                 most = most.max((at - now).norm());
             }
         }
-        let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(self.mesh.tuning.outline.max_way_m));
-        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
+        let max_way = self.mesh.tuning.outline.max_way_m;
+        let now = self.motion.time;
+        let way = |post: &MovingPost| (post.center_at(end) - post.center_at(now)).norm();
+        let posts = self.problem.moving_posts.iter().map(way).fold(0.0, larger) / max_way;
+        let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(max_way));
+        larger(most / (0.5 * even), larger(carried, posts)).ceil().clamp(1.0, 1e4)
     }
 }

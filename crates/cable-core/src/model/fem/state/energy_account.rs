@@ -1,5 +1,6 @@
 //! The energy account sums the work of each kind of force on a cable since it began to move.
 
+use crate::model::fem::system::BodyMotion;
 use crate::solution::{Energy, EnergyAccount};
 
 /// Work of each kind of force on the cable, J.
@@ -14,6 +15,16 @@ pub(in crate::model::fem) struct Works {
     pub(in crate::model::fem) edits: f64,
     pub(in crate::model::fem) breaks: f64,
     pub(in crate::model::fem) numerical: f64,
+}
+
+impl Works {
+    /// Adds the work (J) that the motion of a body does on the cable.
+    pub(in crate::model::fem) fn add_of_body(&mut self, body: Option<&BodyMotion>, work: f64) {
+        match body {
+            Some(body) if body.is_support => self.supports += work,
+            _ => self.outlines += work,
+        }
+    }
 }
 
 /// The account of energy since the cable began to move.
@@ -88,7 +99,8 @@ impl Energies {
         self.works.impacts += more.impacts;
         self.works.friction += more.friction;
         self.works.outlines += more.outlines;
-        self.works.numerical -= more.impacts + more.friction + more.outlines;
+        self.works.supports += more.supports;
+        self.works.numerical -= more.impacts + more.friction + more.outlines + more.supports;
     }
 
     /// Records plastic impacts that left the cable with this kinetic energy, J.

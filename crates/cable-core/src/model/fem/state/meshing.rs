@@ -60,10 +60,21 @@ impl Meshing {
     /// its bars: then material nodes resolve it, and a sliding node, which carries no moment, would
     /// neglect it.
     pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, stiffness: f64, tension: f64) -> bool {
+        self.bends_visibly_on(self.even_bars, mesh, stiffness, tension)
+    }
+
+    /// The same on a mesh of so many bars.
+    pub(in crate::model::fem) fn bends_visibly_on(
+        &self,
+        bars: usize,
+        mesh: &Mesh,
+        stiffness: f64,
+        tension: f64,
+    ) -> bool {
         let length = mesh.arc_length.last().copied().unwrap_or_default();
         let least = self.bar_weight + stiffness / (length * length);
         stiffness > 0.0
             && (stiffness / if tension > least { tension } else { least }).sqrt()
-                > mesh.tuning.remesh.resolved_bend * self.even(length)
+                > mesh.tuning.remesh.resolved_bend * length / bars as f64
     }
 }

@@ -117,7 +117,7 @@ impl Stepper {
         }
         let momentum = MovingMass::of(&self.cable).momentum();
         self.cable.motion.account.close(self.cable.motion.time, momentum);
-        self.cable.contacts.outline_motion = None;
+        self.cable.contacts.body_motions.clear();
     }
 
     /// Adapts the mesh after a step of a cable that can have sliding nodes.

@@ -20,6 +20,7 @@ pub(in crate::model::fem) mod step_input;
 pub(in crate::model::fem) use assembly::{Bends, System, bends_energy, bends_slope, visit_turns};
 pub(in crate::model::fem) use bar_energy::{BarBranch, BarIterate, PlainBar};
 pub(in crate::model::fem) use bar_weight::Weight;
+pub(in crate::model::fem) use contact::body_motion::BodyMotion;
 pub(in crate::model::fem) use contact::contact_energy::{add_barrier, add_floor, add_friction};
 pub(in crate::model::fem) use contact::contact_pair::ContactPair;
 pub(in crate::model::fem) use contact::contact_set::ContactSet;
@@ -27,7 +28,6 @@ pub(in crate::model::fem) use contact::floor_friction::RoundFloorFriction;
 pub(in crate::model::fem) use contact::friction_contact::FrictionContact;
 pub(in crate::model::fem) use contact::friction_contact::slip_at_rest;
 pub(in crate::model::fem) use contact::friction_limits::FrictionLimits;
-pub(in crate::model::fem) use contact::outline_motion::OutlineMotion;
 pub(in crate::model::fem) use contact::self_contact::{Coupling, SelfContactLaws, couple};
 pub(in crate::model::fem) use step_context::{StepContext, longest};
 pub(in crate::model::fem) use step_input::{

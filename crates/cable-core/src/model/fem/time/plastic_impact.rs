@@ -21,6 +21,7 @@ use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp};
 use crate::model::fem::newton::NodalWays;
 use crate::model::fem::state::{CableState, Works};
+use crate::model::fem::system::BodyMotion;
 
 /// The contact impulses that end with a step whose forces acted for 1/`a` (s).
 struct EndedImpulses<'a> {
@@ -34,13 +35,21 @@ impl EndedImpulses<'_> {
     /// Counts an impulse (N s) of a contact with this normal on node `k`, which now has a velocity
     /// (m/s); `carried` is the velocity (m/s) of the touching body, and `carried_way` its
     /// displacement in the step (m).
-    fn add(&mut self, k: usize, impulse: Vec2, velocity: Vec2, normal: Vec2, [carried, carried_way]: [Vec2; 2]) {
+    fn add(
+        &mut self,
+        k: usize,
+        impulse: Vec2,
+        velocity: Vec2,
+        normal: Vec2,
+        [carried, carried_way]: [Vec2; 2],
+        body: Option<&BodyMotion>,
+    ) {
         let (Some(way), Some(before)) = (self.ways.ways.get(k), self.ways.velocities.get(k)) else { return };
         let relative = (velocity + before) * 0.5 - carried - (way - carried_way) * self.a;
         let pressed = impulse.dot(&normal) * relative.dot(&normal);
         self.more.impacts += pressed;
         self.more.friction += impulse.dot(&relative) - pressed;
-        self.more.outlines += impulse.dot(&(carried - carried_way * self.a));
+        self.more.add_of_body(body, impulse.dot(&(carried - carried_way * self.a)));
     }
 }
 
@@ -53,7 +62,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
     let m = &mut cable.motion;
     for (touch, load) in cable.contacts.loaded_contacts() {
         let n = touch.pair.gap.normal;
-        let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+        let carried = cable.contacts.motion_of(touch);
         let way_of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)));
         let of_it = way_of_it / h;
         let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
@@ -78,7 +87,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
         for j in 0..2 {
             if free[j] > 0.0 {
                 let k = nodes[j];
-                ended.add(k, over * free[j], m.velocities[k], n, [of_it, way_of_it]);
+                ended.add(k, over * free[j], m.velocities[k], n, [of_it, way_of_it], carried);
                 m.velocities[k] -= n * (taken * give[j]);
                 m.previous_velocities[k] += (over - n * taken) * give[j];
                 m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
@@ -113,7 +122,7 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
         let acted = n * made - rub.pair.tangent() * (rubbing / a);
         let over = acted - lasting_impulse(acted - change / sum, n, cable.contacts.self_contacts.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
-            ended.add(k, over * part, m.velocities[k], n, [Vec2::zeros(); 2]);
+            ended.add(k, over * part, m.velocities[k], n, [Vec2::zeros(); 2], None);
             m.velocities[k] -= n * (taken * part * give(k));
             m.previous_velocities[k] += (over - n * taken) * (part * give(k));
             m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);

@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
-use crate::model::fem::obstacle::place_outline;
+use crate::model::fem::obstacle::place_bodies;
 use crate::model::fem::state::{CableState, Meshing, NodalMotion, renew_input};
 use crate::model::fem::system::ContactSet;
 
@@ -77,7 +77,7 @@ impl Rollback {
                 load.0 = node;
             }
             self.can_restore = false;
-            place_outline(cable);
+            place_bodies(cable);
             renew_input(cable);
         }
     }

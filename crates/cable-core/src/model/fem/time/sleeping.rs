@@ -7,6 +7,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::{CableState, MovingOutline, prepare_input};
+use crate::problem::MovingPost;
 
 /// Displacement of a hand that wakes a sleeping cable, as a fraction of the distance by which its
 /// nodes may have moved. Smaller: the lag of a hand's filter keeps it awake; larger: a slow hand
@@ -21,6 +22,15 @@ fn sleep_distance(cable: &CableState) -> f64 {
 /// True if the wheel of a pulley over which the cable runs moves, lets go or is elsewhere at the
 /// time `to` (s) by its own motion. Wheels that a hand drags are supports with a follower.
 fn wheels_act(cable: &CableState, to: f64) -> bool {
+    let moves = |post: &MovingPost| {
+        let (at, velocity) = post.motion.at(to);
+        at != post.center_at(cable.motion.time) || velocity != Vec2::zeros()
+    };
+    cable.problem.moving_posts.iter().any(moves) || pulleys_act(cable, to)
+}
+
+/// The same of wheels that are pulleys.
+fn pulleys_act(cable: &CableState, to: f64) -> bool {
     cable.problem.supports.iter().zip(&cable.motion.followers).enumerate().any(|(k, (support, follower))| {
         let (Some(center), None) = (cable.mesh.pulley_center(k), follower) else { return false };
         let goes = support.place_at(to).is_some_and(|(at, velocity)| at != center || velocity != Vec2::zeros());

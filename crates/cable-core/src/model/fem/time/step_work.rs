@@ -347,21 +347,20 @@ impl BalancedStep<'_> {
     fn contacts(&self, works: &mut Works, solver: &SolverMemory) {
         let (cable, x, contacts) = (self.cable, &self.unknowns.positions, &self.cable.contacts);
         let carried = |touch: &ContactPair, share: f64| {
-            let motion = contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
-            motion.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(x)) * share)
+            contacts.motion_of(touch).map_or(Vec2::zeros(), |c| c.way(touch.interpolate(x)) * share)
         };
         for touch in solver.contacts() {
             let force = touch.pair.gap.normal * touch.load(&contacts.barrier);
             let (way, share) = self.way_at(touch);
             let with = carried(touch, share);
-            works.outlines += force.dot(&with);
+            works.add_of_body(contacts.motion_of(touch), force.dot(&with));
             works.impacts += force.dot(&(way - with));
         }
         for rub in &contacts.friction_contacts {
             let force = contacts.friction_force(rub, x);
             let (way, share) = self.way_at(&rub.touch);
             let with = carried(&rub.touch, share);
-            works.outlines += force.dot(&with);
+            works.add_of_body(contacts.motion_of(&rub.touch), force.dot(&with));
             works.friction += force.dot(&(way - with));
         }
         for (k, &limit) in cable.input.loads.floor_limit.iter().enumerate() {

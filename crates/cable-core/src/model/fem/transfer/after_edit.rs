@@ -10,12 +10,12 @@ use crate::math::{Vec2, perp};
 use crate::model::bending_change::BendingChange;
 use crate::model::fem::first_shape::depenetrate;
 use crate::model::fem::mesh::{BarEnd, PUSHED_OUT_REACHES, SlideOver, SlidingNode, round_of};
-use crate::model::fem::obstacle::{IntersectionCheck, place_outline};
+use crate::model::fem::obstacle::{IntersectionCheck, place_bodies};
 use crate::model::fem::remesh::{StretchedBars, even_out, insert, settle_down};
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
 use crate::model::length_change::LengthChange;
 use crate::model::smoothed_target::{STILL_M_PER_S, SmoothedTarget};
-use crate::problem::{PointLoad, Problem, SupportPoint};
+use crate::problem::{MovingPost, PointLoad, Problem, SupportPoint};
 
 /// Greatest way that an obstacle put elsewhere takes a node along, in even bars: beyond it the
 /// cable is laid on the edited scene anew. Smaller: more edits of obstacles forget the history;
@@ -122,6 +122,7 @@ fn can_share_a_mesh(a: &CableState, b: &CableState) -> bool {
 fn meet_alike(a: &CableState, b: &CableState) -> bool {
     a.problem.cable.self_contact == b.problem.cable.self_contact
         && have_same_outline(&a.problem, &b.problem)
+        && have_same_posts(&a.problem, &b.problem, b.motion.time)
         && a.problem.floor_friction.is_some() == b.problem.floor_friction.is_some()
 }
 
@@ -151,6 +152,12 @@ fn have_same_outline(a: &Problem, b: &Problem) -> bool {
         (None, None) => true,
         _ => false,
     }
+}
+
+/// True if the posts of two problems that move are as many, and in the same places at a time (s).
+fn have_same_posts(a: &Problem, b: &Problem, time_s: f64) -> bool {
+    let same = |(a, b): (&MovingPost, &MovingPost)| a.center_at(time_s) == b.center_at(time_s);
+    a.moving_posts.len() == b.moving_posts.len() && a.moving_posts.iter().zip(&b.moving_posts).all(same)
 }
 
 /// The cable `old`, moving in the scene before an edit, in that of `new`. None if the edit concerns
@@ -183,7 +190,7 @@ pub(in crate::model::fem) fn after_edit(
         outline.obstacle = edited.obstacle;
         outline.shape.clone_from(&edited.shape);
     }
-    place_outline(&mut cable);
+    place_bodies(&mut cable);
     let (stretched_before, mut was_moved) = (StretchedBars::of(&cable), false);
     let edited = EditedObstacles { before: old.problem.world.geometry(), after: new.problem.world.geometry() };
     cable.contacts.change_features(|feature| edited.feature(feature));

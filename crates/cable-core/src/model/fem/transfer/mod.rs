@@ -17,7 +17,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::first_shape::{depenetrate, thread_pulleys};
 use crate::model::fem::mesh::PUSHED_OUT_REACHES;
-use crate::model::fem::obstacle::{IntersectionCheck, put_outline};
+use crate::model::fem::obstacle::{IntersectionCheck, place_bodies, put_outline};
 use crate::model::fem::remesh::{StretchedBars, change_wheels};
 use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
@@ -171,6 +171,7 @@ impl Stepper {
             self.cable.motion.velocities[k] = state.velocity_at(s).unwrap_or_default();
         }
         self.cable.motion.time = state.time_s;
+        place_bodies(&mut self.cable);
         self.cable.motion.followers.fill(None);
         self.cable.motion.hands.fill(None);
         self.cable.contacts.forget();

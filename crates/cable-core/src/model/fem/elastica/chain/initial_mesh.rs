@@ -83,7 +83,7 @@ impl<'a> BarChain<'a> {
         refinement: f64,
     ) -> Option<Self> {
         let ChainInput { problem, time_s, .. } = chain_input;
-        if problem.outline.is_some() || problem.floor_friction.is_some() || problem.cable.self_contact {
+        if !problem.knows_obstacles_at(time_s) || problem.floor_friction.is_some() || problem.cable.self_contact {
             return None;
         }
         let stations = stations(chain_input)?;

@@ -96,7 +96,8 @@ impl<'a> ElasticaGuess<'a> {
     /// The cable with its supports and loads; None if the scene or the answer has things that an
     /// elastica does not model.
     fn new(problem: &'a Problem, time_s: f64, dragged: &'a [Option<Vec2>], answer: &'a CableSolution) -> Option<Self> {
-        let alone = problem.outline.is_none() && problem.floor_friction.is_none() && !problem.cable.self_contact;
+        let alone =
+            problem.knows_obstacles_at(time_s) && problem.floor_friction.is_none() && !problem.cable.self_contact;
         if !alone || answer.nodes.len() < 2 || !answer.breaks.is_empty() {
             return None;
         }

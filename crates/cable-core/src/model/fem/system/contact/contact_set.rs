@@ -7,11 +7,11 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::settings::ContactTuning;
 use crate::model::fem::system::contact::barrier_stiffness;
+use crate::model::fem::system::contact::body_motion::BodyMotion;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::contact::contact_search::ContactSearch;
 use crate::model::fem::system::contact::friction_contact::{FrictionContact, of_node};
 use crate::model::fem::system::contact::friction_memory::FrictionMemory;
-use crate::model::fem::system::contact::outline_motion::OutlineMotion;
 use crate::model::fem::system::contact::self_contact::SelfContacts;
 use crate::problem::Problem;
 
@@ -39,8 +39,8 @@ pub struct ContactSet {
     pub floor_slip: Vec<Vec2>,
     /// Contacts of the cable with itself.
     pub self_contacts: SelfContacts,
-    /// Motion of the robot's outline in this step.
-    pub outline_motion: Option<OutlineMotion>,
+    /// Motions of bodies in this step.
+    pub body_motions: Vec<BodyMotion>,
 }
 
 impl ContactSet {
@@ -59,14 +59,14 @@ impl ContactSet {
             search: ContactSearch::default(),
             floor_slip: vec![Vec2::zeros(); nodes],
             self_contacts: SelfContacts::default(),
-            outline_motion: None,
+            body_motions: Vec::new(),
         }
     }
 
     /// Copies another set, reusing its memory where possible.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { barrier, balanced, slip, friction_contacts, memory, floor_slip, .. } = other;
-        let Self { self_contacts, outline_motion, .. } = other;
+        let Self { self_contacts, body_motions, .. } = other;
         (self.barrier, self.balanced, self.slip) = (*barrier, *balanced, *slip);
         // Memory is reserved for as many contacts, so that a travelling contact front needs no
         // allocation; and for no more, or each copy would double it.
@@ -76,7 +76,12 @@ impl ContactSet {
         self.memory.copy_from(memory);
         self.floor_slip.clone_from(floor_slip);
         self.self_contacts.copy_from(self_contacts);
-        self.outline_motion = *outline_motion;
+        self.body_motions.clone_from(body_motions);
+    }
+
+    /// The motion in this step of the body that a contact is with, if it moves.
+    pub fn motion_of(&self, touch: &ContactPair) -> Option<&BodyMotion> {
+        self.body_motions.iter().find(|motion| motion.obstacle == touch.pair.gap.obstacle)
     }
 
     /// Sets the slide at which friction is fully mobilised (m); every contact keeps its force.
@@ -172,7 +177,7 @@ impl ContactSet {
             } else if limit != 0.0 {
                 let slid = self.memory.slid(touch);
                 let was = touch.interpolate(start);
-                let carried = self.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let carried = self.motion_of(touch);
                 let origin = carried.map_or(was, |c| c.carried(was));
                 self.friction_contacts.push(FrictionContact {
                     touch: *touch,

@@ -17,6 +17,7 @@
 //! | `outline_motion.rs` | rigid motion of the robot's outline in a step; points carried with it |
 
 pub(in crate::model::fem) mod barrier_stiffness;
+pub(in crate::model::fem) mod body_motion;
 pub(in crate::model::fem) mod contact_energy;
 pub(in crate::model::fem) mod contact_pair;
 pub(in crate::model::fem) mod contact_search;
@@ -25,5 +26,4 @@ pub(in crate::model::fem) mod floor_friction;
 pub(in crate::model::fem) mod friction_contact;
 pub(in crate::model::fem) mod friction_limits;
 pub(in crate::model::fem) mod friction_memory;
-pub(in crate::model::fem) mod outline_motion;
 pub(in crate::model::fem) mod self_contact;
