@@ -20,6 +20,8 @@ pub enum FailureCause {
     StickSlipUndecided,
     /// A bar would pass through a corner.
     CornerCrossed,
+    /// The cable does not come clear of an obstacle that moves.
+    BodyInTheWay,
     /// The relaxation ends with nodes that still move.
     StillMoves,
     /// The relaxation carries the cable away without end.

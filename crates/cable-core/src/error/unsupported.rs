@@ -33,6 +33,8 @@ pub enum Unsupported {
     },
     /// The model is built by the program that uses the library.
     ExternalModel,
+    /// An obstacle moves.
+    MovingObstacle,
     /// The cable reaches an obstacle.
     Obstacle {
         /// Place on the cable, m.

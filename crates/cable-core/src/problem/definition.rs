@@ -183,8 +183,7 @@ pub(crate) struct CableWheels {
     pub standing: Vec<bool>,
 }
 
-/// A cable that has left some of its wheels: those that stand still are posts, the others are not
-/// there.
+/// A cable without some of its wheels: in their place are posts, which stand or move, or nothing.
 #[derive(Clone, Debug)]
 pub(crate) struct WheelsLeft {
     /// The cable without those supports.
@@ -251,15 +250,21 @@ impl Problem {
         self.outline.is_some() || !self.moving_posts.is_empty()
     }
 
-    /// Returns whether all obstacles of its world are where they are at a time (s), and there is no
-    /// outline beside them.
+    /// Returns whether the posts of its world are where they are at a time (s).
     #[must_use]
-    pub(crate) fn knows_obstacles_at(&self, time_s: f64) -> bool {
+    pub(crate) fn posts_are_at(&self, time_s: f64) -> bool {
         let bodies = self.world.geometry().bodies();
         let is_there = |post: &MovingPost| {
             bodies.iter().any(|body| body.obstacle == post.obstacle && body.center == Some(post.center_at(time_s)))
         };
-        self.outline.is_none() && self.moving_posts.iter().all(is_there)
+        self.moving_posts.iter().all(is_there)
+    }
+
+    /// Returns whether all obstacles of its world are where they are at a time (s), and there is no
+    /// outline beside them.
+    #[must_use]
+    pub(crate) fn knows_obstacles_at(&self, time_s: f64) -> bool {
+        self.outline.is_none() && self.posts_are_at(time_s)
     }
 
     /// The same for a model that knows nothing of outlines.

@@ -1,8 +1,9 @@
 //! A wheel is a round that the cable may leave: this copy of a cable is without some of its wheels.
 //!
 //! A pulley of the models keeps the cable on its wheel. Where the cable does not press on it, it
-//! hangs clear. A wheel that stands still is then what a post of the same radius and friction is;
-//! posts do not move, so one that moves is taken away until the cable comes to it again.
+//! hangs clear. A wheel is then what a post of the same radius and friction is. One that moves is
+//! taken away until the cable comes to it again, if its post would have to follow a hand, or the
+//! cable is better laid on the wheel again.
 
 use std::f64::consts::PI;
 

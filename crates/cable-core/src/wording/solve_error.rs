@@ -217,6 +217,7 @@ impl Sentence for FailureCause {
             Self::CornerPulls => "a corner would have to pull",
             Self::StickSlipUndecided => "it was not found which corners hold the cable and over which it slips",
             Self::CornerCrossed => "the cable would run through a corner",
+            Self::BodyInTheWay => "the cable cannot get out of the way of an obstacle that moves",
             Self::StillMoves => "it never came to rest",
             Self::SlidesAway => "it slides away",
             Self::SupportShort => "a support cannot reach its place",
@@ -252,6 +253,7 @@ impl Sentence for Unsupported {
                 return format!("friction mobilised {towards} (only spans answers that, of a flexible cable at rest)");
             }
             Self::ExternalModel => "it is built by the program that brings it along",
+            Self::MovingObstacle => "an obstacle that moves",
             Self::Obstacle { arc_length_m } => {
                 return format!("the cable reaches an obstacle {} along it", f.length(*arc_length_m, 3));
             }

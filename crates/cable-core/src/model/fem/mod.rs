@@ -11,7 +11,7 @@
 //! | `newton` | one step: the choice of its solver, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
 //! | `mesh`, `remesh` | nodes, bars, sliding nodes and paths round corners; changes of nodes between steps |
-//! | `obstacle` | can the cable touch anything? does it run through an obstacle? the robot's outline |
+//! | `obstacle` | can the cable touch anything? does it run through an obstacle? the robot's outline and posts that move |
 //! | `first_shape` | the first shape: along the route, clear of obstacles |
 //! | `transfer` | states and answers of other meshes and models |
 //! | `results` | the answer of a state |
@@ -365,9 +365,11 @@ impl Mechanics for FemModel {
         if self.present != PresentPart::Stepper || self.elastica_answer.is_some() {
             return false;
         }
-        (self.statics, self.problem) = (statics, problem.clone());
-        self.stepper.change_wheels(problem);
-        true
+        let changes = self.stepper.change_wheels(problem.clone());
+        if changes {
+            (self.statics, self.problem) = (statics, problem);
+        }
+        changes
     }
 
     fn wheels_bent_over(&self, inertia: Inertia) -> Vec<usize> {

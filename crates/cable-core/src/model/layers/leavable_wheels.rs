@@ -1,6 +1,7 @@
 //! This layer lets a cable leave its wheels: if a model finds that the cable does not press on a
 //! wheel, that wheel is replaced by a post ([`CableWheels`]), or taken away if it moves, until the
-//! cable comes back to it.
+//! cable comes back to it. Posts, which move with their wheels, also stand in for wheels over which
+//! a stiff cable bends and those of a cable that meets itself.
 //!
 //! A post acts on the cable like a wheel with the same friction, as long as it presses on it; its
 //! force is reported as the reaction of the pulley. The other wheels stay, because a cable can
@@ -29,6 +30,11 @@ use crate::state::State;
 /// round-off; larger: it comes back late, and jumps on it. A choice, tuned on no campaign.
 const RETURN_DEPTH: f64 = 1e-3;
 
+/// Greatest gap at which a cable may lie on a post, m: twice the reach of the barrier. Smaller: a
+/// cable that lies on a small post counts as clear of the wheel; larger: one that is clear of it is
+/// laid on it. A choice, tuned on no campaign.
+const POST_GAP_M: f64 = 2e-4;
+
 /// Multiple of that depth up to which a moving cable may have come back when it is laid on the
 /// wheel. Smaller: the instant of the return is harder to find; larger: the cable jumps on the
 /// wheel. A choice, tuned on no campaign.
@@ -39,9 +45,9 @@ const DEEPEST_RETURN_FACTOR: f64 = 2.0;
 const MAX_RETURN_TRIALS: usize = 40;
 
 /// Change of the greatest tension up to which a stiff cable on posts rests as it did on wheels, of
-/// that tension. Smaller: coarse meshes, on which a contact in one point changes the tension by 8 %,
-/// neglect the whole bend instead; larger: a rest that was not found again is used. A choice, tuned
-/// on no campaign.
+/// that tension. Smaller: coarse meshes, on which a contact in one point changes the tension by 8
+/// %, neglect the whole bend instead; larger: a rest that was not found again is used. A choice,
+/// tuned on no campaign.
 const SAME_REST: f64 = 0.25;
 
 /// Number of times that a cable may come back to wheels in one step. More: cables that tremble on a
@@ -116,8 +122,8 @@ struct ContinuationWithoutWheels {
     replaced: Vec<bool>,
     /// As in [`LeavableWheels`].
     let_go: bool,
-    /// As in [`LeavableWheels`].
-    as_moving_post: Vec<bool>,
+    /// For each support, true if a post was in its place.
+    posts: Vec<bool>,
     /// Present places of those wheels, m.
     centers: Vec<Option<Vec2>>,
     time_s: f64,
@@ -219,9 +225,16 @@ impl LeavableWheels {
         if self.left.is_some() || before.replaced.len() != self.led.len() || !are_wheels(&before.replaced) {
             return false;
         }
+        let moves = |k: usize| before.posts[k] && !self.wheels.standing[k];
+        let moving: Vec<bool> = (0..before.posts.len()).map(moves).collect();
+        // A post holds the cable for ever.
+        let lets_go = |k: &usize| self.problem.supports[*k].release.is_some();
+        if (0..moving.len()).filter(|k| moving[*k]).any(|k| lets_go(&k)) {
+            return false;
+        }
         let places = before.centers.iter().zip(&self.led).map(|(center, led)| center.filter(|_| led.is_some()));
         let kept = std::mem::replace(&mut self.places, places.collect());
-        let as_moving_post = std::mem::replace(&mut self.as_moving_post, before.as_moving_post.clone());
+        let as_moving_post = std::mem::replace(&mut self.as_moving_post, moving);
         let continued = self.without(&before.replaced, Inertia::Dynamic).and_then(|left| {
             let going_on = || left.going_on(&self.problem, &self.problem, &self.places, before.time_s);
             let problem = if before.let_go { going_on()? } else { left.problem.clone() };
@@ -282,8 +295,8 @@ impl LeavableWheels {
     fn goes_clear(&self, support: usize, to: Vec2) -> bool {
         let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
         let (Some(wheel), Some(radius)) = (self.wheel_left(support), radius) else { return false };
-        let state = self.inner.state();
-        state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
+        let (state, from) = (self.inner.state(), self.place_of(wheel));
+        state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], from, to) > radius)
     }
 
     /// Moves a support; a wheel that was left goes there when the cable is next solved.
@@ -303,25 +316,31 @@ impl LeavableWheels {
         self.left.iter().flat_map(|left| &left.wheels).find(|wheel| wheel.support == support)
     }
 
+    /// The present place of a wheel that was left, m.
+    fn place_of(&self, wheel: &WheelLeft) -> Vec2 {
+        let by_motion = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
+        self.places[wheel.support].or_else(by_motion).unwrap_or(wheel.center)
+    }
+
     /// The wheels that were left and have been led from where they are, with their targets, m.
     fn led_away(&self) -> Vec<(usize, Vec2)> {
         let wheels = self.left.iter().flat_map(|left| &left.wheels);
         let led = wheels.filter_map(|wheel| {
             let to = self.led[wheel.support].map(SupportMove::place)?;
-            let at = self.places[wheel.support].unwrap_or(wheel.center);
-            (at != to).then_some((wheel.support, to))
+            (self.place_of(wheel) != to).then_some((wheel.support, to))
         });
         led.collect()
     }
 
     /// Puts wheels that were left where they have been led, at once. One stays left if its path is
-    /// clear of the cable; else all become wheels again.
+    /// clear of the cable, and no post moves in its place; else all become wheels again.
     fn put_at_rest(&mut self) {
         let led = self.led_away();
         if led.is_empty() {
             return;
         }
-        let clear = led.iter().all(|(support, to)| self.goes_clear(*support, *to));
+        let stays = |support: usize, to: Vec2| !self.as_moving_post[support] && self.goes_clear(support, to);
+        let clear = led.iter().all(|(support, to)| stays(*support, *to));
         let before = self.places.clone();
         for (support, to) in led {
             self.places[support] = Some(to);
@@ -345,8 +364,8 @@ impl LeavableWheels {
         self.take_led_posts()?;
         let most = self.settings.hand_speed_m_per_s * dt_s;
         for (support, to) in self.led_away() {
-            let center = self.wheel_left(support).map(|wheel| wheel.center);
-            let Some(from) = self.places[support].or(center).filter(|_| !known[support]) else { continue };
+            let from = self.wheel_left(support).map(|wheel| self.place_of(wheel));
+            let Some(from) = from.filter(|_| !known[support]) else { continue };
             let way = to - from;
             let part = if way.norm() > most { most / way.norm() } else { 1.0 };
             self.places[support] = Some(if part < 1.0 { from + way * part } else { to });
@@ -354,8 +373,8 @@ impl LeavableWheels {
         Ok(())
     }
 
-    /// Posts stand still: a cable that lies on the post of a wheel that is led is laid on the wheel
-    /// again; else the post is taken away.
+    /// Posts follow no hand: a cable that lies on the post of a wheel that is led is laid on the
+    /// wheel again; else the post is taken away.
     ///
     /// # Errors Those of the model without the post.
     fn take_led_posts(&mut self) -> Result<(), SolveError> {
@@ -458,29 +477,29 @@ impl LeavableWheels {
         inertia: Inertia,
         mut run: impl FnMut(&mut dyn Mechanics) -> Result<StepReport, SolveError>,
     ) -> Option<StepReport> {
-        let mut replaced = self.also_left(self.replaced(), error)?;
-        if asks_for_posts(error) {
-            for support in 0..replaced.len() {
+        let before = self.as_moving_post.clone();
+        let mut replaced = self.also_left(self.replaced(), error);
+        let mut asks = asks_for_posts(error);
+        while let Some(wheels) = replaced {
+            for support in (0..wheels.len()).filter(|_| asks) {
                 self.as_moving_post[support] |= !self.wheels.standing[support] && self.can_be_post(support);
             }
-        }
-        loop {
-            let left = self.without(&replaced, inertia)?;
-            let mut inner = self.built(Some(&left), start).ok()?;
+            let Some(left) = self.without(&wheels, inertia) else { break };
+            let Ok(mut inner) = self.built(Some(&left), start) else { break };
             let found = run(&mut *inner);
             let refusal = match &found {
                 Ok(_) => inner.refusal(),
                 Err(error) => Some(error),
             };
-            match (refusal.and_then(|error| self.also_left(replaced.clone(), error)), found) {
-                (Some(more), _) => replaced = more,
-                (None, Ok(report)) => {
-                    self.continue_with(inner, Some(left));
-                    return Some(report);
-                }
-                (None, Err(_)) => return None,
+            asks = refusal.is_some_and(asks_for_posts);
+            replaced = refusal.and_then(|error| self.also_left(wheels, error));
+            if let (None, Ok(report)) = (&replaced, found) {
+                self.continue_with(inner, Some(left));
+                return Some(report);
             }
         }
+        self.as_moving_post = before;
+        None
     }
 
     /// Lets the wheels go that the cable leaves by this error, in the model that holds the state;
@@ -669,12 +688,16 @@ impl LeavableWheels {
         }
         let state = self.inner.state();
         // From its other side a wheel would have to pass through the cable, and the tip of a fold
-        // that strikes it does not run round it. In `mass-spring` the wheel would push its node out
-        // at once, and stretch its two elements by all of that.
+        // that strikes it does not run round it: there it is met as a post. In `mass-spring` the
+        // wheel would push its node out at once, and stretch its two elements by all of that.
         let by_springs = self.inner.model() == Model::MassSpring;
-        let lost = back.iter().find(|wheel| by_springs || !wheel.can_bear);
-        if let Some(wheel) = lost.filter(|_| inertia == Inertia::Dynamic) {
-            let support = self.problem.supports[wheel.support].name.clone();
+        let lost = back.iter().filter(|wheel| by_springs || !wheel.can_bear).map(|wheel| wheel.support);
+        let lost: Vec<usize> = lost.filter(|_| inertia == Inertia::Dynamic).collect();
+        if let Some(&support) = lost.first() {
+            if self.meets_as_posts(&lost) {
+                return Ok(());
+            }
+            let support = self.problem.supports[support].name.clone();
             return Err(SolveError::Unsupported {
                 model: self.inner.model(),
                 feature: Unsupported::BackOnWheel { support },
@@ -696,6 +719,23 @@ impl LeavableWheels {
         let inner = self.built(left.as_ref(), &Start::of(inertia, &state, &answer))?;
         self.continue_with(inner, left);
         Ok(())
+    }
+
+    /// Puts posts that move in the place of wheels which the cable has left and meets again;
+    /// returns false, with nothing changed, if that is impossible.
+    fn meets_as_posts(&mut self, supports: &[usize]) -> bool {
+        if !supports.iter().all(|&support| self.can_be_post(support)) {
+            return false;
+        }
+        let before = self.as_moving_post.clone();
+        for &support in supports {
+            self.as_moving_post[support] = true;
+        }
+        let meets = self.without(&self.replaced(), Inertia::Dynamic).is_some_and(|left| self.goes_on(left));
+        if !meets {
+            self.as_moving_post = before;
+        }
+        meets
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.
@@ -780,7 +820,7 @@ impl Layer for LeavableWheels {
         self.account = None;
         let off = |(k, support): (usize, &SupportPoint)| {
             let center = self.places[k].or_else(|| support.position_at(state.time_s).map(|place| place.0));
-            let far = support.wheel_radius * (1.0 + RETURN_DEPTH);
+            let far = support.wheel_radius * (1.0 + RETURN_DEPTH) + POST_GAP_M;
             let clear = |center| state.position_m.windows(2).all(|bar| distance(center, bar[0], bar[1]) > far);
             self.wheels.wheels[k] && center.is_some_and(clear)
         };
@@ -806,8 +846,9 @@ impl Layer for LeavableWheels {
             centers[wheel.support].get_or_insert(wheel.center);
         }
         let (replaced, let_go, time_s) = (left.replaced.clone(), self.let_go, self.inner.time_s());
-        let as_moving_post = self.as_moving_post.clone();
-        Some(Box::new(ContinuationWithoutWheels { replaced, let_go, as_moving_post, centers, time_s, inner }))
+        let is_post = |support: usize| self.wheel_left(support).is_some_and(|wheel| wheel.post.is_some());
+        let posts = (0..replaced.len()).map(is_post).collect();
+        Some(Box::new(ContinuationWithoutWheels { replaced, let_go, posts, centers, time_s, inner }))
     }
 
     fn continue_from(&mut self, before: &(dyn Any + Send)) -> bool {
@@ -880,9 +921,9 @@ impl Layer for LeavableWheels {
         self.inner.set_robot_pose(to);
     }
 
-    /// A wheel acts on the cable as a post does: where no answer over wheels is sound, one over posts
-    /// is asked for. The elements of `mass-spring` run round wheels, but straight
-    /// through posts that are smaller than they are long.
+    /// A wheel acts on the cable as a post does: where no answer over wheels is sound, one over
+    /// posts is asked for. The elements of `mass-spring` run round wheels, but straight through
+    /// posts that are smaller than they are long.
     fn fall_back(&mut self, why: &SolveError) -> bool {
         if self.inner.fall_back(why) {
             return true;

@@ -198,7 +198,8 @@ impl SwitchingModel {
 
     /// Offers an answer of `fem` to `spans`; returns a warning about it.
     fn try_switch_back(&mut self) -> Option<Warning> {
-        let fem = self.fem.as_ref()?;
+        // `spans` knows no posts that move.
+        let fem = self.fem.as_ref().filter(|_| self.problem.moving_posts.is_empty())?;
         self.interval[0] = self.interval[0].saturating_sub(1);
         if self.interval[0] > 0 {
             return None;
@@ -479,7 +480,7 @@ impl Mechanics for SwitchingModel {
                 let spans = SpansModel::new(simpler, self.settings).ok();
                 spans.filter(|_| fem.change_wheels(problem.clone())).map(|spans| self.spans = spans).is_some()
             }
-            None => self.spans.change_wheels(simpler),
+            None => simpler.moving_posts.is_empty() && self.spans.change_wheels(simpler),
         };
         if lets_go {
             self.problem = problem;

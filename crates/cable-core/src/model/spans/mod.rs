@@ -184,6 +184,9 @@ impl SpansModel {
         dt_s: f64,
         mut goes_on: Option<NodesWatch<'_>>,
     ) -> Result<StepReport, SolveError> {
+        if !self.problem.posts_are_at(self.time_s + dt_s) {
+            return Err(unsupported(Unsupported::MovingObstacle));
+        }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }

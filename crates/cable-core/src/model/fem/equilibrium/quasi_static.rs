@@ -32,7 +32,7 @@ impl Stepper {
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
         for round in 0..self.cable.mesh.tuning.equilibrium.corner_rounds {
-            prepare_way(&mut self.cable, [to, to], Some(dragged));
+            prepare_way(&mut self.cable, [to, to], Some(dragged))?;
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.cable.input.stopping.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;

@@ -133,7 +133,7 @@ impl Stepper {
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         // Stretches of cable in the way of the moving outline are moved aside before anything
         // slides.
-        prepare_way(&mut self.cable, [to, to], Some(dragged));
+        prepare_way(&mut self.cable, [to, to], Some(dragged))?;
         self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
         self.cable.contacts.body_motions.clear();
         let begun_at = self.cable.motion.positions.clone();

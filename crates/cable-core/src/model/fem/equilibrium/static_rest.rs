@@ -49,7 +49,10 @@ impl Stepper {
         ];
         for (part, iterations) in stages {
             self.rollback.save(&self.cable);
-            prepare_way(&mut self.cable, [to, to], Some(dragged));
+            if prepare_way(&mut self.cable, [to, to], Some(dragged)).is_err() {
+                self.rollback.restore(&mut self.cable);
+                break;
+            }
             self.cable.input.stopping.max_noise = exact;
             (self.cable.input.stopping.tolerance, self.cable.input.stopping.max_iterations) =
                 (larger(part * exact, rounding), iterations);

@@ -103,11 +103,14 @@ impl FemModel {
     /// bends.
     pub(in crate::model::fem) fn finest_bars(&self, inertia: Inertia) -> usize {
         let cable = &self.stepper.cable;
-        match (inertia, self.refinement()) {
-            (Inertia::QuasiStatic, MeshRefinement::Allowed) => {
-                cable.meshing.even_bars.max(cable.mesh.tuning.start.max_refined_bars)
-            }
-            _ => cable.meshing.even_bars,
+        let (bars, most) = (cable.meshing.even_bars, cable.mesh.tuning.start.max_refined_bars);
+        let may_refine = self.refinement() == MeshRefinement::Allowed && self.problem.outline.is_none();
+        match inertia {
+            Inertia::QuasiStatic if may_refine => std::iter::successors(Some(bars), |bars| Some(2 * bars))
+                .take_while(|b| *b <= most)
+                .last()
+                .unwrap_or(bars),
+            _ => bars,
         }
     }
 

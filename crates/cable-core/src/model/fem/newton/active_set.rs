@@ -217,7 +217,7 @@ mod tests {
     #[test]
     fn a_cable_that_lands_all_along_its_length_in_one_step_takes_few_iterations() {
         let mut d = about_to_land();
-        d.begin_step(STEP, &[]);
+        d.begin_step(STEP, &[]).unwrap();
         let mut unknowns = d.solver.present_unknowns(&d.cable);
         let mut memory = Workspace::new(&d.cable.mesh).unwrap();
         let done = memory.minimise_by_line_search(&d.cable.step_context(), &mut unknowns).unwrap();

@@ -416,7 +416,7 @@ mod tests {
             let (mut compared, mut touching, mut worst) = (0, 0, 0.0);
             for _ in 0..80 {
                 let mut trial = d.clone();
-                trial.begin_step(STEP, &[]);
+                trial.begin_step(STEP, &[]).unwrap();
                 let mut expected = trial.solver.present_unknowns(&trial.cable);
                 trial.cable.contacts.prepare(&trial.cable.problem, &trial.cable.mesh, &expected.positions, &trial.cable.motion.positions);
                 let mut memory = Workspace::new(&trial.cable.mesh).unwrap();

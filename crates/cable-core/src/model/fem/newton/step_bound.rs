@@ -142,7 +142,7 @@ mod tests {
         #[test]
         fn a_short_way_is_free(seed in prop::collection::vec(-0.5f64..0.5, 122), down in 0.0f64..1.0) {
             let mut d = lying();
-            d.begin_step(1.0 / 240.0, &[]);
+            d.begin_step(1.0 / 240.0, &[]).unwrap();
             let unknowns = d.solver.present_unknowns(&d.cable);
             d.cable.contacts.prepare(&d.cable.problem, &d.cable.mesh, &unknowns.positions, &d.cable.motion.positions);
             let mut memory = Workspace::new(&d.cable.mesh).unwrap();

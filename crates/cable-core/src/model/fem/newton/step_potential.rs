@@ -271,7 +271,7 @@ impl Workspace {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // During relaxation any force may be lost in round-off, because a cable laid in contact
         // begins like that; so may the force of an outline that squeezes the cable.
-        let hidden = if input.inertial.moves && !input.supports.has_moving_outline {
+        let hidden = if input.inertial.moves && !input.supports.has_moving_bodies {
             self.rounding.relief
         } else {
             self.rounding.noise

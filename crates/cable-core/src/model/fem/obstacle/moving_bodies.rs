@@ -24,7 +24,7 @@ use crate::math::{RigidPose, Vec2, larger};
 use crate::model::RobotContact;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::{CableState, Meshing, prepare_step, stopped_by_obstacles};
-use crate::model::fem::system::{BodyMotion, ContactPair, StepContext};
+use crate::model::fem::system::{BodyMotion, ContactPair, Failure, FailureCause, StepContext};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
@@ -99,13 +99,20 @@ fn move_posts(cable: &mut CableState, to: f64) -> Vec<BodyMotion> {
     motions
 }
 
-/// Sets the input of a step from one time to another (s), with the bodies where they are at its end.
-pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
+/// Sets the input of a step from one time to another (s), with the bodies where they are at its
+/// end.
+///
+/// # Errors `BodyInTheWay` if the cable does not come clear of a post.
+pub(in crate::model::fem) fn prepare_way(
+    cable: &mut CableState,
+    times: [f64; 2],
+    dragged: Option<&[Option<Vec2>]>,
+) -> Result<(), Failure> {
     cable.contacts.body_motions.clear();
     let posts = move_posts(cable, times[1]);
     prepare_step(cable, times, dragged);
     if cable.outline.is_none() && posts.is_empty() {
-        return;
+        return Ok(());
     }
     let ends: Vec<[Vec2; 2]> =
         (0..cable.mesh.rest_length.len()).map(|e| cable.mesh.straight(e, &cable.motion.positions)).collect();
@@ -118,7 +125,7 @@ pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2]
             let mut motions = posts.clone();
             motions.push(outline);
             if comes && clear_way(cable, motions, &ends) {
-                return;
+                return Ok(());
             }
         }
         move_outline(cable, from);
@@ -127,8 +134,9 @@ pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2]
     if let Some(stays) = cable.motion.placement.and_then(|at| motion_of_outline(cable, at)) {
         hitch_on(cable, &stays);
     }
-    if !posts.is_empty() && !clear_way(cable, posts.clone(), &ends) {
-        cable.contacts.body_motions = posts;
+    match posts.is_empty() || clear_way(cable, posts, &ends) {
+        true => Ok(()),
+        false => Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::BodyInTheWay }),
     }
 }
 

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::error::{Place, SolveError, Unsupported};
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::Model;
 use crate::model::bending_change::BendingChange;
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNodeLoad};
@@ -265,9 +265,14 @@ impl CableState {
             }
         }
         let max_way = self.mesh.tuning.outline.max_way_m;
-        let now = self.motion.time;
+        let (now, bodies) = (self.motion.time, self.problem.world.geometry().bodies());
         let way = |post: &MovingPost| (post.center_at(end) - post.center_at(now)).norm();
-        let posts = self.problem.moving_posts.iter().map(way).fold(0.0, larger) / max_way;
+        // A post goes no farther at once than a support, and than its own radius.
+        let steps = |post: &MovingPost| {
+            let body = bodies.iter().find(|body| body.obstacle == post.obstacle);
+            way(post) / smaller(0.5 * even, body.map_or(f64::INFINITY, |body| body.offset))
+        };
+        let posts = self.problem.moving_posts.iter().map(steps).fold(0.0, larger);
         let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(max_way));
         larger(most / (0.5 * even), larger(carried, posts)).ceil().clamp(1.0, 1e4)
     }

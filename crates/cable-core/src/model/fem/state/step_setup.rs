@@ -133,7 +133,7 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
 fn clear_inertia_and_loss(cable: &mut CableState) {
     let (mesh, input) = (&cable.mesh, &mut cable.input);
     let n = mesh.nodes();
-    input.supports.has_moving_outline = cable.outline.is_some();
+    input.supports.has_moving_bodies = cable.problem.has_moving_bodies();
     input.stopping.max_iterations = mesh.tuning.step.max_iterations;
     input.stopping.max_move = mesh.tuning.newton.max_move_m;
     input.inertial.moves = false;

@@ -33,7 +33,7 @@ impl Stepper {
         let before = self.accounts_energy.then(|| self.begin_energy_account());
         // Taken before `begin_step`, which puts pulleys that move at the end of the step.
         let slid = MovingMass::of(&self.cable).sliding_momentum();
-        let weights = self.begin_step(h, dragged);
+        let weights = self.begin_step(h, dragged)?;
         let predicted = self.solver.predicted_unknowns(&self.cable, h);
         let (mut unknowns, mut done) = self.minimise_step(predicted)?;
         if forget_slack_impulses(&mut self.cable, weights, &unknowns.positions) {

@@ -24,7 +24,7 @@ use crate::model::fem::obstacle::prepare_way;
 use crate::model::fem::results;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::CableState;
-use crate::model::fem::system::{Unknowns, WorkBudget};
+use crate::model::fem::system::{Failure, Unknowns, WorkBudget};
 use crate::model::fem::time::{HandDrive, Rollback, Sleep, StepSizeController, TimeControl, Weights, set_inertia};
 use crate::model::{Inertia, Settings};
 use crate::problem::Problem;
@@ -104,10 +104,10 @@ impl Stepper {
     }
 
     /// Sets the input of a step of `h` (s); returns the weights of its history.
-    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
+    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Result<Weights, Failure> {
         self.hand_drive.follow(&mut self.cable, self.time_control.due, h, dragged);
         let now = self.cable.motion.time;
-        prepare_way(&mut self.cable, [now, now + h], Some(dragged));
+        prepare_way(&mut self.cable, [now, now + h], Some(dragged))?;
         self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
         let contact = self.cable.contacts.tuning;
         self.cable.adapt_stiffness([contact.stiffness_rise, contact.stiffness_fall], 1.0);
@@ -117,6 +117,6 @@ impl Stepper {
         self.cable.contacts.list_neighbours(&self.cable.problem, mesh, &m.positions, |k| {
             if mesh.held[k] { (input.supports.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
-        weights
+        Ok(weights)
     }
 }

@@ -117,14 +117,14 @@ pub struct SupportTargets {
     pub target: Vec<Vec2>,
     /// True if held nodes may stop short of their targets because of an obstacle or the cable.
     pub may_lag: bool,
-    /// True if a moving outline may squeeze the cable against an obstacle.
-    pub has_moving_outline: bool,
+    /// True if an outline or a post that moves may squeeze the cable against an obstacle.
+    pub has_moving_bodies: bool,
     /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
     /// Nodes that slide over wheels of pulleys, with the velocity of the wheel (m/s) at the end of
     /// the step.
     pub wheel_velocities: Vec<(usize, Vec2)>,
-    /// Positions from which the iteration begins, m, if an outline moved; else empty.
+    /// Positions from which the iteration begins, m, if a body moved; else empty.
     pub cleared: Vec<Vec2>,
 }
 

@@ -207,7 +207,9 @@ pub(in crate::model::fem) fn after_edit(
         }
         cable.mesh.sliding[k] = now;
     }
-    if !edited.adds_nothing() && is_inside_something(&cable) {
+    // Posts that move may have become wider.
+    let adds = !edited.adds_nothing() || !cable.problem.moving_posts.is_empty();
+    if adds && is_inside_something(&cable) {
         push_out(&mut cable)?;
         was_moved = true;
     }
@@ -219,7 +221,7 @@ pub(in crate::model::fem) fn after_edit(
         (cable.meshing.even_bars, cable.meshing.bar_weight) = (new.meshing.even_bars, new.meshing.bar_weight);
         divide_anew(&mut cable);
     }
-    if !edited.adds_nothing() && is_inside_something(&cable) {
+    if adds && is_inside_something(&cable) {
         return None;
     }
     // The momentum that an edit gives is not an impulse of obstacles.
@@ -230,6 +232,21 @@ pub(in crate::model::fem) fn after_edit(
     cable.motion.positions = x;
     renew_input(&mut cable);
     Some(cable)
+}
+
+/// Pushes a cable out of posts that were put where it lies, with the stretch of its bars; returns
+/// whether it is clear of all then.
+pub(in crate::model::fem) fn stand_clear(cable: &mut CableState) -> bool {
+    if !is_inside_something(cable) {
+        return true;
+    }
+    let stretched_before = StretchedBars::of(cable);
+    let is_out = push_out(cable).is_some();
+    stretched_before.restore(cable);
+    let x = std::mem::take(&mut cable.motion.positions);
+    cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
+    cable.motion.positions = x;
+    is_out && !is_inside_something(cable)
 }
 
 fn is_inside_something(cable: &CableState) -> bool {

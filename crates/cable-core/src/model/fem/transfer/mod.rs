@@ -21,7 +21,7 @@ use crate::model::fem::obstacle::{IntersectionCheck, place_bodies, put_outline};
 use crate::model::fem::remesh::{StretchedBars, change_wheels};
 use crate::model::fem::state::{Energies, MovingMass, renew_input, stored_energy};
 use crate::model::fem::stepper::Stepper;
-use crate::model::fem::transfer::after_edit::{SupportDrag, after_edit, loses_bending};
+use crate::model::fem::transfer::after_edit::{SupportDrag, after_edit, loses_bending, stand_clear};
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
@@ -137,16 +137,25 @@ impl Stepper {
     }
 
     /// Goes on with a problem in which some wheels have let go, with posts for some of them after
-    /// its other obstacles, or hold the cable again where it is.
-    pub(in crate::model::fem) fn change_wheels(&mut self, problem: Arc<Problem>) {
+    /// its other obstacles, or hold the cable again where it is. Returns false, without a change,
+    /// if the cable cannot be where it is beside those posts.
+    pub(in crate::model::fem) fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
+        let before = (!problem.moving_posts.is_empty()).then(|| self.cable.clone());
         change_wheels(&mut self.cable, problem);
         let state = self.cable.state();
         thread_pulleys(&mut self.cable, Some(&state));
+        if let Some(before) = before
+            && !stand_clear(&mut self.cable)
+        {
+            self.cable = before;
+            return false;
+        }
         renew_input(&mut self.cable);
         if self.accounts_energy {
             self.cable.motion.energies.edit(stored_energy(&self.cable));
             self.cable.motion.energies.end_step();
         }
+        true
     }
 
     /// Adopts a state: node by node if the nodes are the same, else by arc length.

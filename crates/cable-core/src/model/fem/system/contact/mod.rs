@@ -14,7 +14,7 @@
 //! | `friction_memory.rs` | slide of each contact from its anchor, kept between steps |
 //! | `floor_friction.rs` | plan view: floor friction of cable that slides round a corner or post |
 //! | `self_contact.rs` | contact of the cable with itself: barrier, friction and its memory |
-//! | `outline_motion.rs` | rigid motion of the robot's outline in a step; points carried with it |
+//! | `body_motion.rs` | rigid motion of an outline or a post in a step; points carried with it |
 
 pub(in crate::model::fem) mod barrier_stiffness;
 pub(in crate::model::fem) mod body_motion;
