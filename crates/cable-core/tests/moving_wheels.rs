@@ -118,3 +118,31 @@ fn issue_016_a_stiff_cable_over_an_accelerated_wheel_feels_its_own_inertia() {
         assert_alike(&stands, &moves, 1e-3);
     }
 }
+
+/// The force at the end of a cable that pushes was reported as a tension of its size, beside nodes
+/// in compression: 10.8 N for −10.8 N, as the greatest tension.
+#[test]
+fn issue_016_a_stiff_cable_that_pushes_on_its_end_is_in_compression_there() {
+    // An arch whose ends are pinned 2 m apart.
+    let mut scene = scene(20.0, 0.0, [0.0; 2]);
+    scene.cables[0].length_m = 2.2;
+    scene.cables[0].segments = Some(60);
+    scene.cables[0].supports = [-1.0, 1.0].map(|x| Support::fixed(&format!("at {x}"), [x, 2.0])).to_vec();
+    let histories = [Inertia::QuasiStatic, Inertia::Dynamic];
+    for (model, inertia) in [(Model::Fem, histories[0]), (Model::Fem, histories[1]), (Model::MassSpring, histories[1])]
+    {
+        let question = Question::History(inertia);
+        let mut run = Simulation::for_question(scene.clone(), model, Settings::default(), question).unwrap();
+        let rest = run.settle().unwrap().cables[0].nodes[0].tension_n;
+        match inertia {
+            Inertia::QuasiStatic => run.step_quasi_static(1e-3).unwrap(),
+            Inertia::Dynamic => run.step(1e-3).unwrap(),
+        };
+        let answer = run.solution();
+        let [end, beside] = [0, 1].map(|k| answer.cables[0].nodes[k].tension_n);
+        assert!(
+            rest < -5.0 && (end - rest).abs() < 0.5 && (end - beside).abs() < 1.0,
+            "{model:?}: {rest} {end} {beside}"
+        );
+    }
+}

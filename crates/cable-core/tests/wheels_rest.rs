@@ -418,6 +418,10 @@ fn issue_015_a_cable_hangs_clear_of_a_wheel() {
         let clear = sim.solution().cables[0].supports[2].clone();
         assert_eq!([clear.reaction_x_n, clear.reaction_y_n, clear.x_m, clear.y_m], [0.0, 0.0, at[0], at[1]]);
         assert!(sim.warnings().any(|w| w.kind == WarningKind::ClearOfWheel));
+        // It stays there when time runs, and does not come from where the scene has it.
+        sim.step(0.01).unwrap();
+        let later = sim.solution().cables[0].supports[2].clone();
+        assert!((later.x_m - at[0]).hypot(later.y_m - at[1]) < 1e-9, "{later:?}");
     }
 }
 

@@ -151,8 +151,7 @@ const AUTO: ModelInfo = ModelInfo {
     },
     accuracy: [1e-5, 1e-6],
     construct: |problem, settings| match auto::choose(&problem, Question::Rest).0 {
-        Model::Spans if problem.moving_posts.is_empty() => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
-        Model::Spans => construct(Model::Fem, problem, settings),
+        Model::Spans => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
         chosen => construct(chosen, problem, settings),
     },
 };

@@ -318,7 +318,8 @@ impl LeavableWheels {
 
     /// The present place of a wheel that was left, m.
     fn place_of(&self, wheel: &WheelLeft) -> Vec2 {
-        let by_motion = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
+        let own = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
+        let by_motion = || own().filter(|_| !self.wheels.standing[wheel.support]);
         self.places[wheel.support].or_else(by_motion).unwrap_or(wheel.center)
     }
 
@@ -339,7 +340,9 @@ impl LeavableWheels {
         if led.is_empty() {
             return;
         }
-        let stays = |support: usize, to: Vec2| !self.as_moving_post[support] && self.goes_clear(support, to);
+        let is_post = |support: usize| self.wheel_left(support).is_some_and(|wheel| wheel.post.is_some());
+        let moves = |support: usize| self.as_moving_post[support] && is_post(support);
+        let stays = |support: usize, to: Vec2| !moves(support) && self.goes_clear(support, to);
         let clear = led.iter().all(|(support, to)| stays(*support, *to));
         let before = self.places.clone();
         for (support, to) in led {

@@ -179,14 +179,20 @@ impl SpansModel {
     ///
     /// # Errors
     /// As [`Mechanics::advance`].
+    /// Refuses a time (s) at which posts are not where the world of the problem has them.
+    fn refuse_moved_posts(&self, time_s: f64) -> Result<(), SolveError> {
+        match self.problem.posts_are_at(time_s) {
+            true => Ok(()),
+            false => Err(unsupported(Unsupported::MovingObstacle)),
+        }
+    }
+
     pub(super) fn advance_while(
         &mut self,
         dt_s: f64,
         mut goes_on: Option<NodesWatch<'_>>,
     ) -> Result<StepReport, SolveError> {
-        if !self.problem.posts_are_at(self.time_s + dt_s) {
-            return Err(unsupported(Unsupported::MovingObstacle));
-        }
+        self.refuse_moved_posts(self.time_s + dt_s)?;
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
@@ -529,6 +535,7 @@ impl Mechanics for SpansModel {
         if self.layout.sections.is_empty() {
             return Err(unsupported(Unsupported::NothingHolds));
         }
+        self.refuse_moved_posts(self.time_s)?;
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut workspace = std::mem::take(&mut self.workspace);
@@ -620,6 +627,7 @@ impl Mechanics for SpansModel {
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.refuse_moved_posts(time_s)?;
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut workspace = std::mem::take(&mut self.workspace);

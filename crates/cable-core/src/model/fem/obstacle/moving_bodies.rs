@@ -20,7 +20,7 @@ use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Body, Geometry, ObstaclePart};
 use crate::contact::self_contact_pairs::SortedNodes;
 use crate::contact::sweep::Sweep;
-use crate::math::{RigidPose, Vec2, larger};
+use crate::math::{RigidPose, Vec2, larger, smaller};
 use crate::model::RobotContact;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::state::{CableState, Meshing, prepare_step, stopped_by_obstacles};
@@ -134,10 +134,18 @@ pub(in crate::model::fem) fn prepare_way(
     if let Some(stays) = cable.motion.placement.and_then(|at| motion_of_outline(cable, at)) {
         hitch_on(cable, &stays);
     }
-    match posts.is_empty() || clear_way(cable, posts, &ends) {
-        true => Ok(()),
-        false => Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::BodyInTheWay }),
+    if posts.is_empty() || clear_way(cable, posts.clone(), &ends) {
+        return Ok(());
     }
+    // Nothing need give way to a post that goes away.
+    if BodiesStep::of(cable, &posts).passes_nothing(&ends) {
+        cable.contacts.body_motions = posts;
+        return Ok(());
+    }
+    let near =
+        |k: usize| posts.iter().map(|p| (cable.motion.positions[k] - p.to.at).norm()).fold(f64::INFINITY, smaller);
+    let node = (0..cable.mesh.nodes()).min_by(|a, b| near(*a).total_cmp(&near(*b))).unwrap_or(0);
+    Err(Failure { node, residual: f64::NAN, cause: FailureCause::BodyInTheWay })
 }
 
 /// The poses between which the outline moves to its goal at a time (s); None if it waits, or stands
@@ -325,6 +333,20 @@ impl<'a> BodiesStep<'a> {
     /// stops nothing.
     fn swept_gap_fraction(&self) -> f64 {
         0.5 * self.step.mesh.tuning.outline.kept_gap_fraction
+    }
+
+    /// True if the bodies pass no bar that stays where it is.
+    fn passes_nothing(&self, ends: &[[Vec2; 2]]) -> bool {
+        let (mesh, geometry) = (self.step.mesh, self.step.problem.world.geometry());
+        let passes = |e: usize, to: [Vec2; 2], motion: &BodyMotion| {
+            let Some((own, _)) = self.body_of(motion) else { return false };
+            let from = to.map(|p| motion.carried(p));
+            let sweep = Sweep::new(from, to, self.swept_gap_fraction());
+            let parts = geometry.parts(sweep.low, sweep.high, sweep.margin).filter(|p| p.body == own);
+            geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) < 1.0
+        };
+        let mut bars = ends.iter().enumerate().filter(|(e, _)| !mesh.is_break(*e));
+        bars.all(|(e, to)| self.motions.iter().all(|motion| !passes(e, *to, motion)))
     }
 
     /// True if the cable crosses nothing on the way to `x`: no fixed obstacle and, in the frame of

@@ -66,6 +66,18 @@ pub(super) fn tension_at_node(d: &CableState, x: &[Vec2], tension: &[f64], k: us
     (tension[k - 1] * after + tension[k] * before) / whole
 }
 
+/// Tension (N) where a force acts along the end of bar `e`; a stiff cable may be pushed there.
+pub(super) fn signed_tension(mesh: &Mesh, e: usize, x: &[Vec2], force: Vec2) -> f64 {
+    let pushes = !mesh.is_flexible() && force != Vec2::zeros() && force.dot(&mesh.direction(e, x)) < 0.0;
+    if pushes { -force.norm() } else { force.norm() }
+}
+
+/// The tensions at both ends, from the forces there, N.
+pub(super) fn end_tensions(mesh: &Mesh, x: &[Vec2], forces: [Vec2; 2]) -> [f64; 2] {
+    let last = mesh.rest_length.len().saturating_sub(1);
+    [signed_tension(mesh, 0, x, forces[0]), signed_tension(mesh, last, x, forces[1])]
+}
+
 /// The force of the ground on the half bar at a held end that lies on it.
 pub(super) struct LyingEnd {
     /// The end, and the node beside it.

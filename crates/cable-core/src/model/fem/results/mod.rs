@@ -20,7 +20,9 @@ mod weighted_capstan;
 
 pub(in crate::model::fem) use bending_error::bending_error;
 
-use self::forces::{bar_tension, bar_tensions, end_forces, force_at_break, tension_at_node};
+use self::forces::{
+    bar_tension, bar_tensions, end_forces, end_tensions, force_at_break, signed_tension, tension_at_node,
+};
 use crate::math::larger;
 use crate::model::fem::state::CableState;
 use crate::solution::{Assumptions, CableSolution};
@@ -74,7 +76,7 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     } else {
         gauged.bars.extend((0..cable.mesh.rest_length.len()).map(|e| bar_tension(cable, x, e)));
     }
-    let ends = end_forces(cable, x, &gauged.bars).0.map(|f| f.norm());
+    let ends = end_tensions(&cable.mesh, x, end_forces(cable, x, &gauged.bars).0);
     gauged.tension.clear();
     gauged.tension.push(ends[0]);
     let inner = 1..gauged.bars.len().max(1);
@@ -83,7 +85,7 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     for e in cable.mesh.breaks() {
         for (k, side) in [(e, 0), (e + 1, 1)] {
             if let Some(t) = gauged.tension.get_mut(k) {
-                *t = force_at_break(cable, x, &gauged.bars, k, side).norm();
+                *t = signed_tension(&cable.mesh, k + side - 1, x, force_at_break(cable, x, &gauged.bars, k, side));
             }
         }
     }

@@ -2,7 +2,9 @@
 //! sliding nodes.
 
 use crate::math::Vec2;
-use crate::model::fem::results::forces::{curvature_at, force_at_break, half, moments, shear, tension_at_node};
+use crate::model::fem::results::forces::{
+    curvature_at, end_tensions, force_at_break, half, moments, shear, signed_tension, tension_at_node,
+};
 use crate::model::fem::results::points_on_round::points_on_round;
 use crate::model::fem::state::CableState;
 use crate::solution::Node;
@@ -29,6 +31,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
     };
     let rounds = mesh.sliding.iter().flatten().count();
     let mut out: Vec<Node> = Vec::with_capacity(n + rounds * USUAL_POINTS_ON_ROUND);
+    let at_ends = end_tensions(mesh, x, *ends);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             for p in points_on_round(d, k, sliding, &load, x, tension) {
@@ -51,9 +54,12 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
             _ => None,
         };
         let t = match k {
-            0 => ends[0].norm(),
-            k if k + 1 == n => ends[1].norm(),
-            _ if broken.is_some() => broken.map_or(0.0, |force| force.norm()),
+            0 => at_ends[0],
+            k if k + 1 == n => at_ends[1],
+            _ if broken.is_some() => {
+                let bar = if mesh.is_break(k - 1) { k } else { k - 1 };
+                broken.map_or(0.0, |force| signed_tension(mesh, bar, x, force))
+            }
             k => tension_at_node(d, x, tension, k),
         };
         let bar = |e: usize| mesh.direction(e, x) * tension[e] + shear(mesh, &moments, e, x);

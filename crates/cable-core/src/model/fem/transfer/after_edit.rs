@@ -69,6 +69,13 @@ impl<'a> EditedObstacles<'a> {
         same.then(|| (new.obstacle, feature - old.first + new.first))
     }
 
+    /// True if a post that moves is wider after the edit.
+    fn widens_posts(&self) -> bool {
+        let posts = self.after.bodies().iter().filter(|body| body.moves() && body.center.is_some());
+        let was = |new: &Body| self.before.bodies().iter().find(|old| old.obstacle == new.obstacle);
+        posts.into_iter().any(|new| was(new).is_none_or(|old| new.offset > old.offset))
+    }
+
     /// True if every obstacle of the scene after the edit was there, in the same place.
     fn adds_nothing(&self) -> bool {
         let was_there = |new: &Body| self.before.bodies().iter().any(|old| old.is_where(new));
@@ -207,8 +214,7 @@ pub(in crate::model::fem) fn after_edit(
         }
         cable.mesh.sliding[k] = now;
     }
-    // Posts that move may have become wider.
-    let adds = !edited.adds_nothing() || !cable.problem.moving_posts.is_empty();
+    let adds = !edited.adds_nothing() || edited.widens_posts();
     if adds && is_inside_something(&cable) {
         push_out(&mut cable)?;
         was_moved = true;

@@ -1,6 +1,6 @@
 //! Tensions at nodes as a gauge takes them in every sub-step.
 
-use crate::math::larger;
+use crate::math::{Vec2, larger};
 use crate::model::mass_spring::forces::reactions;
 use crate::model::mass_spring::mesh::Mesh;
 
@@ -20,7 +20,13 @@ pub(in crate::model::mass_spring) fn at_node(mesh: &Mesh, i: usize) -> f64 {
         return mesh.tension[e];
     }
     let force = reactions::total(mesh, i);
-    if mesh.bending_stiffness > 0.0 { force.dot(&mesh.element(e).direction).abs() } else { force.norm() }
+    if mesh.bending_stiffness > 0.0 { along_end(i, force, mesh.element(e).direction) } else { force.norm() }
+}
+
+/// The part (N) of the force of the cable on what holds its end `i` along the cable there: negative
+/// if a stiff cable pushes.
+pub(in crate::model::mass_spring) fn along_end(i: usize, force: Vec2, direction: Vec2) -> f64 {
+    if i == 0 { force.dot(&direction) } else { -force.dot(&direction) }
 }
 
 /// The same where forces are not summed up: at an end the tension of its element.

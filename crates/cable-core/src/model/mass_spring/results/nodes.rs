@@ -5,6 +5,7 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
 use crate::model::hand::Hand;
+use crate::model::mass_spring::forces::tension::along_end;
 use crate::model::mass_spring::forces::{bending, nodal, reactions};
 use crate::model::mass_spring::mesh::{Mesh, Pulley};
 use crate::solution::{Node, SupportReaction};
@@ -110,14 +111,23 @@ impl NodeReader<'_> {
     /// just before and just beyond it where a support or a point load acts; at an end, the force
     /// there, half an element's weight and inertia beyond the middle of the last element.
     fn node(&self, i: usize) -> Node {
+        let direction = |e: usize| self.mesh.element(e).direction;
+        // A stiff cable may be compressed.
+        let signed = |force: Vec2, along: Vec2| {
+            let pushes = self.mesh.bending_stiffness > 0.0 && force.dot(&along) < 0.0;
+            if pushes { -force.norm() } else { force.norm() }
+        };
         let tension_n = match (i.checked_sub(1), i < self.mesh.rest_length.len()) {
             (Some(e), true) if self.bears_point_force(i) => {
                 let load = self.mesh.problem.body_force(self.time_s);
                 let half = |e: usize| load * (0.5 * self.mesh.straight_length[e]);
                 let [before, beyond] = [e, i].map(|e| nodal::spring_force(self.mesh, e));
-                larger((before - half(e)).norm(), (beyond + half(i)).norm())
+                larger(signed(before - half(e), direction(e)), signed(beyond + half(i), direction(i)))
             }
-            (Some(e), true) => ((nodal::spring_force(self.mesh, e) + nodal::spring_force(self.mesh, i)) * 0.5).norm(),
+            (Some(e), true) => {
+                let force = (nodal::spring_force(self.mesh, e) + nodal::spring_force(self.mesh, i)) * 0.5;
+                signed(force, direction(e) + direction(i))
+            }
             _ if self.mesh.supported[i] => self.end_tension(i),
             (Some(e), false) => self.free_end_tension(i, e),
             (None, _) => self.free_end_tension(i, 0),
@@ -213,7 +223,7 @@ impl NodeReader<'_> {
         }
         let along = bending::clamp_at(self.mesh, i)
             .unwrap_or_else(|| self.mesh.element(i.min(self.mesh.rest_length.len() - 1)).direction);
-        force.dot(&along).abs()
+        along_end(i, force, along)
     }
 
     /// Tension just inside a free end: the load there; with a point mass, whose inertia pulls as
