@@ -127,7 +127,7 @@ fn issue_016_a_stiff_cable_that_pushes_on_its_end_is_in_compression_there() {
     let mut scene = scene(20.0, 0.0, [0.0; 2]);
     scene.cables[0].length_m = 2.2;
     scene.cables[0].segments = Some(60);
-    scene.cables[0].supports = [-1.0, 1.0].map(|x| Support::fixed(&format!("at {x}"), [x, 2.0])).to_vec();
+    scene.cables[0].supports = [-1.0, 1.0].map(|x| Support::fixed(format!("at {x}"), [x, 2.0])).to_vec();
     let histories = [Inertia::QuasiStatic, Inertia::Dynamic];
     for (model, inertia) in [(Model::Fem, histories[0]), (Model::Fem, histories[1]), (Model::MassSpring, histories[1])]
     {
