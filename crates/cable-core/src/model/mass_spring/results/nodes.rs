@@ -5,8 +5,7 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, larger, perp};
 use crate::model::arc_nodes;
 use crate::model::hand::Hand;
-use crate::model::mass_spring::forces::tension::along_end;
-use crate::model::mass_spring::forces::{bending, nodal, reactions};
+use crate::model::mass_spring::forces::{bending, nodal, reactions, tension};
 use crate::model::mass_spring::mesh::{Mesh, Pulley};
 use crate::solution::{Node, SupportReaction};
 
@@ -223,7 +222,7 @@ impl NodeReader<'_> {
         }
         let along = bending::clamp_at(self.mesh, i)
             .unwrap_or_else(|| self.mesh.element(i.min(self.mesh.rest_length.len() - 1)).direction);
-        along_end(i, force, along)
+        tension::along_end(i, force, along)
     }
 
     /// Tension just inside a free end: the load there; with a point mass, whose inertia pulls as
