@@ -386,6 +386,18 @@ fn issue_015_a_cable_hangs_clear_of_a_wheel() {
         wheel("right", [5.7, 2.45], 0.1),
         Support::fixed("b", [7.65, -1.0]),
     ];
+    // Drawn out of the cable at once, and on while time runs, it goes on from where it was drawn
+    // to.
+    let mut drawn = Simulation::new(scene.clone(), Model::Auto).unwrap();
+    for at in [Vec2::new(3.8, 2.6), Vec2::new(3.6, 0.2)] {
+        drawn.drag_support(0, 2, at);
+        drawn.settle().unwrap();
+    }
+    drawn.drag_support(0, 2, Vec2::new(3.6, 0.1));
+    drawn.step(0.01).unwrap();
+    let place = drawn.solution().cables[0].supports[2].clone();
+    assert!((place.x_m - 3.6).abs() < 1e-9 && (0.1..0.2).contains(&place.y_m), "{place:?}");
+
     let mut sim = Simulation::new(scene.clone(), Model::Auto).unwrap();
     sim.settle().unwrap();
     let found = sim.solution().cables[0].clone();

@@ -497,6 +497,11 @@ impl LeavableWheels {
             asks = refusal.is_some_and(asks_for_posts);
             replaced = refusal.and_then(|error| self.also_left(wheels, error));
             if let (None, Ok(report)) = (&replaced, found) {
+                let known = self.replaced();
+                for k in (0..known.len()).filter(|&k| left.replaced[k] && !known[k] && inertia == Inertia::QuasiStatic)
+                {
+                    self.places[k] = self.places[k].or(self.led[k].map(SupportMove::place));
+                }
                 self.continue_with(inner, Some(left));
                 return Some(report);
             }
@@ -631,7 +636,7 @@ impl LeavableWheels {
     fn lays_on_posts(&mut self, replaced: &[bool], state: &State) -> bool {
         let Some(posts) = self.without(replaced, Inertia::QuasiStatic) else { return false };
         let start = self.inner.solution();
-        let greatest = |answer: &CableSolution| answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let greatest = |answer: &CableSolution| answer.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
         let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) else { return false };
         let (before, after) = (greatest(&start), greatest(&inner.solution()));
         let same = (after - before).abs() <= SAME_REST * before;

@@ -173,12 +173,6 @@ impl SpansModel {
         self.cable_equilibrium.is_some()
     }
 
-    /// Advances without inertia by `dt_s` (s), in moves that are short beside the cable. `goes_on`,
-    /// if given, is shown the nodes before the first move and after each, counted as the layout
-    /// counts; the advance ends where it returns false.
-    ///
-    /// # Errors
-    /// As [`Mechanics::advance`].
     /// Refuses a time (s) at which posts are not where the world of the problem has them.
     fn refuse_moved_posts(&self, time_s: f64) -> Result<(), SolveError> {
         match self.problem.posts_are_at(time_s) {
@@ -187,15 +181,21 @@ impl SpansModel {
         }
     }
 
+    /// Advances without inertia by `dt_s` (s), in moves that are short beside the cable. `goes_on`,
+    /// if given, is shown the nodes before the first move and after each, counted as the layout
+    /// counts; the advance ends where it returns false.
+    ///
+    /// # Errors
+    /// As [`Mechanics::advance`].
     pub(super) fn advance_while(
         &mut self,
         dt_s: f64,
         mut goes_on: Option<NodesWatch<'_>>,
     ) -> Result<StepReport, SolveError> {
-        self.refuse_moved_posts(self.time_s + dt_s)?;
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
+        self.refuse_moved_posts(self.time_s + dt_s)?;
         if self.cable_equilibrium.is_none() {
             self.settle()?;
         }

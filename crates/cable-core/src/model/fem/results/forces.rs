@@ -66,10 +66,10 @@ pub(super) fn tension_at_node(d: &CableState, x: &[Vec2], tension: &[f64], k: us
     (tension[k - 1] * after + tension[k] * before) / whole
 }
 
-/// Tension (N) where a force acts along the end of bar `e`; a stiff cable may be pushed there.
+/// Tension (N) where a force acts on the end of bar `e`: the whole force on a flexible cable, the
+/// part along a stiff one, which may be pushed.
 pub(super) fn signed_tension(mesh: &Mesh, e: usize, x: &[Vec2], force: Vec2) -> f64 {
-    let pushes = !mesh.is_flexible() && force != Vec2::zeros() && force.dot(&mesh.direction(e, x)) < 0.0;
-    if pushes { -force.norm() } else { force.norm() }
+    if mesh.is_flexible() || force == Vec2::zeros() { force.norm() } else { force.dot(&mesh.direction(e, x)) }
 }
 
 /// The tensions at both ends, from the forces there, N.

@@ -72,7 +72,7 @@ impl<'a> EditedObstacles<'a> {
     /// True if a post that moves is wider after the edit.
     fn widens_posts(&self) -> bool {
         let posts = self.after.bodies().iter().filter(|body| body.moves() && body.center.is_some());
-        let was = |new: &Body| self.before.bodies().iter().find(|old| old.obstacle == new.obstacle);
+        let was = |new: &Body| self.before.bodies().iter().find(|old| old.moves() && old.name == new.name);
         posts.into_iter().any(|new| was(new).is_none_or(|old| new.offset > old.offset))
     }
 

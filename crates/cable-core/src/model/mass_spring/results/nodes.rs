@@ -112,9 +112,10 @@ impl NodeReader<'_> {
     fn node(&self, i: usize) -> Node {
         let direction = |e: usize| self.mesh.element(e).direction;
         // A stiff cable may be compressed.
-        let signed = |force: Vec2, along: Vec2| {
-            let pushes = self.mesh.bending_stiffness > 0.0 && force.dot(&along) < 0.0;
-            if pushes { -force.norm() } else { force.norm() }
+        let is_stiff = self.mesh.bending_stiffness > 0.0;
+        let signed = |force: Vec2, along: Vec2| match along.try_normalize(0.0).filter(|_| is_stiff) {
+            Some(along) => force.dot(&along),
+            None => force.norm(),
         };
         let tension_n = match (i.checked_sub(1), i < self.mesh.rest_length.len()) {
             (Some(e), true) if self.bears_point_force(i) => {
@@ -231,7 +232,11 @@ impl NodeReader<'_> {
         let support =
             self.mesh.support_node.iter().position(|&n| n == i).filter(|&k| self.mesh.problem.supports[k].mass == 0.0);
         let tension = self.mesh.tension.get(e).copied().unwrap_or(0.0);
-        let hung = support.map_or(tension, |k| self.mesh.problem.hung_on(k, self.time_s).norm());
+        let along = |force: Vec2| match self.mesh.bending_stiffness > 0.0 {
+            true => tension::along_end(i, -force, self.mesh.element(e).direction),
+            false => force.norm(),
+        };
+        let hung = support.map_or(tension, |k| along(self.mesh.problem.hung_on(k, self.time_s)));
         // On the ground a part of the load presses there.
         if self.mesh.problem.world.signed_gap(self.mesh.position[i], self.mesh.tuning.impact.skin_m).is_some()
             && hung > tension
