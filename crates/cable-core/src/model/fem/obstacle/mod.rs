@@ -1,5 +1,5 @@
-//! These modules tell whether the cable can touch anything, move the robot's outline, and check the
-//! cable against obstacles after a step.
+//! These modules tell whether the cable can touch anything, move the robot's outline and the posts
+//! in place of wheels, and check the cable against obstacles after a step.
 //!
 //! | room | content |
 //! |---|---|
