@@ -63,12 +63,14 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
         checked.points.iter().chain(&self_contact_forces).map(|p| (node(p.arc_length), p.force)).collect();
     known.sort_by_key(|p| p.0);
     let mut known = known.into_iter().peekable();
+    let loaded = checked.loaded_rounds();
     // Forces of moving bodies are known only to a node's neighbourhood.
     let cut = move |k: usize| {
         let [before, after] = [k - 1, (k + 1).min(last)].map(|k| nodes[k].arc_length_m);
         // Nodes of one material point are merged: if the cable turns round a point, the answer does
         // not describe its path there.
         nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
+            && loaded.iter().all(|[first, last]| k < *first || k > *last)
             && self_contact_forces.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
     };
     let mut from = 0;

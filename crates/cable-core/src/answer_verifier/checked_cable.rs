@@ -81,9 +81,44 @@ impl<'a> CheckedCable<'a> {
 }
 
 impl CheckedCable<'_> {
-    /// Returns where the scene's loads are on the cable, m.
-    pub fn scene_loads(&self) -> Vec<f64> {
-        self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
+    /// Where the scene's loads are on the cable, m.
+    pub fn scene_loads(&self) -> impl Iterator<Item = f64> {
+        self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m)
+    }
+
+    /// First and last node on each round that carries a load: on the way over a round a load has no
+    /// node of its own, and the forces there are known as a whole only.
+    pub fn loaded_rounds(&self) -> Vec<[usize; 2]> {
+        let nodes = &self.answer.nodes;
+        let same = MATERIAL_TOLERANCE * self.cable.length_m;
+        let mut out = Vec::new();
+        for s in self.scene_loads() {
+            let after = nodes.partition_point(|n| n.arc_length_m < s - same);
+            if after == 0 || nodes.get(after).is_none_or(|n| n.arc_length_m <= s + same) {
+                continue;
+            }
+            let [from, to] = [after - 1, after].map(|k| nodes[k].arc_length_m);
+            let meets = |begins: f64, ends: f64| begins <= to + same && ends >= from - same;
+            let eyes = self.holds.iter().filter(|hold| matches!(hold.role, Role::Pulley));
+            let eyes = eyes.map(|hold| [hold.arc_length; 2]);
+            let contacts = self.answer.contacts.iter().map(|c| [c.begins_m, c.ends_m]);
+            let wheels = self.wheels.iter().filter_map(|&(center, radius, _)| {
+                let on = |k: &usize| self.is_on_wheel(*k, center, radius);
+                let first = (0..after).rev().take_while(on).last().or((after..nodes.len()).find(on))?;
+                let last = (after..nodes.len()).take_while(on).last().or((0..after).rev().find(on))?;
+                Some([first, last].map(|k| nodes[k].arc_length_m))
+            });
+            let rounds = eyes.chain(contacts).chain(wheels).filter(|[begins, ends]| meets(*begins, *ends));
+            // It is the corner that carries it, not the ground on which the cable lies before.
+            let shortest = rounds.min_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+            out.extend(shortest.map(|[begins, ends]| {
+                let first = nodes.partition_point(|n| n.arc_length_m < begins - same);
+                let last = nodes.partition_point(|n| n.arc_length_m <= ends + same);
+                // Known forces count at the node before them.
+                [first.min(after - 1), (last - 1).max(after - 1)]
+            }));
+        }
+        out
     }
 
     pub fn finding(&self, law: Law, node: usize, value: f64, limit: f64) -> Finding {

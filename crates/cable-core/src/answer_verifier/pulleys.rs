@@ -87,7 +87,7 @@ fn tension_after_pulley(checked: &CheckedCable<'_>, led: &PulleyContact<'_>, bef
 fn pulley_contacts<'a>(checked: &'a CheckedCable<'_>) -> Vec<PulleyContact<'a>> {
     let nodes = &checked.answer.nodes;
     let same = MATERIAL_TOLERANCE * checked.cable.length_m;
-    let loads = checked.scene_loads();
+    let loaded = checked.loaded_rounds();
     let mut out = Vec::new();
     for hold in &checked.holds {
         let wheel = match hold.role {
@@ -104,9 +104,12 @@ fn pulley_contacts<'a>(checked: &'a CheckedCable<'_>) -> Vec<PulleyContact<'a>> 
         let Some(middle) = [near, near.saturating_sub(1)].into_iter().find(|&k| on(k)) else { continue };
         let first = (0..middle).rev().take_while(|&k| on(k)).last().unwrap_or(middle);
         let last = (middle + 1..nodes.len()).take_while(|&k| on(k)).last().unwrap_or(middle);
-        // A load on the pulley itself is no part of this law.
+        // A load on the pulley itself is no part of this law, nor is one that runs on to it or off
+        // it.
         let [from, to] = [first, last].map(|k| nodes[k].arc_length_m);
-        if loads.iter().any(|at| *at >= from - same && *at <= to + same) {
+        let is_on = |at: f64| at >= from - same && at <= to + same;
+        let is_loaded = |[a, b]: &[usize; 2]| *a <= last && *b >= first;
+        if checked.scene_loads().any(is_on) || loaded.iter().any(is_loaded) {
             continue;
         }
         let friction = hold.support.friction.unwrap_or(0.0);

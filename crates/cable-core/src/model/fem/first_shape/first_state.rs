@@ -12,11 +12,11 @@ use crate::model::fem::mesh::{MassMatrix, Mesh, PUSHED_OUT_REACHES, bar_count};
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::{
-    CableState, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
+    CableState, LoadNode, Meshing, MovingOutline, NodalMotion, NodeTensions, StepAnswers, prepare_input,
 };
 use crate::model::fem::system::{ContactSet, StepInput, load_scale, tolerance};
 use crate::model::material_loss::Loss;
-use crate::problem::Problem;
+use crate::problem::{PointLoad, Problem};
 use crate::scene::SupportKind;
 
 /// The cable along its route.
@@ -84,7 +84,11 @@ fn cable_at_rest(
     let n = mesh.nodes();
     let support_node: Vec<Option<usize>> =
         problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
-    let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
+    let load = |l: &PointLoad| {
+        let (arc_length, force) = (l.arc_length, l.force.clone());
+        Some(LoadNode { node: mesh.node_at(arc_length)?, arc_length, force })
+    };
+    let loads = problem.loads.iter().filter_map(load).collect();
     let (normal_per_m, whole) = load_scale(&problem);
     let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
     let mut input = StepInput::default();

@@ -204,9 +204,10 @@ impl Workspace {
             let (kinetic, work) = if let Some(node) = &mesh.sliding[i] {
                 let away = unknowns.slides[i] - input.inertial.predicted_slide[i];
                 let lightens = input.inertial.momentum_flux[i] * (node.factor - 1.0);
-                self.system.gradient[2 * i] += scale * (k * away - lightens);
+                let pull = lightens + input.loads.on_slide(i);
+                self.system.gradient[2 * i] += scale * (k * away - pull);
                 self.system.hessian.add(2 * i, 2 * i, scale * k);
-                (0.5 * k * away * away, lightens * unknowns.slides[i])
+                (0.5 * k * away * away, pull * unknowns.slides[i])
             } else {
                 let away = x[i] - input.inertial.predicted[i];
                 if measured {

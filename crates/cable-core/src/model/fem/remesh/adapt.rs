@@ -20,6 +20,8 @@ use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
+use crate::model::fem::remesh::loads_over_rounds::pass_loads;
+use crate::model::fem::remesh::stretched_bars::StretchedBars;
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, MovingMass, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
@@ -46,6 +48,7 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
     if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
     }
+    let passed = pass_loads(cable, inertia);
     let mut changed = remove_sliding_nodes(cable, &[], inertia);
     let taken = add_sliding_nodes(cable, inertia);
     if !taken.is_empty() {
@@ -59,7 +62,7 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
     let moved = move_marks(cable, inertia);
     let wound = wind(cable, inertia);
     let evened = even_out(cable);
-    let bars = changed || wound || evened;
+    let bars = passed || changed || wound || evened;
     if bars || moved {
         let x = std::mem::take(&mut cable.motion.positions);
         cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
@@ -91,6 +94,15 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
         };
         // Of the nodes on a wheel that has let go, one keeps the bend.
         let is_spare = has_let_go && this == next;
+        // A load that it carries needs a node.
+        let carries = cable.meshing.loads.iter().any(|load| load.node == k);
+        if leaves && carries && !is_spare {
+            let bars = (!rests).then(|| StretchedBars::of(cable));
+            changed |= settle_down(cable, k);
+            bars.iter().for_each(|bars| bars.restore(cable));
+            k += 1;
+            continue;
+        }
         let runs_straight = leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
             && IntersectionCheck::of(cable).clear_without(k);
@@ -190,7 +202,11 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &cable.motion.positions).length);
     let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     if ways[0] > 0.0 && ways[1] > 0.0 {
-        let first = whole * MaterialShare::of(ways, before, whole).first;
+        let load = cable.meshing.loads.iter().find(|load| load.node == k);
+        let first = load.map_or_else(
+            || whole * MaterialShare::of(ways, before, whole).first,
+            |load| mesh.thermal_stretch * (load.arc_length - mesh.arc_length[k - 1]),
+        );
         mesh.arc_length[k] = mesh.arc_length[k - 1] + first / mesh.thermal_stretch;
         for (e, length) in [(k - 1, first), (k, whole - first)] {
             match mesh.has_excess() {

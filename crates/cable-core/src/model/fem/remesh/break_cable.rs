@@ -38,7 +38,7 @@ fn tear_off(cable: &mut CableState, k: usize) {
     for node in &mut cable.meshing.support_node {
         *node = node.filter(|node| *node != k);
     }
-    cable.meshing.loads.retain(|load| load.0 != k);
+    cable.meshing.loads.retain(|load| load.node != k);
 }
 
 /// Makes two nodes of node `k`; its supports and loads stay with the first piece if the second one

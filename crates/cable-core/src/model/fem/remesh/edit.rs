@@ -68,11 +68,24 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     renumber(cable, |node| Some(if node >= k { node + 1 } else { node }));
 }
 
-/// Removes node `k`.
+/// Removes node `k`; its loads go on over the next mark on its round.
 pub(in crate::model::fem) fn remove(cable: &mut CableState, k: usize) {
     match cable.mesh.sliding.get(k).copied().flatten() {
-        Some(node) => attribute_to(cable, node.slide_over, |d| merge(d, k)),
+        Some(node) => {
+            hand_over_loads(cable, k, &node);
+            attribute_to(cable, node.slide_over, |d| merge(d, k));
+        }
         None => remove_plain(cable, k),
+    }
+}
+
+/// Hands the loads of a sliding node to one beside it on the same round.
+fn hand_over_loads(cable: &mut CableState, k: usize, node: &SlidingNode) {
+    let shares = |j: &usize| cable.mesh.sliding[*j].is_some_and(|beside| beside.shares_round(node));
+    if let Some(next) = [k - 1, k + 1].into_iter().find(shares) {
+        for load in cable.meshing.loads.iter_mut().filter(|load| load.node == k) {
+            load.node = next;
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! | `break_cable.rs` | a break: one node becomes two |
 //! | `wheels.rs` | wheels that a cable in motion leaves |
 //! | `stretched_bars.rs` | bars of an edited mesh keep their tension |
+//! | `loads_over_rounds.rs` | loads run on to rounds, over them and off them |
 //! | `arc_marks.rs` | marks on a round where material is counted: moved, added, removed |
 
 pub(in crate::model::fem) mod adapt;
@@ -15,6 +16,7 @@ pub(in crate::model::fem) mod arc_marks;
 mod break_cable;
 pub(in crate::model::fem) mod edit;
 mod edit_criteria;
+mod loads_over_rounds;
 mod stretched_bars;
 mod wheels;
 
@@ -22,4 +24,4 @@ pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
 pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};
 pub(in crate::model::fem) use stretched_bars::StretchedBars;
-pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel, load_at_pulley};
+pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel};

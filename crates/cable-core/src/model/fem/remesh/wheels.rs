@@ -24,25 +24,6 @@ pub(in crate::model::fem) fn lifted_wheel(cable: &CableState) -> Option<&Support
     })
 }
 
-/// The pulley that a load between the ends of the cable has come to within a radius of the cable,
-/// and the arc length of the load, m. The load moves with its material, and none can run over a
-/// pulley: in an eye it would jam, with 600 N from 60.
-pub(in crate::model::fem) fn load_at_pulley(cable: &CableState) -> Option<(&SupportPoint, f64)> {
-    if cable.meshing.never_slides {
-        return None;
-    }
-    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
-    (1..mesh.nodes().saturating_sub(1)).find_map(|k| {
-        let SlideOver::Pulley(support) = mesh.sliding[k]?.slide_over else { return None };
-        let carries = |j: &usize| mesh.sliding[*j].is_none() && mesh.is_free(*j) && !cable.meshing.removable(mesh, *j);
-        let inner = |j: &usize| *j > 0 && *j + 1 < mesh.nodes();
-        let near = |j: &usize| !(mesh.path(k.min(*j), x).straight > cable.problem.radius);
-        let load = [k - 1, k + 1].into_iter().filter(inner).filter(carries).find(near)?;
-        let support = cable.problem.supports.get(support)?;
-        support.holds_from(cable.motion.time).then_some((support, mesh.arc_length[load]))
-    })
-}
-
 /// Goes on with a problem in which some wheels have let go, with posts for some of them after its
 /// other obstacles.
 pub(in crate::model::fem) fn change_wheels(cable: &mut CableState, problem: Arc<Problem>) {

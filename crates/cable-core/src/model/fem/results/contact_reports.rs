@@ -111,12 +111,14 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let over = RoundFloorFriction::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
             // A compressed bar counts as slack there.
-            let pressed = larger(mean * acts.turn, 0.0);
+            let carried = d.input.loads.on_round(j);
+            let pressed = larger(mean * acts.turn - carried.dot(&node.end.mark), 0.0);
             r.normal_n += pressed;
             push += node.end.mark * pressed;
             turn += load.turn;
             // Without friction the two tensions differ by weight alone.
-            r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };
+            let along = if node.balanced.is_some() { 0.0 } else { -d.input.loads.on_slide(j) };
+            r.friction_n += if node.friction > 0.0 { a - b - floor - along } else { 0.0 };
             slips &= !node.sticks();
             // The arc of the round on either side of the node belongs to the contact.
             let lap = |e: usize, side: usize| {
@@ -128,7 +130,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
                 r.begins_m = d.mesh.arc_length[j] - lap(j - 1, 0);
             }
             r.ends_m = d.mesh.arc_length[j] + lap(j, 1);
-            samples.push(ContactSample::new(d.mesh.arc_length[j], round_force(&load, acts.momentum_flux)));
+            samples.push(ContactSample::new(d.mesh.arc_length[j], round_force(&load, acts.momentum_flux) - carried));
             r.tension_after_n = after;
         }
         let normal = if push.norm() > 0.0 { push.normalize() } else { node.end.mark };

@@ -217,6 +217,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
                 path.direction * d.mesh.tension(e, path.length)
             });
             sum += before - after - bar_weight::on_node(&d.mesh, k, x, problem.body_force(time_s));
+            sum -= d.input.loads.on_round(k);
         } else {
             sum -= floor.unwrap_or_default();
         }
@@ -228,7 +229,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
 /// (`side` 0) or the first node of the second one (1). Nothing pulls at a free end; a support or
 /// load there balances the bar.
 pub(super) fn force_at_break(d: &CableState, x: &[Vec2], tension: &[f64], k: usize, side: usize) -> Vec2 {
-    let loaded = d.meshing.support_node.contains(&Some(k)) || d.meshing.loads.iter().any(|l| l.0 == k);
+    let loaded = d.meshing.support_node.contains(&Some(k)) || d.meshing.loads.iter().any(|load| load.node == k);
     let e = k + side - 1;
     if loaded { d.mesh.direction(e, x) * tension[e] } else { Vec2::zeros() }
 }

@@ -20,7 +20,8 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
     let directions = [d.mesh.direction(first - 1, x), d.mesh.direction(last, x)];
     let momentum_flux = d.mesh.sliding[first].and_then(|node| node.balanced).map_or(0.0, |b| b.momentum_flux);
     let force = directions[1] * (tension[last] - momentum_flux) - directions[0] * (tension[first - 1] - momentum_flux)
-        + d.input.loads.body * share;
+        + d.input.loads.body * share
+        + (first..=last).map(|k| d.input.loads.on_round(k)).sum::<Vec2>();
     let center = d.mesh.sliding[first]?.end.center;
     Some(SupportReaction {
         name: d.problem.supports.get(support)?.name.clone(),

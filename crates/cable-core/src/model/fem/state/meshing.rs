@@ -1,8 +1,52 @@
 //! This module holds the division of a cable into bars, and the nodes of its supports and loads.
 
-use crate::model::fem::mesh::Mesh;
+use crate::math::{Vec2, perp};
+use crate::model::fem::mesh::{Mesh, rotate};
 use crate::model::fem::system::ContactPair;
 use crate::problem::TimeSeries;
+
+/// The node at which a point load acts.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct LoadNode {
+    /// Its material node; while it runs over a round, the sliding node nearest to it.
+    pub(in crate::model::fem) node: usize,
+    /// Arc length at which it acts, m.
+    pub(in crate::model::fem) arc_length: f64,
+    /// The force, N.
+    pub(in crate::model::fem) force: TimeSeries,
+}
+
+impl LoadNode {
+    /// For a load that runs over the round of its node, the way of its material for a slide of one
+    /// metre: against the direction of the path there. None at a material node.
+    pub(in crate::model::fem) fn way_on_round(&self, mesh: &Mesh, x: &[Vec2]) -> Option<Vec2> {
+        let k = self.node;
+        let end = mesh.sliding.get(k)?.as_ref()?.end;
+        let side = usize::from(self.arc_length >= mesh.arc_length[k]);
+        let e = k + side - 1;
+        let (path, material) = (mesh.path(e, x), mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        let stretch = path.length / material;
+        let from_mark = (self.arc_length - mesh.arc_length[k]) * stretch;
+        let lies_on_arc = from_mark.abs() < end.radius * path.arcs[1 - side];
+        let direction = match lies_on_arc {
+            true => rotate(perp(end.mark), end.sense * from_mark / end.radius) * end.sense,
+            false => path.direction,
+        };
+        Some(direction * -stretch)
+    }
+
+    /// The length of path from the round of its node to the load, m; negative while the load is on
+    /// the round. None at a material node.
+    pub(in crate::model::fem) fn beyond_round(&self, mesh: &Mesh, x: &[Vec2]) -> Option<f64> {
+        let k = self.node;
+        let end = mesh.sliding.get(k)?.as_ref()?.end;
+        let side = usize::from(self.arc_length >= mesh.arc_length[k]);
+        let e = k + side - 1;
+        let (path, material) = (mesh.path(e, x), mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        let from_mark = (self.arc_length - mesh.arc_length[k]).abs() * path.length / material;
+        Some(from_mark - end.radius * path.arcs[1 - side])
+    }
+}
 
 /// The division of the cable into bars, and the nodes of supports and loads.
 #[derive(Clone, Debug)]
@@ -17,8 +61,8 @@ pub(in crate::model::fem) struct Meshing {
     pub(in crate::model::fem) bar_weight: f64,
     /// Node of each support; None for one that slides.
     pub(in crate::model::fem) support_node: Vec<Option<usize>>,
-    /// Node of each point load, and its force.
-    pub(in crate::model::fem) loads: Vec<(usize, TimeSeries)>,
+    /// The point loads.
+    pub(in crate::model::fem) loads: Vec<LoadNode>,
     /// True if the cable touched nothing but its supports in the last step.
     pub(in crate::model::fem) was_contact_free: bool,
     /// Working memory for the contacts that are searched for corners.
@@ -43,7 +87,16 @@ impl Meshing {
             && k + 1 < mesh.nodes()
             && mesh.is_free(k)
             && !self.support_node.contains(&Some(k))
-            && self.loads.iter().all(|l| l.0 != k)
+            && self.loads.iter().all(|load| load.node != k)
+    }
+
+    /// True if a load and no support acts on an inner node.
+    pub(in crate::model::fem) fn only_carries_load(&self, mesh: &Mesh, k: usize) -> bool {
+        k > 0
+            && k + 1 < mesh.nodes()
+            && mesh.is_free(k)
+            && !self.support_node.contains(&Some(k))
+            && self.loads.iter().any(|load| load.node == k)
     }
 
     /// Gives the nodes of supports and loads their new numbers; None stands for a removed node.
@@ -51,8 +104,8 @@ impl Meshing {
         for node in &mut self.support_node {
             *node = node.and_then(&change);
         }
-        for (node, _) in &mut self.loads {
-            *node = change(*node).unwrap_or(*node);
+        for load in &mut self.loads {
+            load.node = change(load.node).unwrap_or(load.node);
         }
     }
 

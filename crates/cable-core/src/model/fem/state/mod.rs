@@ -31,7 +31,7 @@ pub(in crate::model::fem) mod support_stop;
 pub(in crate::model::fem) use cable_state::{CableState, NodeTensions, StepAnswers};
 pub(in crate::model::fem) use energy_account::{Energies, Works};
 pub(in crate::model::fem) use fold_imperfection::open_collinear_folds;
-pub(in crate::model::fem) use meshing::Meshing;
+pub(in crate::model::fem) use meshing::{LoadNode, Meshing};
 pub(in crate::model::fem) use momentum_account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
 pub(in crate::model::fem) use motion::{NodalMotion, NodeMotion};
 pub(in crate::model::fem) use moving_mass::{MovingMass, attribute_to};

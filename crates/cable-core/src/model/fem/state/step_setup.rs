@@ -4,8 +4,8 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::{Clamp, SlideOver};
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::support_stop::{no_farther_than, stopped_by_obstacles};
-use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::contact::floor_friction;
+use crate::model::fem::system::{RoundLoad, bar_weight};
 use crate::model::smoothed_target::MAX_SPEED;
 use crate::scene::SupportKind;
 
@@ -55,8 +55,13 @@ fn set_forces(cable: &mut CableState, to: f64) {
     input.loads.time_s = to;
     input.loads.force.clear();
     input.loads.force.extend((0..cable.mesh.nodes()).map(|k| body * cable.mesh.tributary_length(k)));
-    for (node, force) in &cable.meshing.loads {
-        input.loads.force[*node] += force.at(to);
+    input.loads.on_rounds.clear();
+    for load in &cable.meshing.loads {
+        let force = load.force.at(to);
+        match load.way_on_round(&cable.mesh, &cable.motion.positions) {
+            Some(way) => input.loads.on_rounds.push(RoundLoad { node: load.node, force, way }),
+            None => input.loads.force[load.node] += force,
+        }
     }
 }
 

@@ -85,7 +85,9 @@ struct SlipLaw {
 
 /// The law of friction at sliding node `k` under a load, after a slide (m) in this step.
 fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNodeLoad, slid: f64) -> SlipLaw {
-    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k]);
+    // A load that runs over the round pulls at the material like inertia.
+    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k])
+        - cable.input.loads.on_slide(k);
     // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
     // cable meets the round is a result of the step: when it was tested, friction jumped on and
     // off, and no state was lawful.)

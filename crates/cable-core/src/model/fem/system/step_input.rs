@@ -104,10 +104,38 @@ pub struct Loads {
     pub body: Vec2,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
+    /// Point loads that run over rounds.
+    pub on_rounds: Vec<RoundLoad>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
     /// The time at which the forces hold, s.
     pub time_s: f64,
+}
+
+/// A point load that runs over the round of a sliding node. The round carries it; along the cable
+/// it pulls at the material there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoundLoad {
+    /// The sliding node.
+    pub node: usize,
+    /// The force, N.
+    pub force: Vec2,
+    /// The way of the material under the load for a slide of one metre, as the step begins.
+    pub way: Vec2,
+}
+
+impl Loads {
+    /// The force of the loads that run over the round of a sliding node, N.
+    #[must_use]
+    pub fn on_round(&self, node: usize) -> Vec2 {
+        self.on_rounds.iter().filter(|load| load.node == node).map(|load| load.force).sum()
+    }
+
+    /// The force of these loads on the slide of the node, N.
+    #[must_use]
+    pub fn on_slide(&self, node: usize) -> f64 {
+        self.on_rounds.iter().filter(|load| load.node == node).map(|load| load.force.dot(&load.way)).sum()
+    }
 }
 
 /// Targets of the supports of a step, and the positions at its start.

@@ -49,7 +49,7 @@ impl Rollback {
                 s.support_node.clone_from(&cable.meshing.support_node);
                 s.reaction.clone_from(&cable.answers.reaction);
                 s.load_node.clear();
-                s.load_node.extend(cable.meshing.loads.iter().map(|l| l.0));
+                s.load_node.extend(cable.meshing.loads.iter().map(|load| load.node));
             }
             None => {
                 self.saved = Some(Box::new(Checkpoint {
@@ -57,7 +57,7 @@ impl Rollback {
                     mesh: cable.mesh.clone(),
                     contacts: cable.contacts.clone(),
                     support_node: cable.meshing.support_node.clone(),
-                    load_node: cable.meshing.loads.iter().map(|l| l.0).collect(),
+                    load_node: cable.meshing.loads.iter().map(|load| load.node).collect(),
                     reaction: cable.answers.reaction.clone(),
                 }));
             }
@@ -74,7 +74,7 @@ impl Rollback {
             cable.meshing.support_node.clone_from(&s.support_node);
             cable.answers.reaction.clone_from(&s.reaction);
             for (load, &node) in cable.meshing.loads.iter_mut().zip(&s.load_node) {
-                load.0 = node;
+                load.node = node;
             }
             self.can_restore = false;
             place_bodies(cable);

@@ -73,8 +73,8 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
             sum[LOADS] += s.force.at(to);
         }
     }
-    for (_, force) in &cable.meshing.loads {
-        sum[LOADS] += force.at(to);
+    for load in &cable.meshing.loads {
+        sum[LOADS] += load.force.at(to);
     }
     for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
         sum[SUPPORTS] -= cable.answers.reaction[k];
@@ -100,6 +100,7 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for k in 1..mesh.nodes().saturating_sub(1) {
         let Some(node) = &mesh.sliding[k] else { continue };
         let round = &mut sum[kind_of(node.slide_over)];
+        *round -= input.loads.on_round(k);
         let l = |e: usize| bar_energy::rest_length(mesh, e, &unknowns.slides);
         if moves(k - 1) {
             *round += mesh.direction(k - 1, x) * bar_energy::pull_on(mesh, input, k - 1, x, l(k - 1));

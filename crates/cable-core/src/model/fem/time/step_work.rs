@@ -167,8 +167,10 @@ impl BalancedStep<'_> {
             both[0] += (force(from) + force(to)).dot(&way) * 0.5;
             both[1] += force(to).dot(&way);
         };
-        for (k, force) in &self.cable.meshing.loads {
-            point(self.ways[*k], &|t| force.at(t));
+        for load in &self.cable.meshing.loads {
+            let over = input.loads.on_rounds.iter().find(|over| over.node == load.node);
+            let slid = over.map_or(Vec2::zeros(), |over| over.way * self.unknowns.slides[load.node]);
+            point(self.ways[load.node] + slid, &|t| load.force.at(t));
         }
         for (s, node) in problem.supports.iter().zip(&self.cable.meshing.support_node) {
             if let Some(k) = node.filter(|_| s.kind == SupportKind::Load) {
@@ -286,6 +288,9 @@ impl BalancedStep<'_> {
                 let on = bar_weight::on_ends(mesh, e, x, Some(&self.unknowns.slides), input.loads.body)[j];
                 works.supports -= (pull + on).dot(&self.ways[e + j]);
             }
+        }
+        for load in &input.loads.on_rounds {
+            works.supports -= load.force.dot(&self.ways[load.node]);
         }
         stretched
     }

@@ -410,7 +410,7 @@ fn adopt_material(cable: &mut CableState, new: &CableState) {
     (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
     meshing.bar_weight = edited.bar_weight * (edited.even_bars as f64 / meshing.even_bars as f64);
     for (load, edited) in meshing.loads.iter_mut().zip(&edited.loads) {
-        load.1.clone_from(&edited.1);
+        load.force.clone_from(&edited.force);
     }
     cable.contacts.tuning = new.contacts.tuning;
     cable.contacts.search.lists.clear();

@@ -1,0 +1,141 @@
+//! A load between the ends of the cable runs over rounds with its material.
+//!
+//! Its node cannot pass a sliding node, and would jam in front of it. So where it comes to a round,
+//! its node is taken out, and the round carries the load from there on, until its material has run
+//! over: there it gets a node again. In motion bars keep their tension in both edits.
+
+use crate::contact::distance::nearest_fraction;
+use crate::math::{cross, larger};
+use crate::model::Inertia;
+use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNode};
+use crate::model::fem::obstacle::IntersectionCheck;
+use crate::model::fem::remesh::edit::{insert, remove};
+use crate::model::fem::remesh::stretched_bars::StretchedBars;
+use crate::model::fem::state::CableState;
+
+/// Distance from a round at which it takes a load over from a cable in motion, in even bars.
+/// Smaller: shorter bars in front of the round; larger: the bend of the cable at the load is
+/// neglected for longer. A choice, tuned on no campaign, as are the three below.
+const NEAR_BARS: f64 = 0.02;
+
+/// The same without inertia, where one step can move the cable by more. Smaller: steps fail in
+/// front of rounds, and are halved; larger: as above.
+const NEAR_BARS_AT_REST: f64 = 0.1;
+
+/// Number of steps whose way counts as well. Smaller: the load jams in front of the round within a
+/// step; larger: the bend at the load is neglected for longer.
+const NEAR_STEPS: f64 = 1.5;
+
+/// Multiple of that distance beyond the round at which the load gets a node of its own again.
+/// Smaller: a load that comes to and fro is taken over again and again; larger: the bend at the
+/// load is neglected for longer.
+const CLEAR_FACTOR: f64 = 2.0;
+
+/// Lets loads run on to rounds, over them and off them; returns whether the mesh changed.
+pub(super) fn pass_loads(cable: &mut CableState, inertia: Inertia) -> bool {
+    let mut changed = false;
+    for load in 0..cable.meshing.loads.len() {
+        let on_round = cable.mesh.sliding[cable.meshing.loads[load].node].is_some();
+        changed |= if on_round { leave_round(cable, load, inertia) } else { enter_round(cable, load, inertia) };
+    }
+    changed
+}
+
+/// True if loads run over a sliding node as such. A stiff cable bends at an edge by material nodes,
+/// of which the load has one.
+pub(super) fn carries_loads(mesh: &Mesh, node: &SlidingNode) -> bool {
+    mesh.is_flexible() || matches!(node.slide_over, SlideOver::Pulley(_))
+}
+
+/// Distance (m) from a round at which it takes over a load that does not move.
+fn near(cable: &CableState, inertia: Inertia) -> f64 {
+    cable.even()
+        * match inertia {
+            Inertia::QuasiStatic => NEAR_BARS_AT_REST,
+            Inertia::Dynamic => NEAR_BARS,
+        }
+}
+
+/// True if the load at material node `j` comes to the round of sliding node `k`: on its way in the
+/// next steps little is left of the straight cable between them.
+fn comes_to(cable: &CableState, [j, k]: [usize; 2], inertia: Inertia) -> bool {
+    let Some(node) = cable.mesh.sliding[k].filter(|node| carries_loads(&cable.mesh, node)) else { return false };
+    let round = node.end;
+    let m = &cable.motion;
+    let from = m.positions[j];
+    let to = match inertia {
+        Inertia::QuasiStatic => from,
+        Inertia::Dynamic => from + (m.velocities[j] - m.velocities[k]) * (NEAR_STEPS * m.step_before),
+    };
+    let nearest = from + (to - from) * nearest_fraction(round.center, from, to) - round.center;
+    nearest.norm_squared() - round.radius * round.radius < near(cable, inertia).powi(2)
+}
+
+/// Takes out the node of a load that has come to a round beside it, which carries the load from
+/// then on.
+fn enter_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
+    let j = cable.meshing.loads[load].node;
+    if !cable.meshing.only_carries_load(&cable.mesh, j) {
+        return false;
+    }
+    let round = [j - 1, j + 1].into_iter().find(|&k| comes_to(cable, [j, k], inertia));
+    let Some(k) = round.filter(|_| IntersectionCheck::of(cable).clear_without(j)) else { return false };
+    let bars = (inertia == Inertia::Dynamic).then(|| StretchedBars::of(cable));
+    for load in cable.meshing.loads.iter_mut().filter(|load| load.node == j) {
+        load.node = k;
+    }
+    remove(cable, j);
+    bars.iter().for_each(|bars| bars.restore(cable));
+    true
+}
+
+/// Gives a load that has run over its round a node of its own, or hands it to the next mark on the
+/// round.
+fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
+    let (mesh, at) = (&cable.mesh, cable.meshing.loads[load].arc_length);
+    let k = cable.meshing.loads[load].node;
+    let to_load = |j: usize| (mesh.arc_length[j] - at).abs();
+    let shares = |j: &usize| matches!((mesh.sliding[*j], mesh.sliding[k]), (Some(a), Some(b)) if a.shares_round(&b));
+    let nearest = [k - 1, k + 1].into_iter().filter(shares).find(|j| to_load(*j) < to_load(k));
+    if let Some(next) = nearest {
+        cable.meshing.loads[load].node = next;
+        return false;
+    }
+    let x = &cable.motion.positions;
+    let e = mesh.arc_length.partition_point(|s| *s <= at).clamp(1, mesh.nodes() - 1) - 1;
+    if [e, e + 1].contains(&k) {
+        let Some(beyond) = cable.meshing.loads[load].beyond_round(mesh, x) else { return false };
+        let ends_at = mesh.arc_length[if e < k { e } else { e + 1 }];
+        let slid = cable.motion.slide_rates[k].abs() * cable.motion.step_before;
+        let near = larger(near(cable, inertia), NEAR_STEPS * slid);
+        if beyond < CLEAR_FACTOR * near + more_round(cable, load, e) || (ends_at - at).abs() < near {
+            return false;
+        }
+    }
+    let bars = (inertia == Inertia::Dynamic).then(|| StretchedBars::of(cable));
+    insert(cable, e + 1, at, None);
+    cable.meshing.loads[load].node = e + 1;
+    // Two nodes so near to each other are one too many.
+    let near = near(cable, inertia);
+    let spare = |j: &usize| {
+        let mesh = &cable.mesh;
+        let is_plain = cable.meshing.removable(mesh, *j) && mesh.sliding[*j].is_none();
+        is_plain && (mesh.arc_length[*j] - at).abs() < near && IntersectionCheck::of(cable).clear_without(*j)
+    };
+    if let Some(j) = [e, e + 2].into_iter().find(spare) {
+        remove(cable, j);
+    }
+    bars.iter().for_each(|bars| bars.restore(cable));
+    true
+}
+
+/// The length (m) by which the cable lies farther round its round if a load has a node of its own
+/// on bar `e` beside it: there it bends by the angle of the force across the cable over the
+/// tension.
+fn more_round(cable: &CableState, load: usize, e: usize) -> f64 {
+    let (mesh, load) = (&cable.mesh, &cable.meshing.loads[load]);
+    let path = mesh.path(e, &cable.motion.positions);
+    let across = cross(path.direction, load.force.at(cable.motion.time)).abs();
+    let radius = mesh.sliding[load.node].map_or(0.0, |node| node.end.radius);
+    radius * across.atan2(larger(mesh.tension(e, path.length), 0.0))
+}
