@@ -402,3 +402,35 @@ fn what_a_first_model_says_is_told_at_the_scale_of_the_scene() {
     println!("{said}");
     assert!(said.contains("spans found no resting place") && said.contains("1189.712 m along the cable"), "{said}");
 }
+
+/// A force that is far too great for 10 ms, without damping: `mass-spring` ended with a position
+/// that was no number, and `fem` moved at kilometres per second without a word.
+#[test]
+fn issue_017_a_huge_impulse_is_limited_or_said() {
+    let supports = format!("{}, {}", fixed("left", 0.0, 0.0), fixed("right", 10.0, 0.0));
+    let more = "damping_ratio = 0.0\nsegments = 40\naxial_stiffness_n = 1e6\nservice_tension_n = 1e11\nbreaking_tension_n = 1e12";
+    for force_n in [1e7, 1e9] {
+        let load = format!(
+            "[[loads]]\ncable = \"c\"\narc_length_m = 5.25\ntimes_s = [0.0, 0.1, 0.1001, 0.11, 0.1101]\nforces_n = [[0.0, 0.0], [0.0, 0.0], [0.0, {force_n:?}], [0.0, {force_n:?}], [0.0, 0.0]]\n"
+        );
+        let scene = scene(&(cable(10.5, 0.02, more, &supports) + &load));
+        for model in [Model::Fem, Model::MassSpring] {
+            let mut sim = Simulation::new(scene.clone(), model).unwrap();
+            sim.settle().unwrap();
+            let (mut said, mut ended) = (false, None);
+            for _ in 0..120 {
+                if let Err(why) = sim.step(1.0 / 240.0) {
+                    ended = Some(why.to_string());
+                    break;
+                }
+                let answer = sim.solution();
+                assert!(is_finite(&answer.cables), "{model:?}, {force_n:e} N");
+                said |=
+                    answer.warnings.iter().any(|w| matches!(w.kind, WarningKind::Stabilised | WarningKind::Accuracy));
+            }
+            println!("{model:?}, {force_n:e} N: {ended:?}");
+            assert!(said, "{model:?}, {force_n:e} N: nothing was said");
+            assert!(ended.is_none_or(|why| !why.contains("no finite")), "{model:?}, {force_n:e} N");
+        }
+    }
+}

@@ -123,6 +123,7 @@ fn warnings() -> Vec<Warning> {
         (Cause::SlidFromRoute { why: SlideReason::UnheldForce { left_n: 12.0, loads_n: 120.0 } }, [0.0; 2]),
         (Cause::SlidOn, [0.0; 2]),
         (Cause::SpeedCut, [412.0, 300.0]),
+        (Cause::TooFast, [900.0, 300.0]),
         (Cause::EnergyCut, [4.0e3, 1.0e3]),
         (Cause::StiffPreview, [2.0e-3, 1.0e-3]),
         (Cause::EnergyFromNowhere { from_s: 1.0, work_j: 40.0, speed_m_per_s: 12.0 }, [80.0, 2.0]),

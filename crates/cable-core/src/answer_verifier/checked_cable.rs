@@ -86,7 +86,7 @@ impl CheckedCable<'_> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m)
     }
 
-    /// First and last node on each round that carries a load: on the way over a round a load has no
+    /// First and last node on each pulley that carries a load: on the way over one a load has no
     /// node of its own, and the forces there are known as a whole only.
     pub fn loaded_rounds(&self) -> Vec<[usize; 2]> {
         let nodes = &self.answer.nodes;
@@ -101,17 +101,14 @@ impl CheckedCable<'_> {
             let meets = |begins: f64, ends: f64| begins <= to + same && ends >= from - same;
             let eyes = self.holds.iter().filter(|hold| matches!(hold.role, Role::Pulley));
             let eyes = eyes.map(|hold| [hold.arc_length; 2]);
-            let contacts = self.answer.contacts.iter().map(|c| [c.begins_m, c.ends_m]);
             let wheels = self.wheels.iter().filter_map(|&(center, radius, _)| {
                 let on = |k: &usize| self.is_on_wheel(*k, center, radius);
                 let first = (0..after).rev().take_while(on).last().or((after..nodes.len()).find(on))?;
                 let last = (after..nodes.len()).take_while(on).last().or((0..after).rev().find(on))?;
                 Some([first, last].map(|k| nodes[k].arc_length_m))
             });
-            let rounds = eyes.chain(contacts).chain(wheels).filter(|[begins, ends]| meets(*begins, *ends));
-            // It is the corner that carries it, not the ground on which the cable lies before.
-            let shortest = rounds.min_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
-            out.extend(shortest.map(|[begins, ends]| {
+            let round = eyes.chain(wheels).find(|[begins, ends]| meets(*begins, *ends));
+            out.extend(round.map(|[begins, ends]| {
                 let first = nodes.partition_point(|n| n.arc_length_m < begins - same);
                 let last = nodes.partition_point(|n| n.arc_length_m <= ends + same);
                 // Known forces count at the node before them.

@@ -81,6 +81,14 @@ pub enum Unsupported {
         /// Place on the cable, m.
         arc_length_m: f64,
     },
+    /// A load between the ends of a stiff cable, or one that pulls away from the wheel, comes to a
+    /// pulley.
+    LoadAtPulley {
+        /// The pulley's name.
+        support: String,
+        /// Place of the load on the cable, m.
+        arc_length_m: f64,
+    },
     /// A part of the cable without tension is drawn along.
     LooseCableDrawn {
         /// Start of that part, m.
@@ -131,6 +139,7 @@ impl Unsupported {
             Self::CornerPassed { at_m } => Self::CornerPassed { at_m: place(at_m) },
             Self::SupportInside { at_m } => Self::SupportInside { at_m: place(at_m) },
             Self::LoadOnObstacle { arc_length_m: s } => Self::LoadOnObstacle { arc_length_m: length(s) },
+            Self::LoadAtPulley { support, arc_length_m: s } => Self::LoadAtPulley { support, arc_length_m: length(s) },
             Self::LooseCableDrawn { arc_length_m: s } => Self::LooseCableDrawn { arc_length_m: length(s) },
             Self::Unverified { finding, arc_length_m: s, at_m } => {
                 Self::Unverified { finding, arc_length_m: length(s), at_m: place(at_m) }

@@ -33,7 +33,9 @@ impl ErrorEstimates {
         stops.extend(answer.contacts.iter().flat_map(|c| c.extent_m()));
         stops.sort_by(f64::total_cmp);
         let stretches = stops.windows(2).filter_map(|w| stiffness(between_stops(&answer.nodes, w), problem));
-        let rounded = ROUNDING * (far * stretches.fold(0.0, larger) + largest_force(answer));
+        // A loose cable that lies pulls with nothing, and its weight is known to its rounding.
+        let forces = larger(largest_force(answer), problem.weight.norm() * problem.length);
+        let rounded = ROUNDING * (far * stretches.fold(0.0, larger) + forces);
         let drawn = answer.contacts.iter().filter_map(|c| unknown_slack_end(c, problem, ROUNDING * far));
         let force = drawn.fold(rounded, larger);
         Self {

@@ -10,6 +10,7 @@
 //! | `tangle.rs` | loops, curls and wraps |
 //! | `snag.rs` | an obstacle that holds the cable while the pull grows |
 //! | `energy_growth.rs` | energy that nothing has given |
+//! | `speed.rs` | speeds beyond those for which the models are made |
 //!
 //! Each part looks at one answer of one cable ([`CableSolution`]) and reports what it finds;
 //! [`WarningMonitor`] adds time: since when, and no flicker. Models know nothing of it, so all of
@@ -20,6 +21,7 @@ mod energy_growth;
 mod guide_at_node;
 mod monitor;
 mod snag;
+mod speed;
 mod tangle;
 mod tension;
 #[cfg(test)]

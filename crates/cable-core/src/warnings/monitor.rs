@@ -3,7 +3,7 @@
 
 use super::energy_growth::EnergyGrowth;
 use super::snag::SnagDetector;
-use super::{Observed, bend, tangle, tension};
+use super::{Observed, bend, speed, tangle, tension};
 use crate::problem::Problem;
 use crate::solution::{Warning, WarningCause, WarningKind};
 
@@ -141,5 +141,6 @@ pub(super) fn instantaneous(observed: &Observed<'_>) -> Vec<Warning> {
     bend::warn(problem, &bends, &mut out);
     tension::slack(problem, answer, &mut out);
     tangle::warn(problem, answer, &mut out);
+    speed::warn(&problem.cable.name, answer, &mut out);
     out
 }

@@ -279,6 +279,12 @@ impl Sentence for Unsupported {
             Self::LoadOnObstacle { arc_length_m } => {
                 return format!("the load at {} lies on an obstacle", f.length(*arc_length_m, 3));
             }
+            Self::LoadAtPulley { support, arc_length_m } => {
+                let along = f.length(*arc_length_m, 3);
+                return format!(
+                    "the load {along} along the cable comes to the pulley `{support}`: one of a stiff cable runs over none, and none that pulls away from its wheel"
+                );
+            }
             Self::LooseCableDrawn { arc_length_m } => {
                 return format!("the cable lies loose and is drawn along, from {}", f.length(*arc_length_m, 3));
             }

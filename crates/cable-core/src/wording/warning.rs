@@ -198,6 +198,12 @@ impl Sentence for Warning {
                 after(self.since_s),
                 given(limit)
             ),
+            Cause::TooFast => format!(
+                "`{cable}` moves at {} at {place}{}: beyond {} the drag of the air and shocks, which no model here has, count more than what is computed; look for a force, a motion or a stiffness that is far too great",
+                f.fixed(Quantity::Speed, value, 0),
+                after(self.since_s),
+                given(limit)
+            ),
             Cause::EnergyCut => format!(
                 "the kinetic energy of `{cable}` reached {}, fastest at {place}{}, where supports, loads and stretch can give {}: the motion was braked and is not to be believed; use fem, or more segments",
                 f.significant(Quantity::Energy, value, 4),

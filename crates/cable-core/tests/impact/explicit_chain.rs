@@ -117,9 +117,12 @@ impl Chain {
             let t = d / length;
             let elastic = self.stiffness * (length / self.bar - 1.0);
             self.tension[e] = elastic.max(0.0);
-            if elastic > 0.0 {
+            let is_stiff = self.bending > 0.0;
+            if elastic > 0.0 || is_stiff {
                 let rate = (self.v[e + 1] - self.v[e]).dot(&t) / self.bar;
-                let pull = t * (elastic + self.stiffness * self.loss_time * rate).max(0.0);
+                let whole = elastic + self.stiffness * self.loss_time * rate;
+                // A stiff cable can be pushed.
+                let pull = t * if is_stiff { whole } else { whole.max(0.0) };
                 self.force[e] += pull;
                 self.force[e + 1] -= pull;
             }

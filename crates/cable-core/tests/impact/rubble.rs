@@ -66,7 +66,10 @@ pub fn by_chain(scene: &Scene, part: f64, contact: f64) -> Tensions {
     let cable = &scene.cables[0];
     let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, Settings::default()).expect("a sound scene");
     let start = sim.settle().expect("it hangs");
-    let x: Vec<Vec2> = start.cables[0].nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();
+    // The nodes of a stiff rest are not even.
+    let bars = cable.segments.expect("it is cut into bars");
+    let at = |k: usize| start.cables[0].position_at(cable.length_m * k as f64 / bars as f64);
+    let x: Vec<Vec2> = (0..=bars).map(|k| at(k).expect("it is on the cable")).collect();
     let Shape::Terrain { points_m } = &scene.obstacles[0].shape else { panic!("rubble is terrain") };
     let chain = Chain {
         density: cable.linear_density_kg_per_m,

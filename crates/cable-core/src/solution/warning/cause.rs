@@ -190,6 +190,8 @@ pub enum WarningCause {
     SlidOn,
     /// Velocities were cut to the limit.
     SpeedCut,
+    /// It moves faster than the models stand for.
+    TooFast,
     /// Kinetic energy was cut to the limit.
     EnergyCut,
     /// The cable is too stiff for explicit steps; the value is the step taken.
@@ -329,6 +331,7 @@ impl WarningCause {
             | Self::BarContacts
             | Self::CoarseForces { .. }
             | Self::CoarseTension { .. }
+            | Self::TooFast
             | Self::RobotOutOfBalance { .. } => WarningKind::Accuracy,
             Self::Recorded { kind, .. } => *kind,
         }
@@ -338,7 +341,7 @@ impl WarningCause {
     #[must_use]
     pub fn quantity(&self) -> Quantity {
         match self {
-            Self::SpeedCut | Self::Lags { .. } | Self::HandLags { .. } => Quantity::Speed,
+            Self::SpeedCut | Self::TooFast | Self::Lags { .. } | Self::HandLags { .. } => Quantity::Speed,
             Self::EnergyCut => Quantity::Energy,
             Self::StiffPreview => Quantity::Time,
             Self::Blocked { .. } => Quantity::Length,

@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::Inertia;
 use crate::model::fem::obstacle::{IntersectionCheck, prepare_way};
-use crate::model::fem::remesh::remesh;
+use crate::model::fem::remesh::{remesh, remesh_after_step};
 use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
 
@@ -31,6 +31,8 @@ impl Stepper {
 
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
+        // A cable that is brought to rest where it is draws no load over a round.
+        let advances = to > self.cable.motion.time;
         for round in 0..self.cable.mesh.tuning.equilibrium.corner_rounds {
             prepare_way(&mut self.cable, [to, to], Some(dragged))?;
             self.cable.adapt_slip();
@@ -64,7 +66,10 @@ impl Stepper {
             if settled || round + 1 == self.cable.mesh.tuning.equilibrium.corner_rounds {
                 break;
             }
-            let found = remesh(&mut self.cable, Inertia::QuasiStatic);
+            let found = match advances {
+                true => remesh_after_step(&mut self.cable, Inertia::QuasiStatic),
+                false => remesh(&mut self.cable, Inertia::QuasiStatic),
+            };
             // Moving marks moves strain from bar to bar, so the cable has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {

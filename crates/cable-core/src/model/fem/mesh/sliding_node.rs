@@ -18,7 +18,7 @@
 //! of a bar's energy by its own length, instead of T, so γ is corrected by Θ(γT)/Θ(T)/γ.
 
 use crate::contact::geometry::Geometry;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger, smaller};
 use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 
 /// The corner, post or pulley of a sliding node.
@@ -138,6 +138,8 @@ pub struct BalancedTensions {
     pub turn: f64,
     /// Momentum flux of the cable over it, N, by which the pulls are reduced.
     pub momentum_flux: f64,
+    /// What point loads pressed on it with, N.
+    pub pressed: f64,
 }
 
 /// The paths on which a cable meets a round and leaves it.
@@ -197,6 +199,10 @@ pub struct SlidingNodeLoad {
     /// Plan view: the floor's friction before, on and after the round, N; positive if the cable
     /// runs towards its start.
     pub floor: [f64; 3],
+    /// What point loads on the round add to the pull before and after its mark, N.
+    pub carried: [f64; 2],
+    /// What these loads press on the round with, N.
+    pub pressed: f64,
 }
 
 impl SlidingNodeLoad {
@@ -227,6 +233,8 @@ impl SlidingNodeLoad {
             force,
             jump: force[1] - force[0],
             floor: [0.0; 3],
+            carried: [0.0; 2],
+            pressed: 0.0,
         }
     }
 
@@ -239,11 +247,19 @@ impl SlidingNodeLoad {
         self.paths.turn([self.force[0] - self.paths.direction[0] * inertia, self.force[1]])
     }
 
+    /// The turn (rad) under its pull by which the cable would press as much as the loads do.
+    #[must_use]
+    pub fn pressed_turn(&self) -> f64 {
+        let pull = 0.5 * (self.at_material[0] + self.at_material[1]);
+        // A nearly slack cable is held by its load in any case.
+        if self.pressed > 0.0 { smaller(self.pressed / larger(pull, 0.0), std::f64::consts::TAU) } else { 0.0 }
+    }
+
     /// Pull where the cable meets the round and where it leaves it, N: without the floor's friction
-    /// on the straight halves of the bars.
+    /// on the straight halves of the bars, and with the loads on the round.
     #[must_use]
     pub fn at_round(&self) -> [f64; 2] {
-        [self.lifted[0] - self.floor[0], self.lifted[1] + self.floor[2]]
+        [self.lifted[0] + self.carried[0] - self.floor[0], self.lifted[1] + self.carried[1] + self.floor[2]]
     }
 
     /// The friction state by the law of friction: `slid` is the slide of the arc length in this

@@ -204,7 +204,9 @@ impl Workspace {
             let (kinetic, work) = if let Some(node) = &mesh.sliding[i] {
                 let away = unknowns.slides[i] - input.inertial.predicted_slide[i];
                 let lightens = input.inertial.momentum_flux[i] * (node.factor - 1.0);
-                let pull = lightens + input.loads.on_slide(i);
+                // Friction acts on what pulls after the mark.
+                let [before, after] = input.loads.on_slide(i);
+                let pull = lightens + before + after * node.factor;
                 self.system.gradient[2 * i] += scale * (k * away - pull);
                 self.system.hessian.add(2 * i, 2 * i, scale * k);
                 (0.5 * k * away * away, pull * unknowns.slides[i])

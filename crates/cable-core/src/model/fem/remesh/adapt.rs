@@ -20,10 +20,9 @@ use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
-use crate::model::fem::remesh::loads_over_rounds::pass_loads;
-use crate::model::fem::remesh::stretched_bars::StretchedBars;
+use crate::model::fem::remesh::loads_over_rounds::{give_nodes, pass_loads};
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::{CableState, MovingMass, attribute_to, renew_input};
+use crate::model::fem::state::{CableState, LoadNode, MovingMass, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
 use crate::numerics::bisect;
 
@@ -45,10 +44,19 @@ pub(in crate::model::fem) struct Remeshed {
 
 /// Adapts the mesh to the corners and rounds that the cable runs over, without inertia or with it.
 pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) -> Remeshed {
+    adapt(cable, inertia, false)
+}
+
+/// The same after a step in which loads may have come to rounds.
+pub(in crate::model::fem) fn remesh_after_step(cable: &mut CableState, inertia: Inertia) -> Remeshed {
+    let passed = !cable.contacts.self_contacts.shape.is_on() && pass_loads(cable, inertia);
+    adapt(cable, inertia, passed)
+}
+
+fn adapt(cable: &mut CableState, inertia: Inertia, passed: bool) -> Remeshed {
     if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
     }
-    let passed = pass_loads(cable, inertia);
     let mut changed = remove_sliding_nodes(cable, &[], inertia);
     let taken = add_sliding_nodes(cable, inertia);
     if !taken.is_empty() {
@@ -94,12 +102,9 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
         };
         // Of the nodes on a wheel that has let go, one keeps the bend.
         let is_spare = has_let_go && this == next;
-        // A load that it carries needs a node.
-        let carries = cable.meshing.loads.iter().any(|load| load.node == k);
-        if leaves && carries && !is_spare {
-            let bars = (!rests).then(|| StretchedBars::of(cable));
-            changed |= settle_down(cable, k);
-            bars.iter().for_each(|bars| bars.restore(cable));
+        // A load that it carries needs a node: a corner keeps it until the load has run over.
+        if leaves && !is_spare && cable.meshing.loads.iter().any(|load| load.node == k) {
+            changed |= has_let_go && settle_down(cable, k);
             k += 1;
             continue;
         }
@@ -140,8 +145,15 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
     let (mesh, m) = (&mut cable.mesh, &mut cable.motion);
     mesh.sliding[k] = Some(sliding);
     mesh.arc_length[k] = arc_length;
+    let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     for e in [k - 1, k] {
-        mesh.renew_rest_length(e);
+        match mesh.has_excess() {
+            true => {
+                let part = mesh.material_between(e, e + 1) / mesh.material_between(k - 1, k + 1);
+                mesh.set_rest_length(e, whole * part);
+            }
+            false => mesh.renew_rest_length(e),
+        }
     }
     m.slide_rates[k] = -m.velocities[k].dot(&along);
     m.previous_slide_rates[k] = m.slide_rates[k];
@@ -157,15 +169,18 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
 /// obstacle.
 ///
 /// It is placed where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars
-/// keep their lines. Its material is not that of the mark, unless that was in the middle of the
-/// arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
-/// broke it.) Where the wheel of a pulley let go it is placed nearer, so that its bars are as long
-/// together as the path over the wheel: the cable may hold there at a large angle.
+/// keep their lines. Loads that it carries get nodes. Its material is not that of the mark, unless
+/// that was in the middle of the arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable
+/// of 2 MN 2000 N there, and broke it.) Where the wheel of a pulley let go it is placed nearer, so
+/// that its bars are as long together as the path over the wheel: the cable may hold there at a
+/// large angle.
 pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bool {
-    match cable.mesh.sliding.get(k).copied().flatten() {
-        Some(node) => attribute_to(cable, node.slide_over, |d| make_material(d, k)),
-        None => make_material(cable, k),
+    let Some(node) = cable.mesh.sliding.get(k).copied().flatten() else { return make_material(cable, k) };
+    let settles = attribute_to(cable, node.slide_over, |d| make_material(d, k));
+    if settles {
+        give_nodes(cable, k);
     }
+    settles
 }
 
 fn make_material(cable: &mut CableState, k: usize) -> bool {
@@ -202,11 +217,7 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &cable.motion.positions).length);
     let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     if ways[0] > 0.0 && ways[1] > 0.0 {
-        let load = cable.meshing.loads.iter().find(|load| load.node == k);
-        let first = load.map_or_else(
-            || whole * MaterialShare::of(ways, before, whole).first,
-            |load| mesh.thermal_stretch * (load.arc_length - mesh.arc_length[k - 1]),
-        );
+        let first = whole * MaterialShare::of(ways, before, whole).first;
         mesh.arc_length[k] = mesh.arc_length[k - 1] + first / mesh.thermal_stretch;
         for (e, length) in [(k - 1, first), (k, whole - first)] {
             match mesh.has_excess() {
@@ -332,6 +343,15 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
     }
     let mut e = 0;
     while e + 1 < cable.mesh.nodes() {
+        // A load beside its round has no node of its own, and none may come between.
+        let holds = |load: &LoadNode| {
+            let ends = [cable.mesh.arc_length[e], cable.mesh.arc_length[e + 1]];
+            cable.mesh.sliding[load.node].is_some() && ends[0] < load.arc_length && load.arc_length < ends[1]
+        };
+        if cable.meshing.loads.iter().any(holds) {
+            e += 1;
+            continue;
+        }
         // Only the straight part can be divided and only it counts: if the arcs counted, a piece
         // could be so short that it would be removed at once, and again in each step.
         let is_long = cable.mesh.straight_length(e, &cable.motion.positions) > cable.mesh.tuning.remesh.max_bar * even;

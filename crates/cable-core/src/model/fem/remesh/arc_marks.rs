@@ -65,8 +65,15 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     cable.mesh.sliding[k] = Some(turned);
     cable.mesh.arc_length[k] += material;
     cable.motion.previous_arc_length[k] += material;
-    cable.mesh.rest_length[k - 1] += cable.mesh.thermal_stretch * material;
-    cable.mesh.rest_length[k] -= cable.mesh.thermal_stretch * material;
+    let more = cable.mesh.thermal_stretch * material;
+    for (e, more) in [(k - 1, more), (k, -more)] {
+        let length = cable.mesh.rest_length[e] + more;
+        // What differs from the material stays as long as it was.
+        match cable.mesh.has_excess() {
+            true => cable.mesh.set_rest_length(e, length),
+            false => cable.mesh.rest_length[e] = length,
+        }
+    }
     cable.motion.positions[k] = turned.position();
     cable.motion.previous_positions[k] = cable.motion.positions[k];
 }

@@ -3,7 +3,6 @@
 use crate::math::{bounded, larger, perp};
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, TangentPath, angle_between, round_of};
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::loads_over_rounds::carries_loads;
 use crate::model::fem::state::{CableState, Meshing, NodalMotion};
 use crate::model::fem::system::{ContactPair, StepContext, load_scale};
 
@@ -66,11 +65,7 @@ impl<'a> Criteria<'a> {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let Some(node) = mesh.sliding[k] else { return false };
         let beside = |j: usize| mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-        let fixed = |j: usize| {
-            mesh.sliding[j].is_none()
-                && !self.meshing.removable(mesh, j)
-                && !(carries_loads(mesh, &node) && self.meshing.only_carries_load(mesh, j))
-        };
+        let fixed = |j: usize| mesh.sliding[j].is_none() && !self.meshing.removable(mesh, j);
         let blocked = [k - 1, k + 1]
             .into_iter()
             .any(|j| fixed(j) && mesh.material_between(j, k) < mesh.tuning.remesh.removed_distance * self.even());

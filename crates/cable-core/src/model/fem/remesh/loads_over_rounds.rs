@@ -3,19 +3,22 @@
 //! Its node cannot pass a sliding node, and would jam in front of it. So where it comes to a round,
 //! its node is taken out, and the round carries the load from there on, until its material has run
 //! over: there it gets a node again. In motion bars keep their tension in both edits.
+//!
+//! A corner or post that can let go of the cable instead does so, and material nodes run over it.
 
 use crate::contact::distance::nearest_fraction;
-use crate::math::{cross, larger};
+use crate::math::{Vec2, cross, larger};
 use crate::model::Inertia;
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNode};
 use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::edit::{insert, remove};
+use crate::model::fem::remesh::edit_criteria::Criteria;
 use crate::model::fem::remesh::stretched_bars::StretchedBars;
 use crate::model::fem::state::CableState;
 
 /// Distance from a round at which it takes a load over from a cable in motion, in even bars.
 /// Smaller: shorter bars in front of the round; larger: the bend of the cable at the load is
-/// neglected for longer. A choice, tuned on no campaign, as are the three below.
+/// neglected for longer. A choice, tuned on no campaign, as are the four below.
 const NEAR_BARS: f64 = 0.02;
 
 /// The same without inertia, where one step can move the cable by more. Smaller: steps fail in
@@ -31,6 +34,10 @@ const NEAR_STEPS: f64 = 1.5;
 /// load is neglected for longer.
 const CLEAR_FACTOR: f64 = 2.0;
 
+/// Least length of a bar between two nodes, one of a load, in even bars. Smaller: bars so short
+/// that rounding is their strain; larger: loads near to each other wait on the round.
+const LEAST_BARS: f64 = 1e-3;
+
 /// Lets loads run on to rounds, over them and off them; returns whether the mesh changed.
 pub(super) fn pass_loads(cable: &mut CableState, inertia: Inertia) -> bool {
     let mut changed = false;
@@ -39,12 +46,6 @@ pub(super) fn pass_loads(cable: &mut CableState, inertia: Inertia) -> bool {
         changed |= if on_round { leave_round(cable, load, inertia) } else { enter_round(cable, load, inertia) };
     }
     changed
-}
-
-/// True if loads run over a sliding node as such. A stiff cable bends at an edge by material nodes,
-/// of which the load has one.
-pub(super) fn carries_loads(mesh: &Mesh, node: &SlidingNode) -> bool {
-    mesh.is_flexible() || matches!(node.slide_over, SlideOver::Pulley(_))
 }
 
 /// Distance (m) from a round at which it takes over a load that does not move.
@@ -56,19 +57,35 @@ fn near(cable: &CableState, inertia: Inertia) -> f64 {
         }
 }
 
-/// True if the load at material node `j` comes to the round of sliding node `k`: on its way in the
-/// next steps little is left of the straight cable between them.
-fn comes_to(cable: &CableState, [j, k]: [usize; 2], inertia: Inertia) -> bool {
-    let Some(node) = cable.mesh.sliding[k].filter(|node| carries_loads(&cable.mesh, node)) else { return false };
-    let round = node.end;
-    let m = &cable.motion;
+/// True if the load (N) at material node `j` comes to the round of sliding node `k`, which cannot
+/// make way: on its way in the next steps little is left of the straight cable between them.
+fn comes_to(cable: &CableState, [j, k]: [usize; 2], force: Vec2, inertia: Inertia) -> bool {
+    let Some(node) = cable.mesh.sliding[k].filter(|node| cannot_make_way(cable, k, node, force, inertia)) else {
+        return false;
+    };
+    let (m, round) = (&cable.motion, node.end);
     let from = m.positions[j];
     let to = match inertia {
         Inertia::QuasiStatic => from,
         Inertia::Dynamic => from + (m.velocities[j] - m.velocities[k]) * (NEAR_STEPS * m.step_before),
     };
     let nearest = from + (to - from) * nearest_fraction(round.center, from, to) - round.center;
-    nearest.norm_squared() - round.radius * round.radius < near(cable, inertia).powi(2)
+    let comes = inertia == Inertia::QuasiStatic || nearest.norm() < (from - round.center).norm();
+    comes && nearest.norm_squared() - round.radius * round.radius < near(cable, inertia).powi(2)
+}
+
+/// True if the sliding node `k` has to carry a load (N) that comes to it: a corner lets go of the
+/// cable instead, unless that would stretch a cable in motion.
+fn cannot_make_way(cable: &CableState, k: usize, node: &SlidingNode, force: Vec2, inertia: Inertia) -> bool {
+    let is_stuck = || inertia == Inertia::Dynamic && !Criteria::of(cable).settles_unstretched(k);
+    carries(&cable.mesh, node, force) && (matches!(node.slide_over, SlideOver::Pulley(_)) || is_stuck())
+}
+
+/// True if a load (N) of a flexible cable presses on the round of a sliding node; an eye holds it
+/// whatever it pulls.
+pub(super) fn carries(mesh: &Mesh, node: &SlidingNode, force: Vec2) -> bool {
+    let is_eye = matches!(node.slide_over, SlideOver::Pulley(_)) && node.end.radius == 0.0;
+    mesh.is_flexible() && (is_eye || force.dot(&node.end.mark) < 0.0)
 }
 
 /// Takes out the node of a load that has come to a round beside it, which carries the load from
@@ -78,7 +95,8 @@ fn enter_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
     if !cable.meshing.only_carries_load(&cable.mesh, j) {
         return false;
     }
-    let round = [j - 1, j + 1].into_iter().find(|&k| comes_to(cable, [j, k], inertia));
+    let force = cable.meshing.loads[load].force.at(cable.motion.time);
+    let round = [j - 1, j + 1].into_iter().find(|&k| comes_to(cable, [j, k], force, inertia));
     let Some(k) = round.filter(|_| IntersectionCheck::of(cable).clear_without(j)) else { return false };
     let bars = (inertia == Inertia::Dynamic).then(|| StretchedBars::of(cable));
     for load in cable.meshing.loads.iter_mut().filter(|load| load.node == j) {
@@ -90,7 +108,7 @@ fn enter_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
 }
 
 /// Gives a load that has run over its round a node of its own, or hands it to the next mark on the
-/// round.
+/// round; returns whether the mesh changed.
 fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
     let (mesh, at) = (&cable.mesh, cable.meshing.loads[load].arc_length);
     let k = cable.meshing.loads[load].node;
@@ -101,32 +119,64 @@ fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
         cable.meshing.loads[load].node = next;
         return false;
     }
-    let x = &cable.motion.positions;
-    let e = mesh.arc_length.partition_point(|s| *s <= at).clamp(1, mesh.nodes() - 1) - 1;
+    let least = LEAST_BARS * cable.even();
+    let e = bar_at(cable, at);
+    let mesh = &cable.mesh;
     if [e, e + 1].contains(&k) {
-        let Some(beyond) = cable.meshing.loads[load].beyond_round(mesh, x) else { return false };
-        let ends_at = mesh.arc_length[if e < k { e } else { e + 1 }];
-        let slid = cable.motion.slide_rates[k].abs() * cable.motion.step_before;
-        let near = larger(near(cable, inertia), NEAR_STEPS * slid);
-        if beyond < CLEAR_FACTOR * near + more_round(cable, load, e) || (ends_at - at).abs() < near {
+        let Some(beyond) = cable.meshing.loads[load].beyond_round(mesh, &cable.motion.positions) else { return false };
+        let slid = cable.motion.slide_rates[k] * cable.motion.step_before;
+        // Material after the round runs off it where the arc length there falls.
+        let runs_off = if e < k { slid } else { -slid };
+        let near = larger(near(cable, inertia), NEAR_STEPS * slid.abs());
+        let clear = CLEAR_FACTOR * near + more_round(cable, load, e);
+        let is_clear = beyond > if runs_off < 0.0 { larger(clear, cable.even()) } else { clear };
+        if !is_clear || to_load(e) < least || to_load(e + 1) < least {
             return false;
         }
     }
     let bars = (inertia == Inertia::Dynamic).then(|| StretchedBars::of(cable));
-    insert(cable, e + 1, at, None);
-    cable.meshing.loads[load].node = e + 1;
+    give_node(cable, load);
     // Two nodes so near to each other are one too many.
-    let near = near(cable, inertia);
+    let (own, near) = (cable.meshing.loads[load].node, near(cable, inertia));
     let spare = |j: &usize| {
         let mesh = &cable.mesh;
         let is_plain = cable.meshing.removable(mesh, *j) && mesh.sliding[*j].is_none();
         is_plain && (mesh.arc_length[*j] - at).abs() < near && IntersectionCheck::of(cable).clear_without(*j)
     };
-    if let Some(j) = [e, e + 2].into_iter().find(spare) {
+    if let Some(j) = [own - 1, own + 1].into_iter().find(spare) {
         remove(cable, j);
     }
     bars.iter().for_each(|bars| bars.restore(cable));
     true
+}
+
+/// Index of the bar with the material at an arc length (m).
+fn bar_at(cable: &CableState, arc_length: f64) -> usize {
+    let mesh = &cable.mesh;
+    mesh.arc_length.partition_point(|s| *s <= arc_length).clamp(1, mesh.nodes() - 1) - 1
+}
+
+/// Gives a load a material node: the one at its place, or a new one.
+fn give_node(cable: &mut CableState, load: usize) {
+    let at = cable.meshing.loads[load].arc_length;
+    let e = bar_at(cable, at);
+    let is_there = |j: &usize| {
+        cable.mesh.sliding[*j].is_none() && (cable.mesh.arc_length[*j] - at).abs() < LEAST_BARS * cable.even()
+    };
+    let there = [e, e + 1].into_iter().find(is_there);
+    if there.is_none() {
+        insert(cable, e + 1, at, None);
+    }
+    cable.meshing.loads[load].node = there.unwrap_or(e + 1);
+}
+
+/// Gives the loads of node `k`, which has become a material node, nodes of their own.
+pub(super) fn give_nodes(cable: &mut CableState, k: usize) {
+    let carried: Vec<usize> =
+        (0..cable.meshing.loads.len()).filter(|&load| cable.meshing.loads[load].node == k).collect();
+    for load in carried {
+        give_node(cable, load);
+    }
 }
 
 /// The length (m) by which the cable lies farther round its round if a load has a node of its own

@@ -20,8 +20,8 @@ mod loads_over_rounds;
 mod stretched_bars;
 mod wheels;
 
-pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, settle_down};
+pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, remesh_after_step, settle_down};
 pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};
 pub(in crate::model::fem) use stretched_bars::StretchedBars;
-pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel};
+pub(in crate::model::fem) use wheels::{change_wheels, lifted_wheel, load_at_pulley};

@@ -5,10 +5,12 @@
 use std::sync::Arc;
 
 use crate::contact::geometry::Body;
+use crate::math::Vec2;
 use crate::model::Inertia;
 use crate::model::fem::mesh::{BarEnd, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_bodies};
 use crate::model::fem::remesh::adapt::remove_sliding_nodes;
+use crate::model::fem::remesh::loads_over_rounds::carries;
 use crate::model::fem::state::{CableState, MovingOutline, renew_input};
 use crate::problem::{Departure, Problem, SupportPoint};
 
@@ -21,6 +23,30 @@ pub(in crate::model::fem) fn lifted_wheel(cable: &CableState) -> Option<&Support
         let support = cable.problem.supports.get(support)?;
         let holds = support.departure == Departure::Possible && support.holds_from(cable.motion.time);
         (holds && mesh.turn(k, &cable.motion.positions) < 0.0).then_some(support)
+    })
+}
+
+/// The pulley that a load between the ends of the cable has come to within a radius of the cable,
+/// and the arc length of the load, m, where the load does not run over it: in an eye it would jam,
+/// with 600 N from 60.
+pub(in crate::model::fem) fn load_at_pulley(cable: &CableState) -> Option<(&SupportPoint, f64)> {
+    if cable.meshing.never_slides {
+        return None;
+    }
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    (1..mesh.nodes().saturating_sub(1)).find_map(|k| {
+        let node = mesh.sliding[k]?;
+        let SlideOver::Pulley(support) = node.slide_over else { return None };
+        let force = |j: usize| -> Vec2 {
+            let loads = cable.meshing.loads.iter().filter(|load| load.node == j);
+            loads.map(|load| load.force.at(cable.motion.time)).sum()
+        };
+        let jams = |j: &usize| cable.meshing.only_carries_load(mesh, *j) && !carries(mesh, &node, force(*j));
+        let inner = |j: &usize| *j > 0 && *j + 1 < mesh.nodes();
+        let near = |j: &usize| !(mesh.path(k.min(*j), x).straight > cable.problem.radius);
+        let load = [k - 1, k + 1].into_iter().filter(inner).filter(jams).find(near)?;
+        let support = cable.problem.supports.get(support)?;
+        support.holds_from(cable.motion.time).then_some((support, mesh.arc_length[load]))
     })
 }
 

@@ -104,7 +104,8 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             // The law of friction relates the pulls along the bars: the transverse part of the
             // force is the cable's own weight, and the floor's friction on the sliding cable does
             // not belong to the round.
-            let at_rest = BalancedTensions { pull: load.at_round(), turn: load.turn, momentum_flux: 0.0 };
+            let at_rest =
+                BalancedTensions { pull: load.at_round(), turn: load.turn, momentum_flux: 0.0, pressed: load.pressed };
             let acts = node.balanced.unwrap_or(at_rest);
             let [a, b] = acts.pull;
             let floor = load.floor[1];
@@ -112,13 +113,12 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
             // A compressed bar counts as slack there.
             let carried = d.input.loads.on_round(j);
-            let pressed = larger(mean * acts.turn - carried.dot(&node.end.mark), 0.0);
+            let pressed = larger(mean * acts.turn, 0.0) + acts.pressed;
             r.normal_n += pressed;
             push += node.end.mark * pressed;
             turn += load.turn;
             // Without friction the two tensions differ by weight alone.
-            let along = if node.balanced.is_some() { 0.0 } else { -d.input.loads.on_slide(j) };
-            r.friction_n += if node.friction > 0.0 { a - b - floor - along } else { 0.0 };
+            r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };
             slips &= !node.sticks();
             // The arc of the round on either side of the node belongs to the contact.
             let lap = |e: usize, side: usize| {

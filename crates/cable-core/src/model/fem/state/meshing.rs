@@ -18,8 +18,9 @@ pub(in crate::model::fem) struct LoadNode {
 
 impl LoadNode {
     /// For a load that runs over the round of its node, the way of its material for a slide of one
-    /// metre: against the direction of the path there. None at a material node.
-    pub(in crate::model::fem) fn way_on_round(&self, mesh: &Mesh, x: &[Vec2]) -> Option<Vec2> {
+    /// metre: against the direction of the path there; and the side of the node's mark on which it
+    /// is, 0 before and 1 after it. None at a material node.
+    pub(in crate::model::fem) fn way_on_round(&self, mesh: &Mesh, x: &[Vec2]) -> Option<(Vec2, usize)> {
         let k = self.node;
         let end = mesh.sliding.get(k)?.as_ref()?.end;
         let side = usize::from(self.arc_length >= mesh.arc_length[k]);
@@ -32,7 +33,7 @@ impl LoadNode {
             true => rotate(perp(end.mark), end.sense * from_mark / end.radius) * end.sense,
             false => path.direction,
         };
-        Some(direction * -stretch)
+        Some((direction * -stretch, side))
     }
 
     /// The length of path from the round of its node to the load, m; negative while the load is on

@@ -59,7 +59,7 @@ fn set_forces(cable: &mut CableState, to: f64) {
     for load in &cable.meshing.loads {
         let force = load.force.at(to);
         match load.way_on_round(&cable.mesh, &cable.motion.positions) {
-            Some(way) => input.loads.on_rounds.push(RoundLoad { node: load.node, force, way }),
+            Some((way, side)) => input.loads.on_rounds.push(RoundLoad { node: load.node, force, way, side }),
             None => input.loads.force[load.node] += force,
         }
     }

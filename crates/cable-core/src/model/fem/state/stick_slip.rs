@@ -85,13 +85,11 @@ struct SlipLaw {
 
 /// The law of friction at sliding node `k` under a load, after a slide (m) in this step.
 fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNodeLoad, slid: f64) -> SlipLaw {
-    // A load that runs over the round pulls at the material like inertia.
-    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k])
-        - cable.input.loads.on_slide(k);
+    let inertia = cable.input.inertial.stiffness[k] * (slid - cable.input.inertial.predicted_slide[k]);
     // Friction vanishes with the tension, and a compressed bar has none. (The pull where the
     // cable meets the round is a result of the step: when it was tested, friction jumped on and
     // off, and no state was lawful.)
-    let turn = load.turn_with_inertia(inertia / cable.mesh.thermal_stretch);
+    let turn = load.turn_with_inertia(inertia / cable.mesh.thermal_stretch) + load.pressed_turn();
     let momentum_flux = cable.input.inertial.momentum_flux[k];
     let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
     let exponent = if presses { node.friction * turn } else { 0.0 };

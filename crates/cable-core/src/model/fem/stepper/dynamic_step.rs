@@ -4,7 +4,7 @@ use super::Stepper;
 use crate::math::Vec2;
 use crate::model::Inertia;
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::{Remeshed, StretchedBars, remesh};
+use crate::model::fem::remesh::{Remeshed, StretchedBars, remesh_after_step};
 use crate::model::fem::results;
 use crate::model::fem::state::{MovingMass, kinetic_energy, kinetic_energy_of_step, stored_energy};
 use crate::model::fem::system::{Converged, Failure, FailureCause, Unknowns};
@@ -130,7 +130,7 @@ impl Stepper {
         self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
         // A stiff cable is never slack: where nodes come and go, its bars keep their tension.
         let before = (!self.cable.mesh.is_flexible()).then(|| StretchedBars::of(&self.cable));
-        let changed = remesh(&mut self.cable, Inertia::Dynamic);
+        let changed = remesh_after_step(&mut self.cable, Inertia::Dynamic);
         if let Some(before) = before.filter(|_| changed != Remeshed::default()) {
             before.restore(&mut self.cable);
         }

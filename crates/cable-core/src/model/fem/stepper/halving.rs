@@ -6,7 +6,7 @@
 //! equilibrium instead.
 
 use crate::error::{SolveError, Unsupported};
-use crate::model::fem::remesh::{lifted_wheel, settle_down};
+use crate::model::fem::remesh::{lifted_wheel, load_at_pulley, settle_down};
 use crate::model::fem::state::{CableState, lay_down_released, renew_input};
 use crate::model::fem::stepper::{StepRequest, Stepper};
 use crate::model::fem::system::{Converged, Failure, FailureCause};
@@ -85,6 +85,11 @@ impl Stepper {
             };
             match tried {
                 Ok(done) if self.is_finite() => {
+                    if let Some((pulley, arc_length_m)) = load_at_pulley(&self.cable) {
+                        let feature = Unsupported::LoadAtPulley { support: pulley.name.clone(), arc_length_m };
+                        self.rollback.restore(&mut self.cable);
+                        return Err(SolveError::Unsupported { model: Model::Fem, feature });
+                    }
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
                     if is_dynamic {
                         self.time_control.step_size.note_solved(done.iterations);

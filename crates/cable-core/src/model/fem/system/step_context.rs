@@ -85,7 +85,11 @@ impl StepContext<'_> {
             let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + lift;
             2.0 * theta / (1.0 + larger(1.0 + 2.0 * compliance * theta, 0.0).sqrt())
         });
-        Some(SlidingNodeLoad { floor, lifted, at_material, ..load })
+        let [before, after] = self.input.loads.on_slide(k);
+        let [comes, leaves] = at_material;
+        let pressed = larger(-self.input.loads.on_round(k).dot(&node.end.mark), 0.0);
+        let at_material = [comes + before, leaves - after];
+        Some(SlidingNodeLoad { floor, lifted, at_material, carried: [before, -after], pressed, ..load })
     }
 }
 

@@ -122,6 +122,8 @@ pub struct RoundLoad {
     pub force: Vec2,
     /// The way of the material under the load for a slide of one metre, as the step begins.
     pub way: Vec2,
+    /// The side of the node's mark on which it is: 0 before it, 1 after it.
+    pub side: usize,
 }
 
 impl Loads {
@@ -131,10 +133,14 @@ impl Loads {
         self.on_rounds.iter().filter(|load| load.node == node).map(|load| load.force).sum()
     }
 
-    /// The force of these loads on the slide of the node, N.
+    /// The forces of these loads on the slide of the node, N: of those before and after its mark.
     #[must_use]
-    pub fn on_slide(&self, node: usize) -> f64 {
-        self.on_rounds.iter().filter(|load| load.node == node).map(|load| load.force.dot(&load.way)).sum()
+    pub fn on_slide(&self, node: usize) -> [f64; 2] {
+        let mut out = [0.0; 2];
+        for load in self.on_rounds.iter().filter(|load| load.node == node) {
+            out[load.side] += load.force.dot(&load.way);
+        }
+        out
     }
 }
 

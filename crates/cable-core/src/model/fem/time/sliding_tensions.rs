@@ -9,9 +9,8 @@ use crate::model::fem::system::Unknowns;
 pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unknowns: &Unknowns) {
     for k in 0..cable.mesh.nodes() {
         let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
-        let inertia = cable.input.inertial.stiffness[k]
-            * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k])
-            - cable.input.loads.on_slide(k);
+        let inertia =
+            cable.input.inertial.stiffness[k] * (unknowns.slides[k] - cable.input.inertial.predicted_slide[k]);
         let momentum_flux = cable.input.inertial.momentum_flux[k];
         if let Some(node) = &mut cable.mesh.sliding[k] {
             let [comes, leaves] = load.at_round();
@@ -30,6 +29,7 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
                 pull: [pulls, leaves].map(|pull| pull - momentum_flux),
                 turn: load.turn_with_inertia(inertia),
                 momentum_flux,
+                pressed: load.pressed,
             });
         }
     }

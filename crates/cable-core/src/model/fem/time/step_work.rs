@@ -167,8 +167,10 @@ impl BalancedStep<'_> {
             both[0] += (force(from) + force(to)).dot(&way) * 0.5;
             both[1] += force(to).dot(&way);
         };
+        // In the order of the loads.
+        let mut on_rounds = input.loads.on_rounds.iter();
         for load in &self.cable.meshing.loads {
-            let over = input.loads.on_rounds.iter().find(|over| over.node == load.node);
+            let over = if self.mesh().sliding[load.node].is_some() { on_rounds.next() } else { None };
             let slid = over.map_or(Vec2::zeros(), |over| over.way * self.unknowns.slides[load.node]);
             point(self.ways[load.node] + slid, &|t| load.force.at(t));
         }

@@ -410,6 +410,7 @@ fn adopt_material(cable: &mut CableState, new: &CableState) {
     (meshing.slides, meshing.never_slides) = (edited.slides, edited.never_slides);
     meshing.bar_weight = edited.bar_weight * (edited.even_bars as f64 / meshing.even_bars as f64);
     for (load, edited) in meshing.loads.iter_mut().zip(&edited.loads) {
+        load.arc_length = edited.arc_length;
         load.force.clone_from(&edited.force);
     }
     cable.contacts.tuning = new.contacts.tuning;

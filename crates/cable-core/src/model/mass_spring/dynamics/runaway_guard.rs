@@ -99,6 +99,20 @@ impl RunawayGuard {
         if support > speed { support } else { speed }
     }
 
+    /// Cuts the velocity of node `i` to the limit before the node moves with it: a huge force gives
+    /// it any speed within one sub-step.
+    pub(in crate::model::mass_spring) fn cut_speed(&mut self, mesh: &mut Mesh, time_s: f64, i: usize) {
+        let square = mesh.velocity[i].norm_squared();
+        if square > MAX_SPEED * MAX_SPEED {
+            let value = square.sqrt();
+            if self.speed.is_none_or(|s| value > s.value) {
+                let (arc_length_m, at) = (mesh.arc_length[i], mesh.position[i]);
+                self.speed = Some(Excess { value, limit: MAX_SPEED, time_s, arc_length_m, at });
+            }
+            mesh.velocity[i] *= MAX_SPEED / value;
+        }
+    }
+
     /// Warnings of what was held back.
     pub(in crate::model::mass_spring) fn warnings(&self, cable: &str) -> Vec<Warning> {
         let fast = self.speed.map(|e| (e, WarningCause::SpeedCut));

@@ -52,7 +52,7 @@ pub(in crate::model::mass_spring) fn integrate(
         }
         left -= h;
         chain.clock.time_s = end - left;
-        sub_step(chain, hand_settings, gauge, points, h);
+        sub_step(chain, &mut guard, hand_settings, gauge, points, h);
         if !chain.mesh.wheels.pulleys.is_empty() {
             chain.mesh.update_pulley_elements();
             chain.remesh();
@@ -73,6 +73,7 @@ pub(in crate::model::mass_spring) fn integrate(
 /// contacts, places.
 fn sub_step(
     chain: &mut ChainState,
+    guard: &mut RunawayGuard,
     hand_settings: HandSettings,
     gauge: &mut TensionGauge,
     points: GaugePoints,
@@ -96,6 +97,7 @@ fn sub_step(
     for i in 0..mesh.position.len() {
         if !mesh.supported[i] {
             mesh.velocity[i] += mesh.force[i] * (kick / mesh.mass[i]);
+            guard.cut_speed(mesh, chain.clock.time_s, i);
         }
     }
     account.add_kick(mesh, chain.clock.time_s, kick);
