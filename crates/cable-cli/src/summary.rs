@@ -103,8 +103,16 @@ fn force(e: &EndForce) -> String {
     };
     format!(
         "`{}` tension {:.4} N, pulls with {:.4} N right, {:.4} N up{angle}",
-        e.support, e.tension_n, e.horizontal_n, e.vertical_n
+        e.support,
+        without_sign_of_zero(e.tension_n),
+        without_sign_of_zero(e.horizontal_n),
+        without_sign_of_zero(e.vertical_n)
     )
+}
+
+/// A number that is written with four decimals; one that rounds to zero has no sign.
+fn without_sign_of_zero(value: f64) -> f64 {
+    if value.abs() < 0.5e-4 { 0.0 } else { value }
 }
 
 fn stiffness(e: &EndStiffness) -> String {

@@ -464,7 +464,8 @@ fn check_all(found: &Found) {
     assert!(found.no_number == 0 && count(found, Law::Penetration) == 0, "{:?}", found.broken);
     assert!(found.grown.is_empty(), "{:?}", found.grown.first());
     assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{:?}", found.stopped);
-    assert_eq!(count(found, Law::Friction), 0, "{:?}", found.broken);
+    assert_eq!(count(found, Law::Friction) + count(found, Law::Momentum), 0, "{:?}", found.broken);
+    assert!(found.no_rest.is_empty(), "{:?}", found.no_rest);
 }
 
 /// A stiff cable that trembled by less than its nodes may move was put to sleep as it was, with
