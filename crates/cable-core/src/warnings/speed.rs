@@ -9,7 +9,8 @@ use crate::solution::{CableSolution, Warning, WarningCause};
 pub(super) fn warn(cable: &str, answer: &CableSolution, out: &mut Vec<Warning>) {
     let speed = |n: &crate::solution::Node| n.vx_m_per_s.hypot(n.vy_m_per_s);
     let fastest = answer.nodes.iter().map(speed).fold(0.0, larger);
-    if fastest > MAX_SPEED
+    // A speed that was cut is the limit to its rounding.
+    if fastest > MAX_SPEED * (1.0 + 1e-9)
         && let Some(n) = answer.nodes.iter().find(|n| speed(n) >= fastest)
     {
         let warning = Warning::new(WarningCause::TooFast, cable, n.arc_length_m, [fastest, MAX_SPEED]);

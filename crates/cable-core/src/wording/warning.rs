@@ -199,7 +199,7 @@ impl Sentence for Warning {
                 given(limit)
             ),
             Cause::TooFast => format!(
-                "`{cable}` moves at {} at {place}{}: beyond {} the drag of the air and shocks, which no model here has, count more than what is computed; look for a force, a motion or a stiffness that is far too great",
+                "`{cable}` moves at {} at {place}{}: beyond {} the drag of the air and shocks, which no model here has, count more than what is computed. So fast are recoils of breaks, and cables under a force or a stiffness that is far too great",
                 f.fixed(Quantity::Speed, value, 0),
                 after(self.since_s),
                 given(limit)

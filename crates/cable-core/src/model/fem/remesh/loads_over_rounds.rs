@@ -143,7 +143,7 @@ fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
         let is_plain = cable.meshing.removable(mesh, *j) && mesh.sliding[*j].is_none();
         is_plain && (mesh.arc_length[*j] - at).abs() < near && IntersectionCheck::of(cable).clear_without(*j)
     };
-    if let Some(j) = [own - 1, own + 1].into_iter().find(spare) {
+    if let Some(j) = [own.checked_sub(1), Some(own + 1)].into_iter().flatten().find(spare) {
         remove(cable, j);
     }
     bars.iter().for_each(|bars| bars.restore(cable));
