@@ -33,9 +33,7 @@ impl ErrorEstimates {
         stops.extend(answer.contacts.iter().flat_map(|c| c.extent_m()));
         stops.sort_by(f64::total_cmp);
         let stretches = stops.windows(2).filter_map(|w| stiffness(between_stops(&answer.nodes, w), problem));
-        // A loose cable that lies pulls with nothing, and its weight is known to its rounding.
-        let forces = larger(largest_force(answer), problem.weight.norm() * problem.length);
-        let rounded = ROUNDING * (far * stretches.fold(0.0, larger) + forces);
+        let rounded = ROUNDING * (far * stretches.fold(0.0, larger) + largest_force(answer));
         let drawn = answer.contacts.iter().filter_map(|c| unknown_slack_end(c, problem, ROUNDING * far));
         let force = drawn.fold(rounded, larger);
         Self {
