@@ -81,7 +81,7 @@ impl<'a> CheckedCable<'a> {
 }
 
 impl CheckedCable<'_> {
-    /// Where the scene's loads are on the cable, m.
+    /// Arc lengths of the scene's loads on the cable, m.
     pub fn scene_loads(&self) -> impl Iterator<Item = f64> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m)
     }

@@ -138,7 +138,7 @@ pub struct BalancedTensions {
     pub turn: f64,
     /// Momentum flux of the cable over it, N, by which the pulls are reduced.
     pub momentum_flux: f64,
-    /// What point loads pressed on it with, N.
+    /// Force with which point loads pressed on it, N.
     pub pressed: f64,
 }
 
@@ -199,9 +199,9 @@ pub struct SlidingNodeLoad {
     /// Plan view: the floor's friction before, on and after the round, N; positive if the cable
     /// runs towards its start.
     pub floor: [f64; 3],
-    /// What point loads on the round add to the pull before and after its mark, N.
+    /// Pull that point loads on the round add before and after its mark, N.
     pub carried: [f64; 2],
-    /// What these loads press on the round with, N.
+    /// Force with which these loads press on the round, N.
     pub pressed: f64,
 }
 

@@ -68,7 +68,7 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     let more = cable.mesh.thermal_stretch * material;
     for (e, more) in [(k - 1, more), (k, -more)] {
         let length = cable.mesh.rest_length[e] + more;
-        // What differs from the material stays as long as it was.
+        // An excess over the material stays as long as it was.
         match cable.mesh.has_excess() {
             true => cable.mesh.set_rest_length(e, length),
             false => cable.mesh.rest_length[e] = length,
