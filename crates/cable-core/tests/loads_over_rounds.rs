@@ -176,3 +176,24 @@ fn issue_016_a_load_runs_over_a_row_of_corners() {
     println!("{peaks:.1?} N, without inertia {still:.1} N");
     assert!(peaks.into_iter().all(|peak| peak < 1.25 * still), "{peaks:?} N, without inertia {still} N");
 }
+
+/// On a wheel without friction a load pulls along the cable by F·t: from its first to its last
+/// tangent the pull of the held end goes over steadily (by 1.8 N at once without that force).
+#[test]
+fn issue_016_a_load_on_a_wheel_pulls_along_the_cable() {
+    let force_n = 3.0;
+    let scene = over_a_pulley(0.3, 0.0, force_n);
+    let question = Question::History(Inertia::QuasiStatic);
+    let mut sim = Simulation::for_question(scene, Model::Fem, Settings::default(), question).unwrap();
+    sim.settle().unwrap();
+    let mut pull = || {
+        sim.step_quasi_static(DRAWN_S / 80.0).unwrap();
+        let end = sim.solution().cables[0].supports[2].clone();
+        end.reaction_x_n.hypot(end.reaction_y_n)
+    };
+    let pulls: Vec<f64> = (0..80).map(|_| pull()).collect();
+    let jump = pulls.windows(2).map(|p| (p[1] - p[0]).abs()).fold(0.0, f64::max);
+    let whole = pulls[0] - pulls[79];
+    println!("{jump:.3} N at most in 0.05 s, {whole:.3} N in all");
+    assert!(whole > 0.4 * force_n && jump < 0.3 * force_n, "{jump} of {whole} N");
+}
