@@ -18,6 +18,7 @@ mod falling_chain;
 mod folded_chain;
 mod forces_in_time;
 mod hanging_chain;
+mod hanging_weight;
 mod irvine;
 mod linked_rods;
 mod lumped_mass;

@@ -2,10 +2,13 @@
 //! compared with.
 //!
 //! Bars pull as Kelvin-Voigt bars do, T = EA (ε + τ dε/dt) where they are stretched and T > 0, and
-//! never push. The ground is a penalty spring with a loss of its own under each node, and under
-//! each bar at corners of the ground between its nodes; friction is Coulomb's, as far as it stops
-//! what slides within one step. Symplectic Euler at a part of the stable step. The centre line
-//! stays the cable's radius away from the ground. Bending is the moment EI (κ + τ dκ/dt) at nodes.
+//! never push unless the chain is stiff. The ground is a penalty spring with a loss of its own
+//! under each node, and under each bar at corners of the ground between its nodes; friction is
+//! Coulomb's, as far as it stops what slides within one step. Symplectic Euler at a part of the
+//! stable step. The centre line stays the cable's radius away from the ground. Bending is the
+//! moment EI κ + Σ q at nodes, with one Maxwell element q' = −q/θ + EI y κ' in each decade of
+//! frequency. The loss factor is constant with y = (2/π) ln 10 times it: the integral of y ωθ/(1 +
+//! ω²θ²) over ln θ is π/2 y.
 
 use cable_core::Vec2;
 
@@ -15,6 +18,9 @@ pub struct Chain {
     pub density: f64,
     pub stiffness: f64,
     pub bending: f64,
+    /// Loss factor of bending.
+    pub bending_loss: f64,
+    /// Time constant of the loss in stretching.
     pub loss_time: f64,
     pub radius: f64,
     pub friction: f64,
@@ -27,11 +33,16 @@ pub struct Chain {
     pub x: Vec<Vec2>,
     pub v: Vec<Vec2>,
     pub force: Vec<Vec2>,
+    /// Moments of the Maxwell elements of each node, N m.
+    pub branches: Vec<[f64; DECADES]>,
     /// Nothing touches above, m.
     pub top: f64,
     /// Greatest elastic tension of each bar in the step just made, N.
     pub tension: Vec<f64>,
 }
+
+/// Maxwell elements of a bend: with relaxation times of 1, 0.1, ... s.
+const DECADES: usize = 7;
 
 /// The nearest point of a line, and how far along it is, 0 to 1.
 fn nearest(a: Vec2, b: Vec2, p: Vec2) -> (Vec2, f64) {
@@ -49,6 +60,7 @@ impl Chain {
             v: vec![Vec2::zeros(); n],
             force: vec![Vec2::zeros(); n],
             tension: vec![0.0; n - 1],
+            branches: vec![[0.0; DECADES]; n],
             top: self.ground.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max) + self.radius,
             x,
             ..self
@@ -61,6 +73,7 @@ impl Chain {
             density: 1.0,
             stiffness: 1e6,
             bending: 0.0,
+            bending_loss: 0.0,
             loss_time: 1e-3,
             radius: 0.014,
             friction: 0.6,
@@ -71,6 +84,7 @@ impl Chain {
             x: Vec::new(),
             v: Vec::new(),
             force: Vec::new(),
+            branches: Vec::new(),
             top: 0.0,
             tension: Vec::new(),
         }
@@ -89,6 +103,11 @@ impl Chain {
         if k == 0 || k + 1 == self.x.len() { 0.5 * whole } else { whole }
     }
 
+    /// Stiffness of each Maxwell element of a bend as a part of EI.
+    fn part(&self) -> f64 {
+        std::f64::consts::FRAC_2_PI * std::f64::consts::LN_10 * self.bending_loss
+    }
+
     /// The longest stable step, s: 2/ω (√(1 + ζ²) − ζ) of the highest frequency of bars and of
     /// contacts.
     pub fn stable_step(&self) -> f64 {
@@ -99,7 +118,8 @@ impl Chain {
             2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
         };
         let bars = limit(4.0 * self.stiffness / (self.bar * mass), self.loss_time);
-        let bends = limit(16.0 * self.bending / (self.bar.powi(3) * mass) + 1e-9, self.loss_time);
+        let unrelaxed = 1.0 + self.part() * DECADES as f64;
+        let bends = limit(16.0 * self.bending * unrelaxed / (self.bar.powi(3) * mass) + 1e-9, 0.0);
         let contacts = limit(4.0 * self.contact / mass, 2.0 / (self.contact / mass).sqrt());
         bars.min(bends).min(contacts)
     }
@@ -128,6 +148,7 @@ impl Chain {
             }
         }
         if self.bending > 0.0 {
+            let part = self.part();
             for k in 1..n - 1 {
                 // The turn is linear in the places where it is small; here its exact gradient is
                 // used.
@@ -136,7 +157,12 @@ impl Chain {
                 let across = |d: Vec2| Vec2::new(-d.y, d.x) / d.norm_squared();
                 let (na, nb) = (across(a), across(b));
                 let rate = nb.dot(&(self.v[k + 1] - self.v[k])) - na.dot(&(self.v[k] - self.v[k - 1]));
-                let moment = self.bending / self.bar * (turn + self.loss_time * rate);
+                let mut moment = self.bending / self.bar * turn;
+                for (decade, q) in self.branches[k].iter_mut().enumerate() {
+                    let relaxation_s = 0.1f64.powi(decade as i32);
+                    *q = (*q + self.bending / self.bar * part * rate * h) / (1.0 + h / relaxation_s);
+                    moment += *q;
+                }
                 self.force[k - 1] -= na * moment;
                 self.force[k] += (na + nb) * moment;
                 self.force[k + 1] -= nb * moment;

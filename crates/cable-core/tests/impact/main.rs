@@ -3,7 +3,8 @@
 //!
 //! The whole table of the drop, medians over 16 starts, is
 //! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour);
-//! `BENDING=1 STARTS=4 RATE=960 CHAIN=0` takes one stiffness, fewer starts, one step and no chain.
+//! `BENDING=1 STARTS=4 RATE=960 CHAIN=0` takes one stiffness, fewer starts, one step and no chain;
+//! `CHAIN=168 RATE=1` only the chain, of 168 bars.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod explicit_chain;
@@ -147,8 +148,8 @@ fn the_table_of_the_drop() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|v| v.parse::<f64>().ok());
     let starts = asked("STARTS").map_or(16, |n| n as usize);
     for bending in [0.0, 0.3, 1.0, 3.0].into_iter().filter(|b| asked("BENDING").is_none_or(|a| a == *b)) {
-        for n in if asked("CHAIN") == Some(0.0) { &[][..] } else { &[42, 84][..] } {
-            let n = *n;
+        let chains = asked("CHAIN").map_or(vec![42, 84], |n| vec![n as usize]);
+        for n in chains.into_iter().filter(|n| *n > 0) {
             let found = medians(4, |aside| rubble::by_chain(&rubble::scene(n, aside, bending), 0.6, 2e5));
             show(&format!("EI {bending}, explicit chain of {n} bars"), &found);
         }

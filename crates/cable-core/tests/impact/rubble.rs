@@ -75,6 +75,8 @@ pub fn by_chain(scene: &Scene, part: f64, contact: f64) -> Tensions {
         density: cable.linear_density_kg_per_m,
         stiffness: cable.axial_stiffness_n,
         bending: cable.bending_stiffness_n_m2,
+        // The loss factor is twice the damping ratio.
+        bending_loss: 2.0 * cable.bending_damping(),
         loss_time: LOSS_TIME,
         radius: 0.5 * cable.diameter_m,
         friction: scene.obstacles[0].friction.expect("rubble rubs"),
