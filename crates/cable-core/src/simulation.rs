@@ -518,6 +518,11 @@ impl Simulation {
         done
     }
 
+    /// Limits the work of each step of a cable, see [`crate::model::Mechanics::limit_work`].
+    pub(crate) fn limit_work(&mut self, work: usize) {
+        self.cables.iter_mut().for_each(|cable| cable.limit_work(work));
+    }
+
     /// The largest tension of some cables now, N (NaN propagates).
     pub fn largest_n(&self, cables: impl IntoIterator<Item = usize>) -> f64 {
         let nodes = cables.into_iter().filter_map(|k| self.answers.get(k)).flat_map(|a| &a.nodes);

@@ -1,18 +1,29 @@
 //! A run without inertia beside one with it: the error that the next cheaper choice would have
-//! cost.
+//! cost. It ends where it is off beyond doubt: a fall without inertia costs more than the fall.
 
-use super::{QUASI_STATIC_STEP_S, RunPeaks, advance};
+use super::{QUASI_STATIC_STEP_S, RunPeaks};
 use crate::math::larger;
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
+/// Difference from the run, as a fraction of its greatest tension, beyond which inertia matters
+/// whatever comes. Smaller: errors said of fast motion are lower bounds that are lower; larger:
+/// runs that nobody would choose cost more.
+const MATTERS_BEYOND_DOUBT: f64 = 0.3;
+
+/// Greatest work of a step, in nodes times iterations. Smaller: slow motions with hard steps have
+/// no answer; larger: what is let go costs more to follow without inertia than with it.
+const MAX_WORK: usize = 20_000;
+
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
 pub(super) struct RunWithoutInertia {
-    /// None once it has no answer.
+    /// None once it has no answer, or need not go on.
     simulation: Option<Simulation>,
+    /// True once it is off beyond doubt.
+    is_decided: bool,
     model: Model,
     /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
@@ -21,8 +32,14 @@ pub(super) struct RunWithoutInertia {
     /// allows.
     apart: ErrorEstimates,
     apart_at_rest: ErrorEstimates,
-    /// Greatest tension of each cable so far, N.
+    /// Greatest tension of each cable so far, N, and of any cable in the run beside it.
     greatest_n: Vec<f64>,
+    greatest_of_run_n: f64,
+}
+
+/// The larger of the errors of forces, N.
+fn larger_force(apart: &ErrorEstimates) -> Option<f64> {
+    apart.max_tension_n.zip(apart.support_force_n).map(|(a, b)| larger(a, b))
 }
 
 impl RunWithoutInertia {
@@ -35,7 +52,11 @@ impl RunWithoutInertia {
         let settings = Settings { histories: false, ..run.settings() };
         let question = Question::History(Inertia::QuasiStatic);
         let simulation = Simulation::for_question(run.scene().clone(), Model::Auto, settings, question);
-        let simulation = simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
+        let mut simulation =
+            simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
+        if let Some(simulation) = &mut simulation {
+            simulation.limit_work(MAX_WORK);
+        }
         // A cast takes what is too long for one step as one.
         let times = ((QUASI_STATIC_STEP_S / step_s).round() as u64).max(1);
         let model = simulation.as_ref().map_or(Model::Auto, Simulation::model);
@@ -43,7 +64,17 @@ impl RunWithoutInertia {
         let apart =
             ErrorEstimates { max_tension_n: Some(0.0), support_force_n: Some(0.0), position_m: Some(0.0), ..none };
         let greatest_n = vec![0.0; run.answers().len()];
-        let mut this = Self { simulation, model, times, count: 0, apart, apart_at_rest: apart, greatest_n };
+        let mut this = Self {
+            simulation,
+            is_decided: false,
+            model,
+            times,
+            count: 0,
+            apart,
+            apart_at_rest: apart,
+            greatest_n,
+            greatest_of_run_n: 0.0,
+        };
         this.compare(run);
         this.apart_at_rest = this.apart;
         Some(this)
@@ -52,14 +83,24 @@ impl RunWithoutInertia {
     /// Goes on to the run it is beside, which has made one more step.
     pub fn follow(&mut self, run: &Simulation) {
         self.count += 1;
-        if !self.count.is_multiple_of(self.times) {
+        if self.simulation.is_none() || !self.count.is_multiple_of(self.times) {
             return;
         }
-        let went = self.simulation.as_mut().is_some_and(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_ok());
-        if !went {
+        // Nobody reads its warnings.
+        let advance = |own: &mut Simulation| {
+            let dt_s = run.time_s() - own.time_s();
+            own.advance_unjudged(dt_s, Inertia::QuasiStatic)
+        };
+        if !self.simulation.as_mut().is_some_and(|own| advance(own).is_ok()) {
             self.simulation = None;
         }
         self.compare(run);
+        let of_run = run.answers().iter().map(|answer| answer.peaks_at(run.time_s()).greatest.tension_n);
+        self.greatest_of_run_n = of_run.fold(self.greatest_of_run_n, larger);
+        let off = larger_force(&self.apart).zip(larger_force(&self.apart_at_rest)).map(|(now, at_rest)| now - at_rest);
+        if off.is_some_and(|off| off > MATTERS_BEYOND_DOUBT * self.greatest_of_run_n) && self.simulation.is_some() {
+            (self.is_decided, self.simulation) = (true, None);
+        }
     }
 
     fn compare(&mut self, run: &Simulation) {
@@ -80,17 +121,20 @@ impl RunWithoutInertia {
         let runs = peaks.iter().map(|run| run.peaks.greatest.tension_n);
         let most = runs.clone().fold(0.0, larger);
         let peaks = runs.zip(&self.greatest_n).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
-        let force = |apart: &ErrorEstimates| apart.max_tension_n.zip(apart.support_force_n).map(|(a, b)| larger(a, b));
+        // Of one that has ended the greatest tension since is not known.
+        let peaks = if self.is_decided { 0.0 } else { peaks };
         let beyond = |now: Option<f64>, at_rest: Option<f64>| {
-            let answered = self.simulation.is_some();
+            let answered = self.is_decided || self.simulation.is_some();
             now.zip(at_rest).filter(|_| answered).map(|(now, at_rest)| larger(now - at_rest, 0.0))
         };
-        let forces = beyond(force(&self.apart).map(|apart| larger(apart, peaks)), force(&self.apart_at_rest));
+        let forces =
+            beyond(larger_force(&self.apart).map(|apart| larger(apart, peaks)), larger_force(&self.apart_at_rest));
         NextCheaper {
             model: self.model,
             neglects: NeglectedEffect::Inertia,
             force_error: forces.map(|force| if most > 0.0 { force / most } else { force }),
             position_error_m: beyond(self.apart.position_m, self.apart_at_rest.position_m),
+            is_lower_bound: self.is_decided,
         }
     }
 }

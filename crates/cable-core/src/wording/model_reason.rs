@@ -84,8 +84,9 @@ impl Sentence for NextCheaper {
         if force <= SAME_ANSWER {
             return format!("{}, without {what}: the same answer", self.model);
         }
+        let by = if self.is_lower_bound { "by at least" } else { "by" };
         let force = percent(force);
         let place = f.length(place, 3);
-        format!("{}, without {what}: off by {force} of the greatest tension, by {place} in shape", self.model)
+        format!("{}, without {what}: off {by} {force} of the greatest tension, by {place} in shape", self.model)
     }
 }
