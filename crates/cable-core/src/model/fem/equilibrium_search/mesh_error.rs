@@ -27,7 +27,7 @@ use crate::solution::CableSolution;
 use crate::solution::ErrorEstimates;
 
 /// Least number of bars that is halved: half of fewer would not represent the shape.
-const LEAST_BARS: usize = 8;
+pub(in crate::model::fem) const LEAST_BARS: usize = 8;
 /// Lower bound of the error on the finest of three meshes, as a fraction of the difference of the
 /// coarser two: that of first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
@@ -68,18 +68,14 @@ impl TwoMeshes {
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
-        if problem.outline.is_some() {
-            return;
-        }
         if problem.cable.self_contact {
-            self.errors = match exact {
-                // At rest a cable without self-contact is like one that cannot have any; in motion
-                // it may touch itself.
-                Some(exact) if !fine.cable.touches_itself() => errors_beside(&fine.solution(), &exact.answer, problem),
-                _ => {
-                    errors_by_coarser_meshes(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default()
-                }
-            };
+            if let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
+                (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
+            }
+            // At rest a cable that does not touch itself is like one that cannot; in motion it may.
+            if let Some(exact) = exact.filter(|_| !fine.cable.touches_itself()) {
+                self.errors = errors_beside(&fine.solution(), &exact.answer, problem);
+            }
             return;
         }
         if !fine.cable.meshing.slides {
@@ -112,6 +108,18 @@ impl TwoMeshes {
         }
     }
 
+    /// The comparison of a cable at rest with one on bars twice as long, at rest too, whose own
+    /// errors are given.
+    pub fn beside(fine: &Stepper, coarse: Stepper, coarse_errors: ErrorEstimates) -> Self {
+        let answer = fine.solution();
+        let difference = ErrorEstimates::between(&coarse.solution(), &answer)
+            .plus(&ErrorEstimates::rounding(&answer, &fine.cable.problem));
+        // The coarsest mesh of all has no errors of its own.
+        let is_coarsest = coarse_errors == ErrorEstimates::default();
+        let errors = if is_coarsest { difference } else { difference.componentwise_max(&coarse_errors) };
+        Self { coarse: Some(Box::new(coarse)), errors, ..Self::default() }
+    }
+
     /// Begins to follow a cable whose mesh came to rest at an answer without a mesh. Refines the
     /// mesh as far as the tolerance needs, if that is allowed.
     pub fn begin(
@@ -124,9 +132,6 @@ impl TwoMeshes {
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
-        if problem.outline.is_some() || problem.cable.self_contact {
-            return;
-        }
         while let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
             (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
             let bars = 2 * fine.cable.meshing.even_bars;
@@ -159,7 +164,7 @@ impl TwoMeshes {
     ) {
         *self = Self::default();
         let bars = fine.cable.meshing.even_bars;
-        if problem.outline.is_some() || problem.cable.self_contact || bars < LEAST_BARS {
+        if bars < LEAST_BARS {
             return;
         }
         if let Some(coarse) = at_rest_with_bars(problem, settings, fine, bars / 2, answer, dragged) {
@@ -220,12 +225,14 @@ impl TwoMeshes {
                 at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)
                     .map(Box::new)
             }
-            (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
+            (None, Some(mut coarse)) => {
+                lead_outline(&mut coarse, fine);
+                coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse)
+            }
             (None, None) if before.resumes => {
                 let bars = fine.cable.meshing.even_bars;
-                let may = problem.outline.is_none() && !problem.cable.self_contact && bars >= LEAST_BARS;
                 let coarse = || at_rest_with_bars(problem, settings, fine, bars / 2, &answer, dragged);
-                if may { coarse().map(Box::new) } else { None }
+                if bars >= LEAST_BARS { coarse().map(Box::new) } else { None }
             }
             (None, None) => None,
         };
@@ -272,6 +279,13 @@ fn errors_beside(answer: &CableSolution, exact: &CableSolution, problem: &Proble
     ErrorEstimates::between(answer, exact).plus(&ErrorEstimates::rounding(exact, problem))
 }
 
+/// Leads the outline of the robot beside one cable to where it is led beside another.
+fn lead_outline(cable: &mut Stepper, like: &Stepper) {
+    if let (Some(outline), Some(leads)) = (&mut cable.cable.outline, &like.cable.outline) {
+        outline.lead_to(leads.to.1);
+    }
+}
+
 fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) -> bool {
     errors.relative(answer).is_some_and(|e| e > settings.tolerance)
 }
@@ -289,6 +303,7 @@ fn at_rest_with_bars(
         Stepper::new(problem.clone(), Settings { segments: Some(bars), ..settings }, like.cable.mesh.tuning.clone())
             .ok()?;
     other.cable.meshing.slides = like.cable.meshing.slides;
+    lead_outline(&mut other, like);
     other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {
         other.solver.work_left = WorkBudget::Left(like.cable.mesh.tuning.equilibrium.max_work / ESTIMATES_PER_SEARCH);

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::equilibrium_search::easier_start::SpansStart;
-use crate::model::fem::equilibrium_search::mesh_error::MeshRefinement;
+use crate::model::fem::equilibrium_search::mesh_error::{LEAST_BARS, MeshRefinement, TwoMeshes};
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
-use crate::model::{Mechanics, StepReport};
+use crate::model::{Mechanics, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::{Cost, Histories, ShownEquilibrium, Warning, WarningCause, WarningKind};
 use crate::state::State;
@@ -144,9 +144,38 @@ impl FemModel {
     /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
     /// refines it if the scene leaves its number of bars open.
     pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
+        if self.problem.outline.is_some() {
+            self.meshes = self.compared_with_own_search_on_half_the_bars();
+            return;
+        }
         let refinement = self.refinement();
         let (meshes, stepper) = (&mut self.meshes, &mut self.stepper);
         meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
+    }
+
+    /// Estimates the errors of a cable beside a robot from a mesh of half as many bars that finds
+    /// its own equilibrium: slack among a robot, obstacles and friction comes to rest in many ways,
+    /// and which of them is found depends on the mesh, too.
+    fn compared_with_own_search_on_half_the_bars(&self) -> TwoMeshes {
+        let bars = self.stepper.cable.meshing.even_bars / 2;
+        let settings = Settings { segments: Some(bars), ..self.settings };
+        let coarse = (bars >= LEAST_BARS)
+            .then(|| Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok())
+            .flatten();
+        let Some(mut coarse) = coarse else { return TwoMeshes::default() };
+        coarse.starts_from_spans = self.starts_from_spans;
+        coarse.dragged.clone_from(&self.dragged);
+        coarse.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
+        coarse.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
+        if let Some(pose) = self.robot_pose {
+            coarse.set_robot_pose(pose);
+        }
+        match coarse.settle() {
+            Ok(_) if coarse.present == PresentPart::Stepper && coarse.elastica_answer.is_none() => {
+                TwoMeshes::beside(&self.stepper, coarse.stepper, coarse.meshes.errors)
+            }
+            _ => TwoMeshes::default(),
+        }
     }
 
     /// Tells whether the mesh may be refined: whether the scene leaves the number of bars open.
