@@ -28,13 +28,20 @@ pub struct Motion {
 }
 
 /// The figures that a run measured.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
+    /// Where [`SHAPE_PLACES`] even places of the cable are at the end, m.
+    pub shape: Vec<Vec2>,
+    /// Length of the cable, m.
+    pub length_m: f64,
     /// The computing time of the motion alone.
     pub spent: Spent,
 }
+
+/// Number of places of the cable whose positions at the end of a motion are compared.
+pub const SHAPE_PLACES: usize = 33;
 
 /// A simulation at its start, and its time step.
 struct Run {
@@ -82,7 +89,9 @@ impl Motion {
         let mut run = Run { sim, step_s };
         let clock = Clock::start();
         let figure = (self.run)(&mut run)?;
-        Ok(Measured { figure, spent: clock.spent() })
+        let spent = clock.spent();
+        let length_m = run.sim.scene().cables.first().map_or(0.0, |c| c.length_m);
+        Ok(Measured { figure, shape: shape(&run.sim, length_m), length_m, spent })
     }
 }
 
@@ -123,6 +132,13 @@ fn force_on(sim: &Simulation, support: usize) -> Vec2 {
     let answer = sim.solution();
     let found = answer.cables.first().and_then(|c| c.supports.get(support));
     found.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
+}
+
+/// Where even places of the only cable are, m.
+fn shape(sim: &Simulation, length_m: f64) -> Vec<Vec2> {
+    let answer = sim.solution();
+    let places = (0..SHAPE_PLACES).map(|k| length_m * k as f64 / (SHAPE_PLACES - 1) as f64);
+    answer.cables.first().map_or_else(Vec::new, |cable| places.filter_map(|s| cable.position_at(s)).collect())
 }
 
 /// The position of the last node of the only cable, m.

@@ -193,7 +193,7 @@ impl Timeline {
         Ok(Self { simulation, inertia, step, count: 0, monitor })
     }
 
-    /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where
+    /// The same, with errors in motion: coarser runs go beside it, of a third of its work. Where
     /// there is none (no elements, or no inertia), nothing is added to what the model says.
     #[must_use]
     pub fn with_errors(mut self) -> Self {

@@ -38,7 +38,7 @@ impl RunMonitor {
     }
 
     /// The same, with errors in motion: coarser runs go beside one that has settled at its start,
-    /// for a third of its cost. Where there is none (no elements, or no inertia), nothing is added
+    /// of a third of its work. Where there is none (no elements, or no inertia), nothing is added
     /// to what the model says.
     #[must_use]
     pub fn with_errors(simulation: &mut Simulation, inertia: Inertia) -> Self {
