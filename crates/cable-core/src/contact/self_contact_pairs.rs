@@ -17,7 +17,7 @@
 //! zero, and moves out with it, until the centre lines are a diameter and the reach apart.
 
 use super::distance::{from_segment, nearest_fraction, point_segment};
-use super::sweep::advance;
+use super::sweep::{MovingPoint, advance};
 use crate::math::{Vec2, larger};
 
 /// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the
@@ -337,7 +337,7 @@ impl SelfContact {
 /// leaves of the distance beyond `diameter` (m) what is asked.
 fn until_near(x: &[Vec2], [p, e]: [usize; 2], [c, a, b]: [Vec2; 3], diameter: f64, keep: [f64; 3], free: f64) -> f64 {
     // In the frame of the node, which is then at rest, the segment moves.
-    let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
+    let moving = [MovingPoint { at: x[e] - x[p], go: a - c }, MovingPoint { at: x[e + 1] - x[p], go: b - c }];
     let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
     advance(moving, way, [Vec2::zeros(); 2], diameter, keep, free)
 }

@@ -110,7 +110,8 @@ impl Geometry {
             return 1.0;
         }
         let how = [sweep.keep, sweep.most, sweep.noise];
-        let (whole, first, last) = ([(a, da), (b, db)], [(a, da); 2], [(b, db); 2]);
+        let [start, end] = [MovingPoint { at: a, go: da }, MovingPoint { at: b, go: db }];
+        let (whole, first, last) = ([start, end], [start; 2], [end; 2]);
         let mut free = 1.0;
         for part in parts {
             let Some(body) = self.bodies().get(part.body) else { continue };
@@ -249,7 +250,7 @@ impl Geometry {
 /// (m) from the feature to the segment between given ends. The fraction `keep` of the gap is left,
 /// or `most` (m) if that is less.
 pub(super) fn advance(
-    moving: [(Vec2, Vec2); 2],
+    moving: [MovingPoint; 2],
     way: impl Fn([Vec2; 2]) -> Vec2,
     feature: [Vec2; 2],
     offset: f64,
@@ -257,7 +258,7 @@ pub(super) fn advance(
     limit: f64,
 ) -> f64 {
     let farthest = |n: Vec2| larger(n.dot(&feature[0]), n.dot(&feature[1]));
-    let at = |t: f64| moving.map(|(p, go)| p + go * t);
+    let at = |t: f64| moving.map(|point| point.at + point.go * t);
     let mut away = way(at(0.0));
     let mut d = away.norm();
     // If the cable overlaps already (this model does not do that), its centre line still must not
@@ -279,16 +280,15 @@ pub(super) fn advance(
         let n = away / d;
         let least = farthest(n) + floor;
         let mut next = limit;
-        for (p, go) in moving {
-            let (height, rate) = (n.dot(&p), n.dot(&go));
+        for point in moving {
+            let (height, rate) = (n.dot(&point.at), n.dot(&point.go));
             // The comparison is negated so that NaN ends the loop here.
             if !(height + rate * next >= least) {
                 next = (least - height) / rate;
             }
         }
         if next < limit {
-            let [a, b] = moving.map(|(at, go)| MovingPoint { at, go });
-            let beside = beside_line([a, b], feature, floor, [t, limit]);
+            let beside = beside_line(moving, feature, floor, [t, limit]);
             next = if beside > next { beside } else { next };
         }
         if next >= limit {
@@ -309,11 +309,11 @@ pub(super) fn advance(
 
 /// A point that moves uniformly.
 #[derive(Clone, Copy, Debug)]
-struct MovingPoint {
+pub(super) struct MovingPoint {
     /// Position at the start, m.
-    at: Vec2,
+    pub at: Vec2,
     /// Displacement by the end, m.
-    go: Vec2,
+    pub go: Vec2,
 }
 
 /// The latest time (after `t`, at most `limit`) up to which the line through two moving points

@@ -27,14 +27,23 @@ use crate::solution::{Cost, Going, Warning, WarningCause};
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
 
+/// A support that hangs on the robot.
+#[derive(Clone, Copy, Debug)]
+struct Hitch {
+    /// Index of its cable.
+    cable: usize,
+    /// Index of the support on that cable.
+    support: usize,
+}
+
 /// A step of robot and cables.
 #[derive(Clone, Copy, Debug)]
 struct CoupledStep<'a> {
     /// Its length, s.
     step_s: f64,
     inertia: Inertia,
-    /// Cable and support of everything that hangs on the robot.
-    hitches: &'a [(usize, usize)],
+    /// Everything that hangs on the robot.
+    hitches: &'a [Hitch],
 }
 
 /// Outcome of a trial.
@@ -148,10 +157,11 @@ impl Simulation {
     }
 
     /// Warns of a step that ends with this force left between robot and cables, N.
-    fn warn_out_of_balance(&mut self, left_n: Option<f64>, hitches: &[(usize, usize)]) {
+    fn warn_out_of_balance(&mut self, left_n: Option<f64>, hitches: &[Hitch]) {
         let (Some(left_n), Some(vehicle)) = (left_n, &self.vehicle) else { return };
         let [value, limit] = vehicle.imbalance(left_n, self.pulls(hitches));
-        let Some(problem) = hitches.first().and_then(|(k, _)| self.cables.get(*k)).map(SimulatedCable::problem) else {
+        let Some(problem) = hitches.first().and_then(|hitch| self.cables.get(hitch.cable)).map(SimulatedCable::problem)
+        else {
             return;
         };
         let at = vehicle.hitch();
@@ -177,8 +187,8 @@ impl Simulation {
     }
 
     /// Tells the cables where the hitch of the robot, and its outline, will be.
-    fn lead(&mut self, hitch: Vec2, to: RigidPose, hitches: &[(usize, usize)]) {
-        for &(cable, support) in hitches {
+    fn lead(&mut self, hitch: Vec2, to: RigidPose, hitches: &[Hitch]) {
+        for &Hitch { cable, support } in hitches {
             self.drag_support(cable, support, hitch);
         }
         for cable in &mut self.cables {
@@ -187,8 +197,8 @@ impl Simulation {
     }
 
     /// Returns what the cables do to the robot now.
-    fn pulls(&self, hitches: &[(usize, usize)]) -> Pulls {
-        let pull = |&(cable, support): &(usize, usize)| {
+    fn pulls(&self, hitches: &[Hitch]) -> Pulls {
+        let pull = |&Hitch { cable, support }: &Hitch| {
             self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.force_on_support(support))
         };
         Pulls {
@@ -205,11 +215,11 @@ impl Simulation {
         }
     }
 
-    /// Cable and support of everything that hangs on the robot.
-    fn hitches(&self) -> Vec<(usize, usize)> {
-        let of = |(k, c): (usize, &Cable)| {
+    /// Everything that hangs on the robot.
+    fn hitches(&self) -> Vec<Hitch> {
+        let of = |(cable, c): (usize, &Cable)| {
             let supports = c.supports.iter().enumerate().filter(|(_, s)| s.kind == SupportKind::Robot);
-            supports.map(move |(i, _)| (k, i)).collect::<Vec<_>>()
+            supports.map(move |(support, _)| Hitch { cable, support }).collect::<Vec<_>>()
         };
         self.scene.cables.iter().enumerate().flat_map(of).collect()
     }

@@ -1,7 +1,7 @@
 //! Every layer paints with a view: the canvas rectangle, the camera, the colours.
 
 use cable_core::math::Point;
-use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::render::theme::Palette;
 use crate::state::AppState;
@@ -31,6 +31,16 @@ pub struct CanvasView<'a> {
     pub occupied: Vec<Rect>,
     /// Rectangles that labels should not cover if there is room elsewhere: the cable, arrows.
     pub avoided: Vec<Rect>,
+}
+
+/// A figure that waits for a place among the labels.
+pub struct FigureLabel {
+    /// The place that it belongs to.
+    pub at: Pos2,
+    /// What it says.
+    pub text: String,
+    /// Its colour.
+    pub colour: Color32,
 }
 
 /// Points between two squares along a line that labels keep off.

@@ -9,7 +9,7 @@ use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::command::move_item::{move_item, set};
 use crate::command::playback::{self, PlaybackCommand};
 use crate::command::remove_item::{drop_lost_selection, remove_all};
-use crate::command::robot_hitch::{hitched_support, set_robot};
+use crate::command::robot_hitch::{SupportMove, hitched_support, set_robot};
 use crate::command::unique_name::unique;
 use crate::command::waypoint::add_waypoint;
 use crate::command::{blocked_route, clipboard};
@@ -165,7 +165,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     }
     let (before, kind) = (state.document.scene.clone(), command.kind());
     let dragged = match command {
-        SceneCommand::Move { item: Item::Support { cable, support }, to_m } => Some((cable, support, to_m)),
+        SceneCommand::Move { item: Item::Support { cable, support }, to_m } => {
+            Some(SupportMove { cable, support, to_m })
+        }
         _ => None,
     };
     let lays_anew = matches!(command, SceneCommand::LayAnew { .. });
@@ -186,7 +188,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     state.document.undo.record(&before, kind);
     drop_lost_selection(state);
     state.live.reset_is_last = false;
-    if let Some((cable, support, to_m)) = dragged
+    if let Some(SupportMove { cable, support, to_m }) = dragged
         && pulls_past_length(state, &before, cable, support)
     {
         pull_past_length(state, before, cable, support, to_m, effects);
@@ -261,7 +263,7 @@ fn pull_past_length(
 }
 
 /// Sends the edited scene: as a drag while time runs, else to be solved.
-fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effects: &mut Effects) {
+fn submit_edited_scene(state: &mut AppState, dragged: Option<SupportMove>, effects: &mut Effects) {
     state.document.validate();
     let grabbed = state.selection.grab.map(|g| g.item).filter(|_| dragged.is_some());
     let stops = !state.live.playback.paused || state.live.stopped_by_drag.is_some();
@@ -273,7 +275,7 @@ fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Poin
         // The support is back within reach: `resume_after_drag` goes on as soon as the worker has
         // stopped.
         Some(_) if grabbed.is_some() && state.live.stopped_by_drag == grabbed => {}
-        Some((cable, support, to_m)) if !state.live.playback.paused && state.document.fault.is_none() => {
+        Some(SupportMove { cable, support, to_m }) if !state.live.playback.paused && state.document.fault.is_none() => {
             state.live.show_time(None);
             // A pointer holds the support by a spring; a key or a robot prescribes its place.
             let held = Item::Support { cable, support };

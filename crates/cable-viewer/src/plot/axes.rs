@@ -20,6 +20,15 @@ const HALF_LABEL_WIDTH: f32 = 18.0;
 /// vertical axis.
 const LEFT_END_WIDTH: f32 = 5.0;
 
+/// The unit of an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisUnit {
+    /// The symbol behind its numbers.
+    pub symbol: &'static str,
+    /// SI units in one of it.
+    pub si: f64,
+}
+
 /// Lowest and highest value in view, SI.
 pub(super) fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f64; 2] {
     let values = || {

@@ -3,6 +3,7 @@
 
 use egui::{Id, Ui};
 
+use crate::plot::axes::AxisUnit;
 use crate::record::series::{Series, value_at};
 use crate::units::format::quantity;
 use crate::units::unit::DIGITS;
@@ -51,14 +52,14 @@ impl Cursors {
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }
 
-    /// Returns what they read: values of the first line at each, and the difference; symbols with
-    /// how many SI units they hold.
+    /// Returns what they read: values of the first line at each, and the difference, in the
+    /// units of the two axes.
     #[must_use]
-    pub fn text(&self, [(x_symbol, x_si), (y_symbol, si)]: [(&str, f64); 2], line: Option<&Series>) -> Option<String> {
+    pub fn text(&self, across: AxisUnit, up: AxisUnit, line: Option<&Series>) -> Option<String> {
         let line = line?;
-        let read = |x: f64| value_at(&line.points, x).map_or(f64::NAN, |v| v / si);
+        let read = |x: f64| value_at(&line.points, x).map_or(f64::NAN, |v| v / up.si);
         let one = |name: &str, x: f64, y: f64| {
-            format!("{name} {}: {}", quantity(x / x_si, DIGITS, x_symbol), quantity(y, DIGITS, y_symbol))
+            format!("{name} {}: {}", quantity(x / across.si, DIGITS, across.symbol), quantity(y, DIGITS, up.symbol))
         };
         match *self.0.as_slice() {
             [a] => Some(one("A", a, read(a))),
@@ -83,11 +84,11 @@ mod tests {
     fn two_cursors_tell_their_difference() {
         let points = vec![[0.0, 100.0], [2.0, 300.0]];
         let line = Series { name: "T".to_owned(), points, ..Series::default() };
-        let units = [("s", 1.0), ("N", 1.0)];
-        let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
+        let [time, force] = ["s", "N"].map(|symbol| AxisUnit { symbol, si: 1.0 });
+        let text = Cursors(vec![0.5, 1.5]).text(time, force, Some(&line)).unwrap();
         assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");
-        let beyond = Cursors(vec![3.0]).text(units, Some(&line)).unwrap();
+        let beyond = Cursors(vec![3.0]).text(time, force, Some(&line)).unwrap();
         assert!(beyond.ends_with(": no data"), "{beyond}");
-        assert_eq!(Cursors::default().text(units, Some(&line)), None);
+        assert_eq!(Cursors::default().text(time, force, Some(&line)), None);
     }
 }

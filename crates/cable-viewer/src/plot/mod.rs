@@ -16,7 +16,7 @@ use egui::{Align2, Color32, Id, Pos2, Rangef, Rect, RichText, Sense, Stroke, Tex
 use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotResponse, PlotTransform, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
-use crate::plot::axes::{ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
+use crate::plot::axes::{AxisUnit, ends_across, grid_marks, tick_across, tick_with_unit, vertical_range};
 use crate::plot::cursors::Cursors;
 use crate::record::plotted_quantity::Measure;
 use crate::record::series::{Series, line_style, value_at};
@@ -143,9 +143,9 @@ pub struct GraphResponse {
 /// The units and ranges in which a graph is drawn.
 #[derive(Clone, Copy)]
 struct GraphScale {
-    /// Symbol and SI value of the unit of the horizontal axis, and those of the vertical one.
-    across: (&'static str, f64),
-    up: (&'static str, f64),
+    /// The units of the horizontal axis and of the vertical one.
+    across: AxisUnit,
+    up: AxisUnit,
     /// Least and greatest value of the vertical axis, SI.
     low: f64,
     high: f64,
@@ -155,12 +155,13 @@ impl GraphScale {
     fn of(graph: &Graph<'_>, lines: &[Series]) -> Self {
         let [low, high] = vertical_range(lines, &graph.ribbon, graph.limits);
         let Unit { symbol, si, .. } = graph.across.1.display();
-        Self { across: (symbol, si), up: graph.measure.unit(high), low, high }
+        let (up_symbol, up_si) = graph.measure.unit(high);
+        Self { across: AxisUnit { symbol, si }, up: AxisUnit { symbol: up_symbol, si: up_si }, low, high }
     }
 
     /// The SI values of the units of both axes.
     fn si(&self) -> [f64; 2] {
-        [self.across.1, self.up.1]
+        [self.across.si, self.up.si]
     }
 }
 
@@ -173,13 +174,13 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let mut cursors = Cursors::load(ui, graph.group);
     // Those of a run that is no more read nothing.
     cursors.forget_without_data(ui, graph.group, graph.last);
-    let cursor_text = cursors.text([scale.across, scale.up], lines.first());
+    let cursor_text = cursors.text(scale.across, scale.up, lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(MIN_HEIGHT);
     let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
     let width = ui.available_width() - VALUES_WIDTH;
     let plot = axes(ui, graph, scale, [columns, f64::from(height)]).label_formatter(|at| {
         let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
-        Some(values_at(lines, position.x, [scale.across, scale.up]))
+        Some(values_at(lines, position.x, scale.across, scale.up))
     });
     let moved_mark = moved_mark(ui, graph);
     let response = plot.show(ui, |plot| {
@@ -198,7 +199,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     name_limits(ui, graph, &response.transform, scale.high, si);
-    write_ends_across(ui, &response.transform, columns, scale.across.0, width);
+    write_ends_across(ui, &response.transform, columns, scale.across.symbol, width);
     move_cursors(ui, graph, &response, &mut cursors, x_si);
     let bounds = response.transform.bounds();
     let ends = [bounds.min()[0] * x_si, bounds.max()[0] * x_si];
@@ -217,7 +218,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     };
     let figure = response.response.labelled_by(title);
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
-    let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol: scale.up.0, si, cursors: cursor_text };
+    let spoken = SpokenGraph { title: graph.title, ribbon, lines, symbol: scale.up.symbol, si, cursors: cursor_text };
     set_accessible_text(&figure, &spoken);
     answer
 }
@@ -253,9 +254,9 @@ fn axes<'a>(ui: &Ui, graph: &Graph<'_>, scale: GraphScale, [columns, height]: [f
     // Numbers are as far apart as they are asked to be: none of them is faint.
     let axis = |hints: AxisHints<'static>| hints.label_spacing(Rangef::new(1.0, 2.0));
     let across_axis = axis(AxisHints::new_x());
-    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, scale.across.0, width));
+    let across_axis = across_axis.formatter(move |mark, shown| tick_across(mark, shown, scale.across.symbol, width));
     let up_axis = axis(AxisHints::new_y()).min_thickness(VALUES_WIDTH);
-    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, scale.up.0));
+    let up_axis = up_axis.formatter(move |mark, shown| tick_with_unit(mark, shown, scale.up.symbol));
     Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
@@ -308,11 +309,10 @@ fn graph_in_view(graph: &Graph<'_>, lines: &[Series], high: f64, bounds: &PlotBo
     }
 }
 
-/// The values of all lines at `x` as text; `units` are symbol and SI value of the unit across and
-/// up.
-fn values_at(lines: &[Series], x: f64, units: [(&str, f64); 2]) -> String {
-    let [(across_symbol, x_si), (symbol, si)] = units;
-    let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
+/// The values of all lines at `x`, in the unit across, as text.
+fn values_at(lines: &[Series], x: f64, across: AxisUnit, up: AxisUnit) -> String {
+    let (x_si, AxisUnit { symbol, si }) = (across.si, up);
+    let mut text = format!("{} {}", significant(x, DIGITS), across.symbol);
     for line in lines {
         if let Some(value) = value_at(&line.points, x * x_si) {
             text += &format!("\n{}: {}", line.name, quantity(value / si, DIGITS, symbol));

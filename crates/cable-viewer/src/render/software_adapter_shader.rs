@@ -171,7 +171,7 @@ impl egui::Plugin for SoftwarePainter {
             shapes.map(|s| ClippedShape { shape: with_lines_as_rectangles(s.shape, output.pixels_per_point), ..s });
         let jobs = ctx.tessellate(shapes.collect(), output.pixels_per_point);
         let screen = ctx.viewport_rect();
-        let picture = FrameGeometry::of(&jobs, (screen, output.pixels_per_point), self.format, Arc::clone(&self.font));
+        let picture = FrameGeometry::of(&jobs, screen, output.pixels_per_point, self.format, Arc::clone(&self.font));
         let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
         output.shapes = vec![ClippedShape::new(screen, callback)];
     }
@@ -249,7 +249,8 @@ struct FrameGeometry {
 impl FrameGeometry {
     fn of(
         jobs: &[ClippedPrimitive],
-        (screen, pixels_per_point): (Rect, f32),
+        screen: Rect,
+        pixels_per_point: f32,
         format: wgpu::TextureFormat,
         font: Arc<Mutex<Vec<ImageDelta>>>,
     ) -> Self {

@@ -1,9 +1,9 @@
 //! Annotations of the picture name supports and the robot, and give the largest tension and the
 //! figures of arrows.
 
-use egui::{Color32, Pos2, Stroke, vec2};
+use egui::{Stroke, vec2};
 
-use crate::canvas::canvas_view::{CanvasView, LabelPriority};
+use crate::canvas::canvas_view::{CanvasView, FigureLabel, LabelPriority};
 use crate::canvas::layers::{breaks, robot};
 use crate::geometry::supports::support_position;
 use crate::state::AppState;
@@ -11,7 +11,7 @@ use crate::units::labels;
 
 /// Names and coordinates of supports, the largest tension, then the figures of the arrows while
 /// there is room.
-pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<FigureLabel>) {
     let text_colour = view.palette.text;
     let mut spots = Vec::new();
     for (cable, c) in state.document.scene.cables.iter().enumerate() {
@@ -45,7 +45,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, Str
     if state.is_current() {
         breaks::names(view, state);
     }
-    for (p, text, colour) in figures {
-        view.label(p, &text, colour, LabelPriority::Optional);
+    for FigureLabel { at, text, colour } in figures {
+        view.label(at, &text, colour, LabelPriority::Optional);
     }
 }

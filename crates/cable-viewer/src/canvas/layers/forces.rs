@@ -3,9 +3,9 @@
 
 use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};
-use egui::{Align2, Color32, Pos2, Rect, Stroke, Vec2, pos2, vec2};
+use egui::{Align2, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
-use crate::canvas::canvas_view::CanvasView;
+use crate::canvas::canvas_view::{CanvasView, FigureLabel};
 use crate::geometry::arrows::{load_arrow, load_at};
 use crate::state::{AppState, Item};
 use crate::units::labels;
@@ -17,7 +17,7 @@ const MIN_SPACING: f32 = 22.0;
 /// Longest and shortest arrow, points.
 const LENGTH: [f64; 2] = [64.0, 9.0];
 /// All arrows; their figures go to `figures` for the labels to place.
-pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<FigureLabel>) {
     let Some(solution) = &state.live.snapshot.solution else { return };
     // Forces of supports are known of answers only; loads are given.
     let current = state.is_current();
@@ -134,7 +134,7 @@ fn reactions(
     state: &AppState,
     cable: &CableSolution,
     scale: &impl Fn(Point) -> Vec2,
-    figures: &mut Vec<(Pos2, String, Color32)>,
+    figures: &mut Vec<FigureLabel>,
 ) {
     for s in &cable.supports {
         let along = scale([s.reaction_x_n, s.reaction_y_n]);
@@ -144,7 +144,7 @@ fn reactions(
             view.avoid_line(at, at + along);
             let shown = if state.view.layers.components { ForceFigures::Components } else { ForceFigures::Size };
             let figure = figure([s.reaction_x_n, s.reaction_y_n], shown);
-            figures.push((at + along, figure, view.palette.reaction));
+            figures.push(FigureLabel { at: at + along, text: figure, colour: view.palette.reaction });
         }
     }
 }
@@ -154,7 +154,7 @@ fn loads(
     state: &AppState,
     cable: usize,
     answer: &CableSolution,
-    figures: &mut Vec<(Pos2, String, Color32)>,
+    figures: &mut Vec<FigureLabel>,
 ) {
     let mut arrow = |at: Point, force: Point, item: Item| {
         let along = load_arrow(force);
@@ -167,7 +167,7 @@ fn loads(
         view.painter.circle_filled(tail, 3.5, colour);
         let components = state.view.layers.components || picked;
         let text = figure(force, if components { ForceFigures::Components } else { ForceFigures::Size });
-        figures.push((tail + along, text, colour));
+        figures.push(FigureLabel { at: tail + along, text, colour });
     };
     for (k, load) in state.document.scene.loads.iter().enumerate() {
         if load.cable == answer.name

@@ -1,8 +1,8 @@
 //! The robot's path is drawn as a flag on the ground where each leg ends.
 
-use egui::{Color32, Pos2, Stroke, vec2};
+use egui::{Stroke, vec2};
 
-use crate::canvas::canvas_view::CanvasView;
+use crate::canvas::canvas_view::{CanvasView, FigureLabel};
 use crate::geometry::robot::path_flags;
 use crate::state::{AppState, Item};
 
@@ -10,7 +10,7 @@ use crate::state::{AppState, Item};
 const FLAG: [f32; 2] = [26.0, 15.0];
 
 /// Draws them; what they say goes to `figures` for the labels to place.
-pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<FigureLabel>) {
     for (k, at, text) in path_flags(state) {
         let item = Item::PathLeg(k);
         let marked = state.selection.contains(item) || state.selection.hovered == Some(item);
@@ -24,6 +24,6 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, St
         // The task of a leg is told of the one that is asked about: two such labels hid what they
         // stood at.
         let text = if marked { text } else { format!("leg {}", k + 1) };
-        figures.push((top, text, view.palette.text));
+        figures.push(FigureLabel { at: top, text, colour: view.palette.text });
     }
 }

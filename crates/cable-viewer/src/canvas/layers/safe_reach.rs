@@ -12,7 +12,7 @@ use egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::canvas::canvas_view::CanvasView;
+use crate::canvas::canvas_view::{CanvasView, FigureLabel};
 use crate::jobs::safe_reach::ReachMaps;
 use crate::render::colour::ColourMap;
 use crate::render::theme::{self, Palette};
@@ -50,26 +50,34 @@ pub fn area(view: &CanvasView<'_>, state: &AppState) {
     view.painter.extend(lines);
 }
 
+/// A corner of a square of the map.
+#[derive(Clone, Copy)]
+struct MapCorner {
+    at_m: Point,
+    /// Greatest tension with the end there, N: infinite out of reach, NaN where it is not known.
+    most_n: f64,
+}
+
 /// A place and its neighbours to the right and above, anticlockwise, with what is known of each.
-fn corners(area: &Area, k: usize) -> Option<[(Point, f64); 4]> {
+fn corners(area: &Area, k: usize) -> Option<[MapCorner; 4]> {
     let columns = area.columns;
-    let corner = |k: usize| Some((area.at(k), area.most_n.get(k).copied()?));
+    let corner = |k: usize| Some(MapCorner { at_m: area.at(k), most_n: area.most_n.get(k).copied()? });
     let inside = k % columns.max(1) + 1 < columns;
     let found = [corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?];
     inside.then_some(found)
 }
 
 /// True if something is known of a square, and the cable reaches all of it.
-fn is_filled(corners: [(Point, f64); 4]) -> bool {
-    corners.iter().all(|(_, n)| n.is_finite())
+fn is_filled(corners: [MapCorner; 4]) -> bool {
+    corners.iter().all(|corner| corner.most_n.is_finite())
 }
 
 /// A line where the map ends: its darkest colours alone do not stand off the background.
-fn border(view: &CanvasView<'_>, area: &Area, k: usize, own: [(Point, f64); 4], lines: &mut Vec<Shape>) {
+fn border(view: &CanvasView<'_>, area: &Area, k: usize, own: [MapCorner; 4], lines: &mut Vec<Shape>) {
     if !is_filled(own) {
         return;
     }
-    let at = own.map(|(p, _)| view.at(p));
+    let at = own.map(|corner| view.at(corner.at_m));
     let beside = [k.checked_sub(area.columns), Some(k + 1), Some(k + area.columns), k.checked_sub(1)];
     for (side, next) in beside.into_iter().enumerate() {
         if !next.and_then(|k| corners(area, k)).is_some_and(is_filled) {
@@ -79,24 +87,24 @@ fn border(view: &CanvasView<'_>, area: &Area, k: usize, own: [(Point, f64); 4], 
     }
 }
 
-fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
-    if corners.iter().any(|(_, n)| n.is_nan()) {
+fn quad(view: &CanvasView<'_>, area: &Area, corners: [MapCorner; 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
+    if corners.iter().any(|corner| corner.most_n.is_nan()) {
         return;
     }
-    let at = corners.map(|(p, _)| view.at(p));
+    let at = corners.map(|corner| view.at(corner.at_m));
     if !view.rect.intersects(Rect::from_points(&at)) {
         return;
     }
     if is_filled(corners) {
         let first = mesh.vertices.len() as u32;
-        for (p, (_, n)) in at.into_iter().zip(corners) {
-            mesh.colored_vertex(p, colour(n / area.service_n));
+        for (p, corner) in at.into_iter().zip(corners) {
+            mesh.colored_vertex(p, colour(corner.most_n / area.service_n));
         }
         mesh.add_triangle(first, first + 1, first + 2);
         mesh.add_triangle(first, first + 2, first + 3);
         // Beyond the end of the map nothing is hatched: there is nothing that the strokes would
         // say.
-        let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
+        let over = |limit_n: f64| corners.iter().all(|corner| corner.most_n > limit_n);
         if over(area.service_n) {
             lines.extend(stroke(view.palette, [at[0], at[2]], 1.0));
         }
@@ -104,7 +112,7 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
             lines.extend(stroke(view.palette, [at[1], at[3]], 1.0));
         }
     }
-    let values = corners.map(|(_, n)| n.min(OUT_OF_REACH_FACTOR * area.breaking_n));
+    let values = corners.map(|corner| corner.most_n.min(OUT_OF_REACH_FACTOR * area.breaking_n));
     for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
         for ends in crossing(at, values, limit_n) {
             lines.extend(stroke(view.palette, ends, width));
@@ -141,7 +149,7 @@ pub fn colour(share: f64) -> Color32 {
 }
 
 /// Draws the map of a robot; its ends go to `figures` for the labels to place.
-pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<FigureLabel>) {
     let Some((ReachMaps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
     let trip = state.analysis.safe_reach.choice.trip;
     let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
@@ -181,7 +189,7 @@ fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
 }
 
 /// Marks from where to where the service tension is not passed.
-fn ends(view: &CanvasView<'_>, map: &ReachMap, trip: Trip, height: f32, figures: &mut Vec<(Pos2, String, Color32)>) {
+fn ends(view: &CanvasView<'_>, map: &ReachMap, trip: Trip, height: f32, figures: &mut Vec<FigureLabel>) {
     let Some(ends) = map.safe_m(map.service_n, trip) else { return };
     for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
         let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };
@@ -191,7 +199,7 @@ fn ends(view: &CanvasView<'_>, map: &ReachMap, trip: Trip, height: f32, figures:
         view.painter.vline(at.x, post, Stroke::new(2.0, view.palette.risk));
         let (length, _) = labels::of_length();
         let text = format!("{name} {} {length}", labels::coordinate(place.at_m[0], 0.01));
-        figures.push((at - vec2(0.0, height), text, view.palette.text));
+        figures.push(FigureLabel { at: at - vec2(0.0, height), text, colour: view.palette.text });
     }
 }
 

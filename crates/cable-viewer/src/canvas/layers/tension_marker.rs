@@ -1,8 +1,8 @@
 //! A marker on the cable shows the place whose tension is broken down.
 
-use egui::{Color32, Pos2, Stroke, vec2};
+use egui::{Color32, Stroke, vec2};
 
-use crate::canvas::canvas_view::CanvasView;
+use crate::canvas::canvas_view::{CanvasView, FigureLabel};
 use crate::canvas::layers::contact;
 use crate::state::AppState;
 use crate::units::labels;
@@ -11,7 +11,7 @@ use crate::units::labels;
 const HALF: f32 = 8.0;
 
 /// Draws it; its figure goes to `figures` for the labels to place.
-pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
+pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<FigureLabel>) {
     let Some(probe) = &state.analysis.tension_marker else { return };
     let cable = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(probe.cable));
     let Some(n) = cable.and_then(|c| contact::at(c, probe.arc_length_m)) else { return };
@@ -19,5 +19,5 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, St
     let corners = [vec2(0.0, -HALF), vec2(HALF, 0.0), vec2(0.0, HALF), vec2(-HALF, 0.0)].map(|d| at + d);
     let line = Stroke::new(2.0, view.palette.accent);
     view.painter.add(egui::Shape::convex_polygon(corners.to_vec(), Color32::TRANSPARENT, line));
-    figures.push((at, labels::force(n.tension_n), view.palette.accent));
+    figures.push(FigureLabel { at, text: labels::force(n.tension_n), colour: view.palette.accent });
 }

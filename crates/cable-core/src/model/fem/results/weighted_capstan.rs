@@ -50,8 +50,8 @@ impl WeightedCapstan {
     pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
         let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
         let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
-        let whole = turn.sin_cos();
-        let excess = |m: f64| with(m).at_turn(turn, whole) - after * (cos1 - m * sin1);
+        let (sin, cos) = turn.sin_cos();
+        let excess = |m: f64| with(m).at_turn(turn, sin, cos) - after * (cos1 - m * sin1);
         let lacks = |m: f64| excess(m) < 0.0;
         let bound = (0..=DOUBLINGS).map(|k| f64::powi(2.0, k) / turn);
         let range = if lacks(0.0) {
@@ -78,11 +78,12 @@ impl WeightedCapstan {
 
     /// The tension after a turn (rad), N.
     pub fn at(&self, turned: f64) -> f64 {
-        self.at_turn(turned, turned.sin_cos())
+        let (sin, cos) = turned.sin_cos();
+        self.at_turn(turned, sin, cos)
     }
 
     /// The same with the sine and cosine of the turn.
-    fn at_turn(&self, turned: f64, (sin, cos): (f64, f64)) -> f64 {
+    fn at_turn(&self, turned: f64, sin: f64, cos: f64) -> f64 {
         let (m, [along, outward]) = (self.mobilised, self.load);
         let square = 1.0 + m * m;
         let [alpha, beta] = [2.0 * m / square, (m * m - 1.0) / square];
