@@ -151,11 +151,18 @@ fn negative_pivots(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
 mod tests {
     use super::*;
 
-    fn straight(n: usize, length: f64, push: f64, clamped: bool) -> Vec<CompressedBar> {
+    /// The way in which both ends of a straight cable are held.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum Ends {
+        Pinned,
+        Clamped,
+    }
+
+    fn straight(n: usize, length: f64, push: f64, ends: Ends) -> Vec<CompressedBar> {
         let bar =
             CompressedBar { length: length / n as f64, pull: -push, held: false, pinned: false, clamped: [false; 2] };
         let mut bars = vec![bar; n];
-        if clamped {
+        if ends == Ends::Clamped {
             (bars[0].clamped[0], bars[n - 1].clamped[1]) = (true, true);
         }
         bars
@@ -167,17 +174,17 @@ mod tests {
         let euler = std::f64::consts::PI.powi(2) * stiffness / (length * length);
         // Both ends pinned: π²; clamped: 4π². With two conditions more than needed up to (3π)² may
         // pass.
-        for (clamped, least, most) in [(false, 1.0, 4.1), (true, 4.0, 9.1)] {
-            let passes = |f: f64| excess(&straight(n, length, f * euler, clamped), stiffness, [true; 2]).is_none();
-            assert!(passes(0.99 * least) && !passes(most), "{clamped}");
+        for (ends, least, most) in [(Ends::Pinned, 1.0, 4.1), (Ends::Clamped, 4.0, 9.1)] {
+            let passes = |f: f64| excess(&straight(n, length, f * euler, ends), stiffness, [true; 2]).is_none();
+            assert!(passes(0.99 * least) && !passes(most), "{ends:?}");
         }
-        let free = |f: f64| excess(&straight(n, length, f * euler, false), stiffness, [true, false]).is_none();
+        let free = |f: f64| excess(&straight(n, length, f * euler, Ends::Pinned), stiffness, [true, false]).is_none();
         assert!(!free(0.01), "nothing holds the far end");
     }
 
     #[test]
     fn what_lies_in_a_groove_holds_any_push() {
-        let mut bars = straight(50, 3.0, 1e6, false);
+        let mut bars = straight(50, 3.0, 1e6, Ends::Pinned);
         bars.iter_mut().for_each(|b| b.held = true);
         assert!(excess(&bars, 1.0, [true; 2]).is_none());
         bars[20..30].iter_mut().for_each(|b| b.held = false);
@@ -187,6 +194,6 @@ mod tests {
 
     #[test]
     fn what_pulls_is_never_asked() {
-        assert!(excess(&straight(9, 1.0, -5.0, false), 1.0, [true; 2]).is_none());
+        assert!(excess(&straight(9, 1.0, -5.0, Ends::Pinned), 1.0, [true; 2]).is_none());
     }
 }

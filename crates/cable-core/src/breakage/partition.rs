@@ -195,7 +195,15 @@ mod tests {
         (*crate::problem::problems(&scene).unwrap()[0]).clone()
     }
 
-    fn cut(problem: &Problem, at: f64, after: bool) -> Vec<CablePart> {
+    /// The part that keeps what sits at the cut: the cable breaks after it or before it.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    enum HeldSide {
+        Before,
+        After,
+    }
+
+    fn cut(problem: &Problem, at: f64, side: HeldSide) -> Vec<CablePart> {
+        let after = side == HeldSide::Before;
         CablePart::whole(problem)
             .cut(problem, &Cut { at, near: 0.1, after, support_arc_lengths: &[0.0, 6.0, 10.0], cleared_wheels: &[] })
     }
@@ -203,13 +211,13 @@ mod tests {
     #[test]
     fn what_sits_at_the_cut_stays_with_the_side_that_holds() {
         let p = loaded();
-        for (after, loads, supports) in [
-            (true, [vec![0, 1, 2], vec![3]], [vec![Some(0), Some(1)], vec![None, Some(2)]]),
-            (false, [vec![0, 1], vec![2, 3]], [vec![Some(0), None], vec![Some(1), Some(2)]]),
+        for (side, loads, supports) in [
+            (HeldSide::Before, [vec![0, 1, 2], vec![3]], [vec![Some(0), Some(1)], vec![None, Some(2)]]),
+            (HeldSide::After, [vec![0, 1], vec![2, 3]], [vec![Some(0), None], vec![Some(1), Some(2)]]),
         ] {
-            let pieces = cut(&p, 6.05, after);
-            assert_eq!([pieces[0].loads.clone(), pieces[1].loads.clone()], loads, "{after}");
-            assert_eq!([pieces[0].supports.clone(), pieces[1].supports.clone()], supports, "{after}");
+            let pieces = cut(&p, 6.05, side);
+            assert_eq!([pieces[0].loads.clone(), pieces[1].loads.clone()], loads, "{side:?}");
+            assert_eq!([pieces[0].supports.clone(), pieces[1].supports.clone()], supports, "{side:?}");
             assert_eq!((pieces[0].to, pieces[1].from), (6.05, 6.05));
         }
     }
@@ -217,9 +225,9 @@ mod tests {
     #[test]
     fn a_cable_torn_off_loses_what_hung_there() {
         let p = loaded();
-        let [start] = &cut(&p, 0.05, true)[..] else { panic!("torn off the start") };
+        let [start] = &cut(&p, 0.05, HeldSide::Before)[..] else { panic!("torn off the start") };
         assert_eq!((start.supports[0], &start.loads[..]), (None, &[1, 2, 3][..]));
-        let [end] = &cut(&p, 9.95, true)[..] else { panic!("torn off the end") };
+        let [end] = &cut(&p, 9.95, HeldSide::Before)[..] else { panic!("torn off the end") };
         assert_eq!((end.supports[2], &end.loads[..]), (None, &[0, 1, 2][..]));
     }
 
@@ -235,7 +243,7 @@ mod tests {
             time_s: 0.0,
             in_motion: false,
         };
-        let piece = &cut(&p, 2.0, true)[0];
+        let piece = &cut(&p, 2.0, HeldSide::Before)[0];
         let own = piece.problem(&p, &state);
         assert_eq!((own.length, own.cable.segments), (2.0, Some(2)));
         assert_eq!((own.cable.damping_ratio, own.damped_length), (p.cable.damping_ratio, p.length));

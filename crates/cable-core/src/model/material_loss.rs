@@ -103,16 +103,24 @@ pub(in crate::model) struct Loss {
     pub(in crate::model) bending: MaterialLoss,
 }
 
+/// Tells whether a cable can rub on anything, whose friction asks for damping in stretching.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model) enum Rubbing {
+    Never,
+    Possible,
+}
+
 impl Loss {
     /// The loss of a cable of even bars of length `bar` (m): constant up to their highest
-    /// frequency, or, in stretching if it `rubs`, up to that at which the viscous loss is as great.
-    pub(in crate::model) fn of(problem: &Problem, bar: f64, rubs: bool) -> Self {
-        Self { stretching: stretching(problem, bar, rubs), bending: bending(problem, bar) }
+    /// frequency, or, in stretching if it can rub, up to that at which the viscous loss is as
+    /// great.
+    pub(in crate::model) fn of(problem: &Problem, bar: f64, rubbing: Rubbing) -> Self {
+        Self { stretching: stretching(problem, bar, rubbing), bending: bending(problem, bar) }
     }
 }
 
 /// The loss in stretching.
-fn stretching(problem: &Problem, bar: f64, rubs: bool) -> MaterialLoss {
+fn stretching(problem: &Problem, bar: f64, rubbing: Rubbing) -> MaterialLoss {
     let ratio = problem.cable.damping_ratio;
     let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
     let cutoff = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
@@ -120,11 +128,11 @@ fn stretching(problem: &Problem, bar: f64, rubs: bool) -> MaterialLoss {
         return MaterialLoss::default();
     }
     let even = smaller(ratio, CONSTANT_LOSS_RATIO_LIMIT);
-    if !rubs {
-        let viscous = damping_time(problem, false) * (1.0 - even / ratio);
+    if rubbing == Rubbing::Never {
+        let viscous = damping_time(problem, rubbing) * (1.0 - even / ratio);
         return MaterialLoss { branches: fit(2.0 * even, 0.0, [lowest, cutoff]), viscous };
     }
-    let viscous = damping_time(problem, true);
+    let viscous = damping_time(problem, rubbing);
     let highest = smaller(cutoff, 2.0 * even / viscous);
     let branches = if highest > lowest { fit(2.0 * even, viscous, [lowest, highest]) } else { Vec::new() };
     MaterialLoss { branches, viscous }
@@ -180,11 +188,14 @@ fn loss_factor(branches: &[RelaxationBranch], viscous: f64, omega: f64) -> f64 {
 }
 
 /// Time constant of viscous damping in stretching, s: that of the damping ratio at the first axial
-/// mode of the whole cable, and at least [`MATERIAL_DAMPING`] if it `rubs`. Taut bars of a cable
+/// mode of the whole cable, and at least [`MATERIAL_DAMPING`] if it can rub. Taut bars of a cable
 /// that cannot rub have relaxation branches instead, those of one that can have them beside it.
-pub(in crate::model) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
+pub(in crate::model) fn damping_time(problem: &Problem, rubbing: Rubbing) -> f64 {
     let own = viscous_time(problem, problem.cable.damping_ratio);
-    if rubs { MATERIAL_DAMPING.max(own) } else { own }
+    match rubbing {
+        Rubbing::Never => own,
+        Rubbing::Possible => MATERIAL_DAMPING.max(own),
+    }
 }
 
 /// Time constant of a viscous loss with a damping ratio at the first axial mode of the whole cable,

@@ -156,21 +156,20 @@ fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
     let whole = text.trim().to_lowercase();
     let scene_of_text = open_scene(&whole);
     let is_id = |command: &Command| *command == scene_of_text;
-    let matches = |name: &str, also: bool| {
-        let mut text = name.to_lowercase();
-        if also {
-            let more = SYNONYMS.iter().filter(|(part, _)| text.contains(part)).map(|(_, more)| *more);
-            text = more.fold(text.clone(), |all, more| all + " " + more);
-        }
-        words.iter().all(|w| text.contains(w))
+    let has_words = |text: &str| words.iter().all(|w| text.contains(w));
+    let by_name = |name: &str| has_words(&name.to_lowercase());
+    let by_synonym = |name: &str| {
+        let text = name.to_lowercase();
+        let more = SYNONYMS.iter().filter(|(part, _)| text.contains(part)).map(|(_, more)| *more);
+        has_words(&more.fold(text.clone(), |all, more| all + " " + more))
     };
     let part_of_id = |command: &Command| match command {
         Command::File(FileCommand::OpenCatalogue(id)) => !whole.is_empty() && id.contains(&whole),
         _ => false,
     };
-    all.retain(|(name, command)| matches(name, true) || part_of_id(command));
+    all.retain(|(name, command)| by_synonym(name) || part_of_id(command));
     // The scene of that file comes before all, then names by how they have the text.
-    all.sort_by_key(|(name, command)| (!is_id(command), !matches(name, false), name_match(name, &whole, &words)));
+    all.sort_by_key(|(name, command)| (!is_id(command), !by_name(name), name_match(name, &whole, &words)));
     all
 }
 

@@ -184,21 +184,26 @@ mod tests {
 
     use super::*;
 
-    fn at(time_s: f64, nodes: usize, warned: bool) -> Solution {
+    fn at(time_s: f64, nodes: usize) -> Solution {
         let cable = CableSolution { nodes: vec![Node::default(); nodes].into(), ..CableSolution::default() };
-        let warning = Warning::new(WarningCause::AboveService { time_s: None }, "a", 1.0, [9.0, 8.0]);
         Solution {
             time_s,
             model: Model::Fem,
             reason: ModelReason::Requested,
             next_cheaper: None,
             cables: vec![cable],
-            warnings: if warned { vec![warning] } else { Vec::new() },
+            warnings: Vec::new(),
             cost: Cost::default(),
             energy: Energy::default(),
             robot: None,
             verification: None,
         }
+    }
+
+    /// The same answer with a warning.
+    fn with_warning_at(time_s: f64, nodes: usize) -> Solution {
+        let warning = Warning::new(WarningCause::AboveService { time_s: None }, "a", 1.0, [9.0, 8.0]);
+        Solution { warnings: vec![warning], ..at(time_s, nodes) }
     }
 
     #[test]
@@ -207,7 +212,7 @@ mod tests {
         let budget = BUDGET_BYTES / 16;
         let mut r = Recording::with_budget(budget);
         for k in 0..=36_000 {
-            r.push(at(f64::from(k) / 60.0, 13, false));
+            r.push(at(f64::from(k) / 60.0, 13));
             assert!(r.frames.bytes() <= budget);
         }
         assert_eq!(r.span_s(), Some([0.0, 600.0]));
@@ -225,24 +230,24 @@ mod tests {
     fn an_event_is_marked_once_while_it_lasts_and_again_when_it_comes_back() {
         let mut r = Recording::default();
         for (k, warned) in [false, true, true, false, true].into_iter().enumerate() {
-            r.push(at(k as f64, 1, warned));
+            r.push(if warned { with_warning_at(k as f64, 1) } else { at(k as f64, 1) });
         }
         assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [1.0, 4.0]);
-        r.push(at(2.0, 1, true));
+        r.push(with_warning_at(2.0, 1));
         assert_eq!(r.events().len(), 1, "what is wound back over is forgotten");
     }
 
     #[test]
     fn an_answer_that_replaces_another_takes_its_events_away() {
         let mut r = Recording::default();
-        r.push(at(0.0, 1, true));
-        r.push(at(0.0, 1, true));
+        r.push(with_warning_at(0.0, 1));
+        r.push(with_warning_at(0.0, 1));
         assert_eq!(r.events().len(), 1, "one that both have stays");
-        r.push(at(0.0, 1, false));
+        r.push(at(0.0, 1));
         assert_eq!(r.events(), []);
-        r.push(at(1.0, 1, true));
-        r.push(at(2.0, 1, true));
-        r.push(at(2.0, 1, false));
+        r.push(with_warning_at(1.0, 1));
+        r.push(with_warning_at(2.0, 1));
+        r.push(at(2.0, 1));
         assert_eq!(r.events().iter().map(|e| e.time_s).collect::<Vec<_>>(), [1.0], "what began before stays");
     }
 
@@ -253,7 +258,7 @@ mod tests {
                 let cause = WarningCause::Recorded { kind: WarningKind::Broken, message: (*t).to_owned() };
                 Warning::new(cause, "a", 1.0, [9.0, 8.0])
             };
-            Solution { warnings: texts.iter().map(one).collect(), ..at(time_s, 1, false) }
+            Solution { warnings: texts.iter().map(one).collect(), ..at(time_s, 1) }
         };
         let mut r = Recording::default();
         for (k, texts) in [&["first"][..], &["first"], &["first", "second"], &["first", "second"]].iter().enumerate() {
@@ -266,7 +271,7 @@ mod tests {
     fn a_replay_ends_at_the_present_or_begins_anew() {
         let mut r = Recording::default();
         for k in 0..10 {
-            r.push(at(f64::from(k), 1, false));
+            r.push(at(f64::from(k), 1));
         }
         r.shown_s = Some(8.5);
         assert!(!r.replay(0.25) && r.displayed().unwrap().time_s == 8.0);

@@ -45,7 +45,8 @@ pub fn sign(ui: &mut Ui, icon: Icon, colour: Color32) {
 
 /// A button with only a sign on it, without a frame; the caller names it.
 pub fn plain_button(ui: &mut Ui, icon: Icon) -> Response {
-    plain_button_if(true, ui, icon)
+    let enabled = true;
+    plain_button_if(enabled, ui, icon)
 }
 
 /// Such a button that can be pressed only if `enabled`.

@@ -51,33 +51,43 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> CheckR
     Ok(())
 }
 
+/// What the kind of a support says of one of its keys.
+struct KeyRule {
+    key: &'static str,
+    is_given: bool,
+    is_allowed: bool,
+    is_needed: bool,
+}
+
 /// Keys that a kind must have, and must not.
 fn check_keys(s: &Support, at: &Path<'_>) -> CheckResult {
     let kind = s.kind;
-    let held = matches!(kind, Fixed | Clamped | Pulley);
+    let has_place = matches!(kind, Fixed | Clamped | Pulley);
     let forced = s.force_n.is_some() || !s.times_s.is_empty() || !s.forces_n.is_empty();
     let force_key = match (&s.force_n, s.times_s.is_empty()) {
         (Some(_), _) => "force_n",
         (None, false) => "times_s",
         _ => "forces_n",
     };
+    let optional = |key, is_given, is_allowed| KeyRule { key, is_given, is_allowed, is_needed: false };
+    let needed = |key, is_given, is_needed| KeyRule { key, is_given, is_allowed: is_needed, is_needed };
     let rules = [
-        ("at_m", s.at_m.is_some(), held, held),
-        ("angle_deg", s.angle_deg.is_some(), kind == Clamped, kind == Clamped),
-        ("arc_length_m", s.arc_length_m.is_some(), kind != Pulley, false),
-        ("radius_m", s.radius_m.is_some(), kind == Pulley, false),
-        ("side", s.side.is_some(), kind == Pulley, false),
-        ("friction", s.friction.is_some(), kind == Pulley, false),
-        (force_key, forced, kind == Load, false),
-        ("mass_kg", s.mass_kg.is_some(), matches!(kind, Load | Free), false),
-        ("motion", s.motion.is_some(), held, false),
-        ("release_s", s.release_s.is_some(), held || kind == Robot, false),
+        needed("at_m", s.at_m.is_some(), has_place),
+        needed("angle_deg", s.angle_deg.is_some(), kind == Clamped),
+        optional("arc_length_m", s.arc_length_m.is_some(), kind != Pulley),
+        optional("radius_m", s.radius_m.is_some(), kind == Pulley),
+        optional("side", s.side.is_some(), kind == Pulley),
+        optional("friction", s.friction.is_some(), kind == Pulley),
+        optional(force_key, forced, kind == Load),
+        optional("mass_kg", s.mass_kg.is_some(), matches!(kind, Load | Free)),
+        optional("motion", s.motion.is_some(), has_place),
+        optional("release_s", s.release_s.is_some(), has_place || kind == Robot),
     ];
-    for (key, given, allowed, needed) in rules {
-        if given && !allowed {
+    for KeyRule { key, is_given, is_allowed, is_needed } in rules {
+        if is_given && !is_allowed {
             return Err(at.key(key).document_fault(DocumentFault::NotForKind { kind: name(kind) }));
         }
-        if needed && !given {
+        if is_needed && !is_given {
             return Err(at.key(key).document_fault(DocumentFault::MissingForKind { kind: name(kind) }));
         }
     }

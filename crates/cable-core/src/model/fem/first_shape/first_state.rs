@@ -47,7 +47,7 @@ pub(in crate::model::fem) fn cable_along_route(
     let mut x = std::mem::take(&mut cable.motion.positions);
     depenetrate(&cable.problem, &cable.mesh, &mut x, PUSHED_OUT_REACHES * contact.reach_m);
     cable.motion.positions = x;
-    cable.loss = Loss::of(&cable.problem, cable.even(), cable.can_rub());
+    cable.loss = Loss::of(&cable.problem, cable.even(), cable.rubbing());
     cable.forget_history();
     cable
 }

@@ -44,16 +44,23 @@ pub(in crate::model::fem) struct Remeshed {
 
 /// Adapts the mesh to the corners and rounds that the cable runs over, without inertia or with it.
 pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) -> Remeshed {
-    adapt(cable, inertia, false)
+    adapt(cable, inertia, LoadPassage::None)
 }
 
 /// The same after a step in which loads may have come to rounds.
 pub(in crate::model::fem) fn remesh_after_step(cable: &mut CableState, inertia: Inertia) -> Remeshed {
     let passed = !cable.contacts.self_contacts.shape.is_on() && pass_loads(cable, inertia);
-    adapt(cable, inertia, passed)
+    adapt(cable, inertia, if passed { LoadPassage::Some } else { LoadPassage::None })
 }
 
-fn adapt(cable: &mut CableState, inertia: Inertia, passed: bool) -> Remeshed {
+/// Tells whether loads have passed onto rounds or off them since the mesh was adapted last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum LoadPassage {
+    None,
+    Some,
+}
+
+fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Remeshed {
     if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
     }
@@ -70,7 +77,7 @@ fn adapt(cable: &mut CableState, inertia: Inertia, passed: bool) -> Remeshed {
     let moved = move_marks(cable, inertia);
     let wound = wind(cable, inertia);
     let evened = even_out(cable);
-    let bars = passed || changed || wound || evened;
+    let bars = passage == LoadPassage::Some || changed || wound || evened;
     if bars || moved {
         let x = std::mem::take(&mut cable.motion.positions);
         cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);

@@ -13,7 +13,7 @@ use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::system::{ContactSet, StepContext, StepInput, Unknowns, load_scale, slip_at_rest};
 use crate::model::length_change::excess_left;
-use crate::model::material_loss::Loss;
+use crate::model::material_loss::{Loss, Rubbing};
 use crate::problem::{MovingPost, Problem};
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -70,10 +70,13 @@ impl CableState {
         self.contacts.meets_nothing(&self.problem)
     }
 
-    /// True if the cable can rub on anything: an obstacle, itself, a pulley, or the floor of a
-    /// plan.
-    pub(in crate::model::fem) fn can_rub(&self) -> bool {
-        !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none())
+    /// Tells whether the cable can rub on anything: an obstacle, itself, a pulley, or the floor of
+    /// a plan.
+    pub(in crate::model::fem) fn rubbing(&self) -> Rubbing {
+        match self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none() {
+            true => Rubbing::Never,
+            false => Rubbing::Possible,
+        }
     }
 
     /// Stores the friction of a balanced step in the memory of the contacts.

@@ -22,7 +22,7 @@ const FOLD_DAMPING: f64 = 10.0;
 /// of the error of BDF2 in a vibration.
 pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
     let Weights { now, past, rate: a, .. } = weights;
-    let rubs = cable.can_rub();
+    let rubbing = cable.rubbing();
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
     input.inertial.coupling.clear();
@@ -64,7 +64,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         input.inertial.hands.push((k, stiffness, at));
     }
     input.inertial.moves = true;
-    let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubs));
+    let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubbing));
     let taut = cable.problem.axial_stiffness * time * rate;
     let folds = FOLD_DAMPING * rate * (cable.problem.linear_density * input.loads.body.norm()).sqrt();
     for (loss, l) in input.losses.bars.iter_mut().zip(&mesh.rest_length) {

@@ -14,6 +14,7 @@ use crate::model::fem::obstacle::{IntersectionCheck, place_bodies};
 use crate::model::fem::remesh::{StretchedBars, even_out, insert, settle_down};
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
 use crate::model::length_change::LengthChange;
+use crate::model::material_loss::Rubbing;
 use crate::model::smoothed_target::{STILL_M_PER_S, SmoothedTarget};
 use crate::problem::{MovingPost, PointLoad, Problem, SupportPoint};
 
@@ -179,7 +180,7 @@ pub(in crate::model::fem) fn after_edit(
     }
     // A cable that rubs on nothing has no memory that another mesh would lose.
     let other_bars = has_other_bars(new, old);
-    if other_bars && !old.can_rub() {
+    if other_bars && old.rubbing() == Rubbing::Never {
         return None;
     }
     let mut cable = old.clone();

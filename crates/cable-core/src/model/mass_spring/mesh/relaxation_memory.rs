@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::math::{larger, smaller};
 use crate::model::mass_spring::settings::MeshTuning;
-use crate::model::material_loss::{Loss, MaterialLoss};
+use crate::model::material_loss::{Loss, MaterialLoss, Rubbing};
 use crate::problem::Problem;
 
 part! {
@@ -63,7 +63,7 @@ pub(super) fn memories(
     bending_stiffness: f64,
     nodes: usize,
 ) -> [RelaxationMemory; 2] {
-    let Loss { mut stretching, mut bending } = Loss::of(problem, spring, false);
+    let Loss { mut stretching, mut bending } = Loss::of(problem, spring, Rubbing::Never);
     // Time constants whose damping of the fastest modes, 2√(EA/ρ)/l and 4√(EI/ρ)/l², is critical.
     let critical = spring / (problem.axial_stiffness / problem.linear_density).sqrt();
     let greater = larger(bending_stiffness, problem.bending_stiffness);
