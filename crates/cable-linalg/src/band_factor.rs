@@ -4,7 +4,7 @@
 use crate::band_matrix::BandMatrix;
 use crate::one_way_elimination::{FactorRows, factor, solve};
 use crate::two_way_elimination::{meet_in_the_middle, rows_beside_middle, solve_from_both_ends};
-use crate::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, FactorError, WIDEST};
+use crate::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, FactorError, WIDEST_HALF_BANDWIDTH};
 
 /// The factor of a [`BandMatrix`], with everything needed to factorise again and again.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct BandFactor {
     /// each.
     halves: [FactorRows; 2],
     /// L of the rows in the middle, and 1/d on its diagonal.
-    middle: [[f64; WIDEST]; WIDEST],
+    middle: [[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
     /// True if the last factor is the one from both ends.
     from_both_ends: bool,
 }
@@ -26,11 +26,12 @@ impl BandFactor {
     /// Makes room for matrices of this size and band.
     ///
     /// # Errors
-    /// `TooLarge` when there is no memory for it, or the band is wider than [`WIDEST`].
+    /// `TooLarge` when there is no memory for it, or the band is wider than
+    /// [`WIDEST_HALF_BANDWIDTH`].
     pub fn new(rows: usize, half_bandwidth: usize) -> Result<Self, FactorError> {
         let too_large = FactorError::TooLarge { rows };
         let b = half_bandwidth.min(rows.saturating_sub(1));
-        if b > WIDEST {
+        if b > WIDEST_HALF_BANDWIDTH {
             return Err(too_large);
         }
         let factors = |rows| FactorRows::new(rows, b).ok_or(too_large);
@@ -40,7 +41,7 @@ impl BandFactor {
             half_bandwidth: b,
             whole: factors(rows)?,
             halves: [factors(first + b)?, factors(second + b)?],
-            middle: [[0.0; WIDEST]; WIDEST],
+            middle: [[0.0; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
             from_both_ends: false,
         })
     }
@@ -120,7 +121,7 @@ impl BandFactor {
             4 => solve::<4>(&self.whole, b),
             6 => solve::<6>(&self.whole, b),
             7 => solve::<7>(&self.whole, b),
-            _ => solve::<WIDEST>(&self.whole, b),
+            _ => solve::<WIDEST_HALF_BANDWIDTH>(&self.whole, b),
         }
     }
 }

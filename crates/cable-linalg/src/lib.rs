@@ -41,7 +41,7 @@ pub const BARS_HALF_BANDWIDTH: usize = 3;
 pub const BENDING_HALF_BANDWIDTH: usize = 5;
 
 /// Widest half-bandwidth there is.
-pub const WIDEST: usize = 8;
+pub const WIDEST_HALF_BANDWIDTH: usize = 8;
 
 /// The reason why a matrix could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
@@ -54,7 +54,7 @@ pub enum FactorError {
         /// Its pivot (0 if the factorisation stopped there).
         pivot: f64,
     },
-    /// There is no memory for it, or its band is wider than [`WIDEST`].
+    /// There is no memory for it, or its band is wider than [`WIDEST_HALF_BANDWIDTH`].
     #[error("no room for a matrix of {rows} rows")]
     TooLarge {
         /// Its rows.

@@ -1,7 +1,7 @@
 //! These functions factorise a symmetric band matrix from both ends to its middle, and substitute.
 
 use crate::one_way_elimination::{FactorRows, eliminate, pass_back, substitute, substitute_back};
-use crate::{FactorError, WIDEST};
+use crate::{FactorError, WIDEST_HALF_BANDWIDTH};
 
 /// Number of rows before and after the `b` rows in the middle.
 pub(super) fn rows_beside_middle(rows: usize, b: usize) -> [usize; 2] {
@@ -31,7 +31,7 @@ pub(super) fn column_from_below<const B: usize>(values: &[f64], j: usize) -> [f6
 pub(super) fn meet_in_the_middle<const B: usize>(
     values: &[f64],
     halves: &mut [FactorRows; 2],
-    middle: &mut [[f64; WIDEST]; WIDEST],
+    middle: &mut [[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
     x: &mut [f64],
 ) -> Result<(), FactorError> {
     let rows = x.len();
@@ -67,7 +67,7 @@ pub(super) fn meet_in_the_middle<const B: usize>(
 fn schur_complement<const B: usize>(
     values: &[f64],
     [top, bottom]: &mut [FactorRows; 2],
-    middle: &mut [[f64; WIDEST]; WIDEST],
+    middle: &mut [[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
     [first, second]: [usize; 2],
 ) {
     for t in 0..B {
@@ -93,7 +93,10 @@ fn schur_complement<const B: usize>(
 
 /// Factorises S in place into D and D Lᵀ; `first` is the number of rows before the middle.
 #[inline(always)]
-fn factor_middle<const B: usize>(middle: &mut [[f64; WIDEST]; WIDEST], first: usize) -> Result<(), FactorError> {
+fn factor_middle<const B: usize>(
+    middle: &mut [[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
+    first: usize,
+) -> Result<(), FactorError> {
     for t in 0..B {
         for u in 0..=t {
             let mut v = middle[u][t];
@@ -145,7 +148,7 @@ pub(super) fn share<const B: usize>(v: &[f64; B], t: usize, row: &[f64], u: usiz
 #[inline(always)]
 pub(super) fn solve_from_both_ends<const B: usize>(
     halves: &[FactorRows; 2],
-    middle: &[[f64; WIDEST]; WIDEST],
+    middle: &[[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
     x: &mut [f64],
 ) {
     let rows = x.len();
@@ -167,7 +170,7 @@ pub(super) fn solve_from_both_ends<const B: usize>(
 pub(super) fn solve_middle<const B: usize>(
     [first, second]: [usize; 2],
     halves: &[FactorRows; 2],
-    middle: &[[f64; WIDEST]; WIDEST],
+    middle: &[[f64; WIDEST_HALF_BANDWIDTH]; WIDEST_HALF_BANDWIDTH],
     [above, below]: [[f64; B]; 2],
     x: &mut [f64],
 ) {

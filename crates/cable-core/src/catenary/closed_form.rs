@@ -287,7 +287,7 @@ pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
             }
         }
     }
-    if t > PARABOLA_ABOVE {
+    if t > LEAST_PARABOLA_TENSION_WEIGHTS {
         return (t * dx / chord, t * dz / chord - 0.5);
     }
     // Slack: the inextensible catenary of the length the hanging cable has, √(l² − z²) = 2a
@@ -309,7 +309,7 @@ pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
 
 /// Above this tension (in units of the weight) a span is guessed as a flat parabola. Between 0.3
 /// and 2 the mean number of iterations over the grid changes by less than one.
-const PARABOLA_ABOVE: f64 = 0.6;
+const LEAST_PARABOLA_TENSION_WEIGHTS: f64 = 0.6;
 /// Mean tension of a slack span in units of its weight, for its stretched length.
 const SLACK_GUESS_STRAIN: f64 = 0.3;
 

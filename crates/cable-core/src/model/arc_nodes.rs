@@ -17,7 +17,7 @@ const SAGITTA_DIAMETERS: f64 = 0.016;
 /// Greatest turn between two nodes, rad: tension that grows as e^{μφ} leaves a straight line by
 /// (μφ)²/8 of itself, 2e-3 at μ = 1. Larger: tension read between nodes is off by more; smaller:
 /// small corners fill the answer.
-const TURN: f64 = 0.13;
+const LONGEST_ARC_RAD: f64 = 0.13;
 /// Maximum number of parts of one arc. Larger: a thin cable on a drum of kilometres fills the
 /// memory; smaller: chords on such a drum cut it by more than is promised.
 const MOST_PARTS: f64 = 8192.0;
@@ -30,14 +30,18 @@ fn sagitta_limit(cable_radius: f64) -> f64 {
 /// of a radius (m): it comes inside by no more than the greatest sagitta.
 pub(in crate::model) fn early_leave(radius: f64, cable_radius: f64) -> f64 {
     let sagitta = sagitta_limit(cable_radius);
-    if radius > sagitta { 2.0 * (0.5 * sagitta / radius).sqrt().asin() } else { TURN }
+    if radius > sagitta { 2.0 * (0.5 * sagitta / radius).sqrt().asin() } else { LONGEST_ARC_RAD }
 }
 
 /// Number of parts into which an arc of the centre line with a radius (m) and a turn (rad) is
 /// divided, for a cable of a radius (m).
 pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usize {
     let sagitta = sagitta_limit(cable_radius);
-    let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
+    let most = if radius > sagitta {
+        smaller(LONGEST_ARC_RAD, 4.0 * (0.5 * sagitta / radius).sqrt().asin())
+    } else {
+        LONGEST_ARC_RAD
+    };
     let parts = if radius > 0.0 { (turn.abs() / most).ceil() } else { 1.0 };
     // NaN gives 1.
     if parts > MOST_PARTS {
@@ -85,7 +89,8 @@ mod tests {
                     let sagitta = |count: usize| radius * (1.0 - (0.5 * turn / count as f64).cos());
                     let allowed = (2.0 * SAGITTA_DIAMETERS * cable_radius).min(SAGITTA_M);
                     assert!(sagitta(count) <= allowed * (1.0 + 1e-6), "{radius} {cable_radius} {turn}");
-                    let coarser = count == 1 || turn / (count - 1) as f64 > TURN || sagitta(count - 1) > allowed;
+                    let coarser =
+                        count == 1 || turn / (count - 1) as f64 > LONGEST_ARC_RAD || sagitta(count - 1) > allowed;
                     assert!(coarser, "{radius} {cable_radius} {turn}: {count}");
                 }
             }

@@ -11,10 +11,10 @@ use crate::math::larger;
 const TIME_S: f64 = 0.1;
 /// Part of the change that is made at once at its end, after 1.2 s. Larger: moments jump by it;
 /// smaller: the end comes later.
-const LAST_PART: f64 = 1e-4;
+const LAST_CHANGE_FRACTION: f64 = 1e-4;
 /// Part of the stiffness of its scene with which a cable begins that had none. Larger: its bends
 /// have a moment at once; smaller: rounding. A choice, tuned on no campaign.
-const FIRST_PART: f64 = 1e-9;
+const FIRST_STIFFNESS_FRACTION: f64 = 1e-9;
 
 /// The bending stiffness of a cable on its way to that of its scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl BendingChange {
     /// Begins at a stiffness, N·m².
     #[must_use]
     pub fn between(from_n_m2: f64, to_n_m2: f64) -> Self {
-        Self { from_n_m2: larger(from_n_m2, FIRST_PART * to_n_m2), to_n_m2, since_s: 0.0 }
+        Self { from_n_m2: larger(from_n_m2, FIRST_STIFFNESS_FRACTION * to_n_m2), to_n_m2, since_s: 0.0 }
     }
 
     /// The stiffness now, N·m².
@@ -36,7 +36,7 @@ impl BendingChange {
     pub fn stiffness(&self) -> f64 {
         let u = self.since_s / TIME_S;
         let left = (1.0 + u) * (-u).exp();
-        if left > LAST_PART { self.to_n_m2 + (self.from_n_m2 - self.to_n_m2) * left } else { self.to_n_m2 }
+        if left > LAST_CHANGE_FRACTION { self.to_n_m2 + (self.from_n_m2 - self.to_n_m2) * left } else { self.to_n_m2 }
     }
 
     /// Goes on for `dt_s`. The moments of a bend that is short beside the cable are as the root of

@@ -48,7 +48,7 @@ const LOWEST_LOSS_FREQUENCY: f64 = 0.2 * std::f64::consts::PI;
 
 /// Greatest ratio of the frequencies of neighbouring branches. Larger: the loss factor varies by
 /// more than 5 % between them; smaller: more branches.
-const RATIO: f64 = 10.0;
+const MAX_FREQUENCY_RATIO: f64 = 10.0;
 
 /// Damping ratio up to which loss is constant. With more the cable would stiffen manyfold (at 0.1
 /// by 5 in four decades): the rest of the damping is viscous, with its ratio at the first axial
@@ -159,9 +159,9 @@ fn bending(problem: &Problem, bar: f64) -> MaterialLoss {
 /// repeatedly by the ratio of the wanted to the present loss factor at its own frequency, which
 /// keeps them positive.
 fn fit(factor: f64, viscous: f64, [lowest, highest]: [f64; 2]) -> Vec<RelaxationBranch> {
-    let decades = bounded((highest / lowest).ln() / RATIO.ln(), 0.0, MOST_DECADES);
+    let decades = bounded((highest / lowest).ln() / MAX_FREQUENCY_RATIO.ln(), 0.0, MOST_DECADES);
     let steps = if decades > 1.0 { decades.ceil() } else { 1.0 };
-    let ratio = if decades > 0.0 { RATIO.powf(decades / steps) } else { RATIO };
+    let ratio = if decades > 0.0 { MAX_FREQUENCY_RATIO.powf(decades / steps) } else { MAX_FREQUENCY_RATIO };
     let power = std::f64::consts::FRAC_2_PI * factor.atan();
     let part = (std::f64::consts::PI * power).sin() / std::f64::consts::PI * ratio.ln();
     let mut branches: Vec<RelaxationBranch> = (0..=steps as i32)

@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     /// Greatest speed of a hand, m/s.
-    const FASTEST: f64 = 2.0;
+    const GREATEST_HAND_SPEED_M_PER_S: f64 = 2.0;
 
     #[test]
     fn it_arrives_smoothly_and_never_too_fast() {
@@ -154,10 +154,10 @@ mod tests {
     fn a_hand_is_as_fast_as_it_may_be() {
         let mut f = SmoothedTarget::at_rest(Vec2::zeros());
         for _ in 0..240 {
-            f.follow(Vec2::new(10.0, 0.0), 1.0 / 240.0, FASTEST);
-            assert!(f.velocity().norm() <= FASTEST * (1.0 + 1e-12));
+            f.follow(Vec2::new(10.0, 0.0), 1.0 / 240.0, GREATEST_HAND_SPEED_M_PER_S);
+            assert!(f.velocity().norm() <= GREATEST_HAND_SPEED_M_PER_S * (1.0 + 1e-12));
         }
         // After a second, less what it trails.
-        assert!((f.behind_m() - (8.0 + FASTEST * TRAILING_S)).abs() < 0.02, "{}", f.behind_m());
+        assert!((f.behind_m() - (8.0 + GREATEST_HAND_SPEED_M_PER_S * TRAILING_S)).abs() < 0.02, "{}", f.behind_m());
     }
 }

@@ -9,7 +9,7 @@ use crate::solution::{CableSolution, ContactReport, Node};
 /// Relative rounding of a length that is added up from many pieces, in units in the last place.
 /// Measured against the closed form: up to 5, of two answers. Less: rounding shows as an error that
 /// nobody told of; more: stiff taut cables seem worse than they are.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const LENGTH_ROUNDING_FRACTION: f64 = 8.0 * f64::EPSILON;
 
 /// Part of the tension at the slack end of a contact that rounding may be for the end of sliding to
 /// be known. Measured over a corner: at 0.02 pulls are right to 1e-5, at 0.05 they are a half, at
@@ -33,14 +33,15 @@ impl ErrorEstimates {
         stops.extend(answer.contacts.iter().flat_map(|c| c.extent_m()));
         stops.sort_by(f64::total_cmp);
         let stretches = stops.windows(2).filter_map(|w| stiffness(between_stops(&answer.nodes, w), problem));
-        let rounded = ROUNDING * (far * stretches.fold(0.0, larger) + largest_force(answer));
-        let drawn = answer.contacts.iter().filter_map(|c| unknown_slack_end(c, problem, ROUNDING * far));
+        let rounded = LENGTH_ROUNDING_FRACTION * (far * stretches.fold(0.0, larger) + largest_force(answer));
+        let drawn =
+            answer.contacts.iter().filter_map(|c| unknown_slack_end(c, problem, LENGTH_ROUNDING_FRACTION * far));
         let force = drawn.fold(rounded, larger);
         Self {
             max_tension_n: Some(force),
             support_force_n: Some(force),
             contact_force_n: (!answer.contacts.is_empty()).then_some(force),
-            position_m: Some(ROUNDING * far),
+            position_m: Some(LENGTH_ROUNDING_FRACTION * far),
         }
     }
 }

@@ -15,7 +15,7 @@ use crate::solution::{Warning, WarningCause};
 
 /// Depth inside a surface at which a point may be that was meant to be on it, of the radius:
 /// rounding of coordinates and slopes.
-const ON_SURFACE_FRACTION: f64 = 1e-3;
+const SURFACE_DEPTH_RADIUS_FRACTION: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
 const COORDINATE_ROUNDING: f64 = 1e-9;
 /// A support that is moved by more than this part of its coordinates (and of the radius, as above)
@@ -43,7 +43,7 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
         }
         let Some(at) = support.at else { continue };
         let Some((depth, obstacle)) = depth(problem, at) else { continue };
-        let most = ON_SURFACE_FRACTION * problem.radius + COORDINATE_ROUNDING * at.amax();
+        let most = SURFACE_DEPTH_RADIUS_FRACTION * problem.radius + COORDINATE_ROUNDING * at.amax();
         let out = pushed_out(problem, at);
         let path =
             || Path::Root.key("cables").index(problem.cable_index).key("supports").index(k).key("at_m").to_string();
@@ -63,7 +63,7 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
         };
         let by = out - at;
         // Rounding is put right without a word.
-        let told = by.norm() > ON_SURFACE_FRACTION * problem.radius + SILENT_MOVE_FRACTION * at.amax();
+        let told = by.norm() > SURFACE_DEPTH_RADIUS_FRACTION * problem.radius + SILENT_MOVE_FRACTION * at.amax();
         let cause = WarningCause::SupportOnSurface { support: support.name.clone(), obstacle: obstacle.to_owned() };
         let s = support.arc_length.unwrap_or(0.0);
         let note = Warning::new(cause, &problem.cable.name, s, [by.norm(), problem.radius]).at(out.into());

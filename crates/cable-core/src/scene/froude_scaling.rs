@@ -23,7 +23,7 @@ pub struct Similarity {
 /// Wider: the shortest and longest cables feel lengths that are fixed in the solvers; at 0.1 m by
 /// 0.2 % of the tension, at 0.01 m by 0.5 %, at 1 mm by 10 %. Narrower: no harm but that answers of
 /// scenes that were well before change in their last digits.
-const NATURAL_M: [f64; 2] = [2.0, 1000.0];
+const NATURAL_LENGTHS_M: [f64; 2] = [2.0, 1000.0];
 /// Length of the copy of a short cable at least, m; at most it is four times that.
 const COPY_OF_SHORT_M: f64 = 8.0;
 /// Distance of a cable from (0, 0) in its lengths from which its copy is made at (0, 0): there
@@ -36,7 +36,7 @@ impl Similarity {
     /// digit is lost by them.
     #[must_use]
     pub fn to_natural(length_m: f64, origin: Vec2) -> Option<Self> {
-        let [shortest, longest] = NATURAL_M;
+        let [shortest, longest] = NATURAL_LENGTHS_M;
         let natural = (shortest..=longest).contains(&length_m);
         if natural && origin.amax() <= MAX_ORIGIN_DISTANCE * length_m {
             return None;

@@ -16,7 +16,7 @@ use crate::state::State;
 
 /// Part of a cable's length by which the places of a break and of a support, or two of a support,
 /// differ by rounding.
-const SAME_PLACE: f64 = 1e-6;
+const SAME_PLACE_FRACTION: f64 = 1e-6;
 
 /// Lets a model continue with all that another one remembers of the same cable; returns whether it
 /// does.
@@ -102,7 +102,7 @@ impl SimulatedCable {
             let at = old.part.from + place.arc_length_m;
             let cut = Cut {
                 at,
-                near: SAME_PLACE * old.part.length(),
+                near: SAME_PLACE_FRACTION * old.part.length(),
                 after: place.gives_way_after,
                 support_arc_lengths: &self.support_arc_lengths(),
                 cleared_wheels: &[],
@@ -165,7 +165,7 @@ impl SimulatedCable {
             let now = old.reaction(k);
             let now = Vec2::new(now.x_m, now.y_m);
             if let (Some(to), true) = (support.at, same)
-                && (to - now).norm() > SAME_PLACE * problem.length
+                && (to - now).norm() > SAME_PLACE_FRACTION * problem.length
             {
                 self.draw_support(k, SupportTarget { place_m: now, grip: SupportGrip::Placed { to_m: to } });
             }

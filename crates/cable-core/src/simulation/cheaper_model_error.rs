@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, ErrorEstimates, ModelReason, NeglectedEffect, NextCheaper};
 
 /// Supports within this part of the cable's length of their places are there.
-const SAME_PLACE: f64 = 1e-9;
+const SAME_PLACE_FRACTION: f64 = 1e-9;
 
 /// Returns what the next cheaper choice would have cost; None where a model was not chosen for
 /// something that a cheaper one leaves out.
@@ -59,7 +59,7 @@ pub(super) fn next_cheaper<'a>(
 /// Returns whether all supports are where the scene has them: led elsewhere they are another scene.
 fn supports_as_in_scene(problem: &Problem, answer: &CableSolution) -> bool {
     let places = problem.supports.iter().zip(&answer.supports).filter_map(|(s, r)| Some((s.at?, r)));
-    places.into_iter().all(|(at, r)| (at.x - r.x_m).hypot(at.y - r.y_m) <= SAME_PLACE * problem.length)
+    places.into_iter().all(|(at, r)| (at.x - r.x_m).hypot(at.y - r.y_m) <= SAME_PLACE_FRACTION * problem.length)
 }
 
 /// Returns the effect for which a model was chosen, where a cheaper one neglects it.

@@ -32,7 +32,7 @@ const MAX_SEARCH_WORK: usize = 1_000_000;
 
 /// Relative change of the greatest tension below which a longer displacement of an end counts as
 /// making no difference: less than an engineer would act on.
-const SAME_TENSION: f64 = 0.01;
+const SAME_TENSION_FRACTION: f64 = 0.01;
 
 /// Time in which an end moves, s: too short for any other motion to matter.
 const MOVE_TIME_S: f64 = 1e-6;
@@ -149,5 +149,5 @@ fn tensions(answer: &CableSolution) -> [f64; 3] {
 
 /// True if no tension differs by more than an engineer would act on.
 fn same(one: [f64; 3], other: [f64; 3]) -> bool {
-    one.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_TENSION * one[2])
+    one.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_TENSION_FRACTION * one[2])
 }

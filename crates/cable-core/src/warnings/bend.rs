@@ -53,7 +53,7 @@ const COARSE_BAR_LENGTHS: f64 = 0.5;
 
 /// Radius at the bottom of the narrowest loop that hangs by its own weight w, in units of (EI/w)^⅓:
 /// the solution of the equation at the head of this file. It is no setting.
-const NARROWEST_LOOP: f64 = 0.912;
+const NARROWEST_LOOP_RADIUS: f64 = 0.912;
 
 /// Greatest centripetal acceleration, in parts of that of the weight, of a loop that hangs by its
 /// weight. Larger: whirling loops are taken for hanging ones; smaller: slowly moved ones are not.
@@ -183,7 +183,7 @@ impl SharpestBends {
         {
             return 0.0;
         }
-        let radius = NARROWEST_LOOP * (self.bending_stiffness / weight).cbrt();
+        let radius = NARROWEST_LOOP_RADIUS * (self.bending_stiffness / weight).cbrt();
         let square = n.vx_m_per_s * n.vx_m_per_s + n.vy_m_per_s * n.vy_m_per_s;
         let hangs = problem.linear_density * square < MAX_HANGING_ACCELERATION * weight * radius;
         if hangs { radius } else { 0.0 }

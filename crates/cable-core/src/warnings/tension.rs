@@ -8,12 +8,12 @@ use crate::solution::{CableSolution, MeanTension, Node, TensionPeaks, Warning, W
 
 /// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a
 /// slack span counts; smaller: friction on the ground leaves enough that nothing is ever slack.
-const SLACK_TENSION: f64 = 0.01;
+const SLACK_TENSION_FRACTION: f64 = 0.01;
 
 /// Shortest slack part, of the cable's length, that is named. Shorter: every end that lies on the
 /// ground is; longer: bights that a robot can run over are not. The low point of a hanging span,
 /// however deep, is slack over 2 % of it at most.
-const SLACK_PART: f64 = 0.05;
+const LEAST_SLACK_PART_FRACTION: f64 = 0.05;
 
 /// Material between two nodes that lies in folds is longer than their distance by more than this
 /// part of itself. Smaller: rounding; larger: folds spread over much ground are not seen.
@@ -88,7 +88,7 @@ pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<War
 
 /// Returns what lies without tension on less ground than it is long.
 fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
-    let limit_n = SLACK_TENSION * problem.force_scale();
+    let limit_n = SLACK_TENSION_FRACTION * problem.force_scale();
     // Seen from above, and where nothing weighs, it can lie anywhere.
     let anywhere = problem.weight.norm() == 0.0;
     let lies = |s: f64| anywhere || answer.contacts.iter().any(|c| c.begins_m <= s && s <= c.ends_m);
@@ -115,7 +115,7 @@ fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
 
 /// Appends the longest part without tension.
 fn warn_slack_part(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
-    let limit_n = SLACK_TENSION * problem.force_scale();
+    let limit_n = SLACK_TENSION_FRACTION * problem.force_scale();
     let mut longest: Option<(f64, &[Node])> = None;
     for piece in answer.pieces() {
         for run in piece.chunk_by(|a, b| a.tension_n < limit_n && b.tension_n < limit_n) {
@@ -127,7 +127,7 @@ fn warn_slack_part(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warn
             }
         }
     }
-    let least = SLACK_PART * problem.length;
+    let least = LEAST_SLACK_PART_FRACTION * problem.length;
     // Nothing has been solved yet where no node has tension.
     let solved = answer.nodes.iter().any(|n| n.tension_n > limit_n);
     if let Some((length, run)) = longest.filter(|(l, _)| *l >= least && solved)

@@ -65,7 +65,7 @@ impl Sentence for LikelyBending {
 
 /// Difference of forces, in parts of the greatest tension, below which two answers are the same:
 /// that of rounding.
-const SAME_ANSWER: f64 = 1e-9;
+const ANSWER_DIFFERENCE_FRACTION: f64 = 1e-9;
 
 impl Sentence for NextCheaper {
     fn sentence(&self, units: UnitSystem) -> String {
@@ -81,7 +81,7 @@ impl Sentence for NextCheaper {
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
             return format!("{}, without {what}: no answer", self.model);
         };
-        if force <= SAME_ANSWER {
+        if force <= ANSWER_DIFFERENCE_FRACTION {
             return format!("{}, without {what}: the same answer", self.model);
         }
         let by = if self.is_lower_bound { "by at least" } else { "by" };

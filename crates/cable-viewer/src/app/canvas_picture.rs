@@ -20,7 +20,7 @@ const PIXELS_PER_POINT: f32 = 2.0;
 /// Widest legend, points.
 const LEGEND_WIDTH: f32 = 260.0;
 /// Narrower pictures have the legend below the words of the caption, points.
-const SIDE_BY_SIDE: f32 = 560.0;
+const LEAST_SIDE_BY_SIDE_WIDTH: f32 = 560.0;
 /// Space between the words and the legend beside them, points.
 const GAP: f32 = 12.0;
 /// Height of the words of the caption and of each part of the legend, points.
@@ -58,7 +58,7 @@ fn draw(state: &mut AppState, theme: Theme) -> Offscreen {
     let [width, height] = [0, 1].map(|k| side(k).clamp(SIDES[0], SIDES[1]).round() as f32);
     let maps = if state.analysis.safe_reach.found().is_some() { ROWS[2] } else { 0.0 };
     let legend = ROWS[1] + maps;
-    let caption = if width < SIDE_BY_SIDE { ROWS[0] + legend } else { ROWS[0].max(legend) };
+    let caption = if width < LEAST_SIDE_BY_SIDE_WIDTH { ROWS[0] + legend } else { ROWS[0].max(legend) };
     let mut offscreen = Offscreen::new([width as u32, (height + caption) as u32], PIXELS_PER_POINT);
     theme::install(offscreen.ctx());
     offscreen.ctx().set_theme(theme);
@@ -76,7 +76,7 @@ fn draw(state: &mut AppState, theme: Theme) -> Offscreen {
 /// Words on the left, the legend on the right, or below where there is no room.
 fn write_caption(ui: &mut Ui, state: &AppState) {
     let area = ui.max_rect();
-    let (words, legend) = if ui.ctx().content_rect().width() < SIDE_BY_SIDE {
+    let (words, legend) = if ui.ctx().content_rect().width() < LEAST_SIDE_BY_SIDE_WIDTH {
         area.split_top_bottom_at_y(area.top() + ROWS[0])
     } else {
         let (left, right) = area.split_left_right_at_x(area.right() - LEGEND_WIDTH);

@@ -20,7 +20,7 @@ const SIZE: [u32; 2] = [1280, 800];
 /// Frames of a state in which nothing moves: enough to lay out, to fit and to solve.
 const STILL_FRAMES: usize = 6;
 /// Frames in a second.
-const RATE: usize = 60;
+const FRAMES_PER_S: usize = 60;
 
 /// A state of the window.
 pub struct PicturedState {
@@ -62,9 +62,14 @@ pub const STATES: [PicturedState; 8] = [
         prepare: tension_budget,
         frames: Frames::Still,
     },
-    PicturedState { name: "motion", scene: catalog::tank, prepare: motion, frames: Frames::Moving(8 * RATE) },
-    PicturedState { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: Frames::Moving(5 * RATE) },
-    PicturedState { name: "break", scene: weak, prepare: motion, frames: Frames::Moving(2 * RATE / 3) },
+    PicturedState { name: "motion", scene: catalog::tank, prepare: motion, frames: Frames::Moving(8 * FRAMES_PER_S) },
+    PicturedState {
+        name: "robot",
+        scene: catalog::robot_drive,
+        prepare: robot,
+        frames: Frames::Moving(5 * FRAMES_PER_S),
+    },
+    PicturedState { name: "break", scene: weak, prepare: motion, frames: Frames::Moving(2 * FRAMES_PER_S / 3) },
     PicturedState { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: Frames::AfterJob },
     PicturedState { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: Frames::Still },
 ];

@@ -5,7 +5,7 @@ use cable_core::answer_verifier::Verification;
 use egui::{Align, Button, Label, Layout, RichText, Sense, Ui, Vec2};
 
 use crate::command::{Command, ViewCommand};
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::OUTDATED_FIGURE_OPACITY;
 use crate::render::theme;
 use crate::state::{AppState, Freshness};
 use crate::units::format;
@@ -62,7 +62,11 @@ fn figures(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.colored_label(colour, format!("{} of service", format::percent(share))).on_hover_text(help);
     }
     let text = RichText::new(format!("Max {}", format::force(most.tension_n))).size(14.0);
-    let text = if current { text.strong() } else { text.color(ui.visuals().text_color().gamma_multiply(DIMMED)) };
+    let text = if current {
+        text.strong()
+    } else {
+        text.color(ui.visuals().text_color().gamma_multiply(OUTDATED_FIGURE_OPACITY))
+    };
     let figure = ui.add(Button::new(text).frame(false));
     if figure.on_hover_text("Greatest tension of all cables; click to see where").clicked() {
         let at = answer.cables.get(most.cable).and_then(|c| {

@@ -9,12 +9,12 @@ use crate::state::camera::Camera;
 
 /// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
 /// the cable or the legend of the safe reach.
-const HINTS: f32 = 46.0;
+const HINTS_HEIGHT_POINTS: f32 = 46.0;
 
 /// Returns the room that the hints take now, points.
 #[must_use]
 pub fn hints_height(state: &AppState) -> f32 {
-    if state.ui.first_steps.open().is_empty() { 0.0 } else { HINTS }
+    if state.ui.first_steps.open().is_empty() { 0.0 } else { HINTS_HEIGHT_POINTS }
 }
 
 /// One frame's picture.

@@ -49,7 +49,7 @@ fn property(key: &str) -> String {
 /// The value of a key with its unit and four digits.
 fn value(key: &str, value: &FieldValue) -> String {
     let of = PROPERTIES.iter().find(|p| p.key == key).map(|p| p.quantity.unit);
-    let unit = of.or_else(|| Some(unit(key)?.1)).unwrap_or(Unit::NONE);
+    let unit = of.or_else(|| Some(unit(key)?.1)).unwrap_or(Unit::PLAIN_NUMBER);
     match value {
         FieldValue::Number(number) => unit.text(*number),
         FieldValue::Pair(at) if unit.symbol == Unit::M.symbol => format::position(*at),

@@ -18,9 +18,9 @@ use crate::widgets::field;
 
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
-const ONE_ROW: f32 = 960.0;
+const LEAST_ONE_ROW_WIDTH: f32 = 960.0;
 /// Below this width the graphs stand one under the other, points.
-const SIDE_BY_SIDE: f32 = 480.0;
+const LEAST_SIDE_BY_SIDE_WIDTH: f32 = 480.0;
 /// Lowest graph that can still be read, points.
 const MIN_HEIGHT: f32 = 90.0;
 
@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
     asked(ui, state, &mut view);
-    if ui.available_width() >= ONE_ROW {
+    if ui.available_width() >= LEAST_ONE_ROW_WIDTH {
         ui.horizontal(|ui| {
             controls(ui, state, &mut view);
             ui.separator();
@@ -46,7 +46,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         timeline::ui(ui, state, commands);
         ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
     }
-    let wide = ui.available_width() >= SIDE_BY_SIDE;
+    let wide = ui.available_width() >= LEAST_SIDE_BY_SIDE_WIDTH;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
     let height = if wide { room } else { room / 2.0 };
     let touched = if !wide && height < MIN_HEIGHT {

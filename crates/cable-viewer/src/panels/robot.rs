@@ -153,7 +153,7 @@ fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let friction = robot.track_friction.unwrap_or(TRACK_FRICTION);
     let rolling = robot.rolling_resistance.unwrap_or(ROLLING_RESISTANCE);
     labelled(ui, "Track friction", "Track friction", |ui| {
-        let entry = field::number(ui, "Track friction", Unit::NONE, friction, WIDTH);
+        let entry = field::number(ui, "Track friction", Unit::PLAIN_NUMBER, friction, WIDTH);
         if let Some(value) = entry.value {
             set(Robot { track_friction: Some(value), ..robot.clone() }, commands);
         }
@@ -162,7 +162,7 @@ fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             .on_hover_text("Of tracks on the ground: 0.3 wet and smooth, 0.6 rough; 0.45 unless set (estimated)")
     });
     labelled(ui, "Rolling resistance", "Rolling resistance", |ui| {
-        let entry = field::number(ui, "Rolling resistance", Unit::NONE, rolling, WIDTH);
+        let entry = field::number(ui, "Rolling resistance", Unit::PLAIN_NUMBER, rolling, WIDTH);
         if let Some(value) = entry.value {
             set(Robot { rolling_resistance: Some(value), ..robot.clone() }, commands);
         }

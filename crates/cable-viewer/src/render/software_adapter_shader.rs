@@ -54,7 +54,7 @@ const COPY_CORNERS: [[f32; 4]; 6] = [
 /// Twice the area, points², from which a triangle of one colour, or a row of small ones, is drawn
 /// without asking the font. Smaller: changing the shader costs more than the pixels; larger:
 /// buttons and plots ask the font for nothing.
-const PLAIN: f32 = 4000.0;
+const LEAST_PLAIN_DOUBLE_AREA_POINTS2: f32 = 4000.0;
 
 /// Bytes that are got from the system and given back once before the first frame, of the 32 MiB at
 /// most at which glibc learns from it. Fewer: what the renderer frees after each frame goes back to
@@ -470,7 +470,7 @@ fn fills(mesh: &Mesh) -> Vec<Fill> {
             (row, area, row_fill) = (fills.len()..fills.len(), 0.0, fill);
         }
         area += size;
-        fills.push(if size > PLAIN { fill } else { Fill::Font });
+        fills.push(if size > LEAST_PLAIN_DOUBLE_AREA_POINTS2 { fill } else { Fill::Font });
         row.end = fills.len();
     }
     close_triangle_row(&mut fills, row, area, row_fill);
@@ -479,7 +479,7 @@ fn fills(mesh: &Mesh) -> Vec<Fill> {
 
 /// A row of triangles that are drawn alike is over.
 fn close_triangle_row(fills: &mut [Fill], row: std::ops::Range<usize>, area: f32, fill: Fill) {
-    if area > PLAIN {
+    if area > LEAST_PLAIN_DOUBLE_AREA_POINTS2 {
         fills.get_mut(row).into_iter().flatten().for_each(|f| *f = fill);
     }
 }

@@ -21,7 +21,7 @@ pub enum EditKind {
 }
 
 /// Most entries kept; the oldest are forgotten.
-const DEPTH: usize = 200;
+const MAX_ENTRIES: usize = 200;
 
 impl Undo {
     /// Keeps `scene`, about to be changed by an edit of a kind.
@@ -32,7 +32,7 @@ impl Undo {
             return;
         }
         self.last = (!is_single).then_some(kind);
-        if self.undo_stack.len() == DEPTH {
+        if self.undo_stack.len() == MAX_ENTRIES {
             self.undo_stack.remove(0);
         }
         self.undo_stack.push(scene.clone());

@@ -232,8 +232,8 @@ mod tests {
         assert_eq!(Unit::KN.text(90.0), "0.09 kN");
         assert_eq!(Unit::KN.text(10e3), "10.00 kN");
         assert_eq!(Unit::KN.text(999.96), "1 kN");
-        assert_eq!(Unit::NONE.text(0.5), "0.5");
-        assert_eq!(Unit::NONE.text(-0.123_456), "−0.1235");
+        assert_eq!(Unit::PLAIN_NUMBER.text(0.5), "0.5");
+        assert_eq!(Unit::PLAIN_NUMBER.text(-0.123_456), "−0.1235");
         assert_eq!(Unit::COORDINATE.text(0.25), "0.250 m");
         assert_eq!(Unit::N.brief(-1.0), "−1 N");
         assert_eq!([magnitude(3.1e6, 2), magnitude(-2e-10, 3)], ["3.1×10^6", "−2×10^−10"]);
@@ -266,7 +266,7 @@ mod tests {
         assert_eq!(Unit::KN.parse("2 MN"), Ok(2e6));
         assert_eq!(Unit::MM.parse("0.14 m"), Ok(0.14));
         assert_eq!(Unit::N.parse("−3e2"), Ok(-300.0));
-        assert_eq!(Unit::NONE.parse("0.5"), Ok(0.5));
+        assert_eq!(Unit::PLAIN_NUMBER.parse("0.5"), Ok(0.5));
         for wrong in ["", "abc", "1,5", "12 s", "inf", "NaN", "1e999"] {
             assert!(Unit::N.parse(wrong).is_err(), "{wrong}");
         }

@@ -36,7 +36,7 @@ impl Unit {
     /// Metres of a coordinate, to the millimetre.
     pub const COORDINATE: Self = Self { decimals: Some(3), ..Self::M };
     /// Whole numbers.
-    pub const COUNT: Self = Self { decimals: Some(0), ..Self::NONE };
+    pub const COUNT: Self = Self { decimals: Some(0), ..Self::PLAIN_NUMBER };
 
     /// Metres.
     pub const M: Self = Self::of("m", 1.0, LENGTHS);
@@ -65,7 +65,7 @@ impl Unit {
     /// Hundredths.
     pub const PERCENT: Self = Self::of("%", 1e-2, RATIOS);
     /// Plain numbers.
-    pub const NONE: Self = Self::of("", 1.0, &[]);
+    pub const PLAIN_NUMBER: Self = Self::of("", 1.0, &[]);
     /// Degrees.
     pub const DEGREE: Self = Self::of("°", 1.0, &[]);
     /// Seconds.

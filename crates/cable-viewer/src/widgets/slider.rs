@@ -31,9 +31,9 @@ pub const VALUE_FRACTION_PER_POINT: f64 = 0.005;
 /// As [`VALUE_FRACTION_PER_POINT`], a fraction of the whole rail on a linear one.
 pub const RANGE_FRACTION_PER_POINT: f64 = 0.002;
 /// Points of movement over which a point comes to do twice as much.
-const DOUBLES_IN: f64 = 10.0;
+const DOUBLING_DISTANCE_POINTS: f64 = 10.0;
 /// Fraction of the movement that is left while Shift is held.
-const SHIFT: f64 = 0.1;
+const SHIFT_KEY_MOVEMENT_FRACTION: f64 = 0.1;
 /// Rest of the hand after which movement is fine again about where the value is, s. Less: a slow
 /// hand never gets far; more: who overshot waits.
 const POINTER_REST_S: f64 = 0.3;
@@ -83,7 +83,7 @@ impl SliderRange {
     /// the ends is not drawn in by a touch.
     fn moved(self, from: f64, points: f64) -> f64 {
         let [low, high] = self.ends;
-        let way = points * (1.0 + points.abs() / (2.0 * DOUBLES_IN));
+        let way = points * (1.0 + points.abs() / (2.0 * DOUBLING_DISTANCE_POINTS));
         let value = if self.logarithmic {
             let value = from.max(self.least()) * (VALUE_FRACTION_PER_POINT * way).exp();
             if low <= 0.0 && value < self.least() { low } else { value }
@@ -140,8 +140,8 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: O
     if fine != anchor.fine || (x != last_x && now_s - moved_s > POINTER_REST_S) {
         anchor = DragAnchor { value, pointer_x: last_x, fine, ..anchor };
     }
-    let points = f64::from(x - anchor.pointer_x) * if fine { SHIFT } else { 1.0 };
-    let half = 0.5 * if fine { SHIFT } else { 1.0 };
+    let points = f64::from(x - anchor.pointer_x) * if fine { SHIFT_KEY_MOVEMENT_FRACTION } else { 1.0 };
+    let half = 0.5 * if fine { SHIFT_KEY_MOVEMENT_FRACTION } else { 1.0 };
     let moves = x != last_x;
     anchor.last = (x, if moves { now_s } else { moved_s });
     ui.data_mut(|d| d.insert_temp(response.id, anchor));

@@ -38,7 +38,7 @@ pub(super) struct SlidingStart<'a> {
 /// Balance wanted at a pulley, relative to its tension.
 const PULLEY_BALANCE_TOLERANCE: f64 = 1e-13;
 /// Balance accepted where round-off allows no better.
-const BALANCE_ACCEPTED: f64 = 1e-9;
+const ACCEPTED_BALANCE_FRACTION: f64 = 1e-9;
 /// Wheel angles wanted, rad.
 const ANGLE: f64 = 1e-12;
 /// A dangling end shorter than this part of the cable has run off its pulley.
@@ -337,7 +337,7 @@ fn descend(
     for _ in 0..layout.settings.max_iterations {
         let (r, j, worst, newtons) = rows(slide, &s, modes, form).ok_or_else(|| lost(iterations))?;
         // Newton's method gains far more than a half there, unless what is left is rounding.
-        let rounding = worst <= BALANCE_ACCEPTED && worst > 0.5 * before;
+        let rounding = worst <= ACCEPTED_BALANCE_FRACTION && worst > 0.5 * before;
         before = worst;
         let end = move |sigma, s, residual| Equilibrium {
             sigma,
@@ -361,7 +361,7 @@ fn descend(
             (sigma, s) = next;
             continue;
         }
-        if !(worst <= BALANCE_ACCEPTED) {
+        if !(worst <= ACCEPTED_BALANCE_FRACTION) {
             return Err(not_converged(slide.problem, layout, 0, iterations, newtons));
         }
         let Some(way) = runs_away(&j) else { return Ok(end(sigma, s, newtons)) };

@@ -22,13 +22,13 @@ use crate::solution::{CableSolution, Histories, Node};
 /// that it draws the slack over at once; larger: the slack begins in more than one span.
 const SPARE_FRACTION: f64 = 1e-3;
 /// Greatest fraction of the slack that is used for that.
-const SPARE_OF_SLACK: f64 = 0.1;
+const SPARE_SLACK_FRACTION: f64 = 0.1;
 /// Slack below which there is none, as a fraction of the length.
 const LEAST_SLACK_FRACTION: f64 = 1e-6;
 /// Difference of the material at a pulley from which two equilibria are different, as a fraction of
 /// the length. Smaller: two answers of one search count as two; larger: nearby equilibria count as
 /// one.
-const OTHER_FRACTION: f64 = 1e-5;
+const DIFFERENT_MATERIAL_FRACTION: f64 = 1e-5;
 /// Most starts. Smaller: balances of cables over many pulleys are missed; larger: they take long.
 const MAX_STARTS: usize = 24;
 
@@ -52,7 +52,7 @@ fn starts(problem: &Problem, layout: &SupportLayout, sigma: &[f64]) -> Vec<Vec<f
         if to - from < 2 || !(slack > LEAST_SLACK_FRACTION * problem.length) {
             continue;
         }
-        let spare = 1.0 + smaller(SPARE_FRACTION, SPARE_OF_SLACK * slack / taut);
+        let spare = 1.0 + smaller(SPARE_FRACTION, SPARE_SLACK_FRACTION * slack / taut);
         for receives in from..to {
             let mut start = sigma.to_vec();
             for k in from + 1..to {
@@ -92,7 +92,7 @@ pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s
     for start in starts(problem, &layout, &found[0].sigma) {
         let Some(other) = from(start).filter(|e| !e.runs_away) else { continue };
         let apart = |e: &Equilibrium| {
-            e.sigma.iter().zip(&other.sigma).any(|(a, b)| (a - b).abs() > OTHER_FRACTION * problem.length)
+            e.sigma.iter().zip(&other.sigma).any(|(a, b)| (a - b).abs() > DIFFERENT_MATERIAL_FRACTION * problem.length)
         };
         if found.iter().all(apart) && model.refuse_contact(&layout, &report(problem, &layout, &other).0).is_ok() {
             found.push(other);

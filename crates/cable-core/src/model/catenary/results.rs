@@ -16,7 +16,7 @@ use crate::solution::{Node, SupportReaction};
 /// Greatest distance of the cable from the straight line between two nodes, as a fraction of its
 /// length. Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
 /// thousands of nodes.
-const FLATNESS: f64 = 1e-5;
+const MAX_CHORD_DISTANCE_FRACTION: f64 = 1e-5;
 /// Between two nodes tension leaves a straight line by no more than this part of itself.
 const TENSION_FLATNESS: f64 = 5e-5;
 /// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a
@@ -55,7 +55,7 @@ pub(in crate::model) struct Nodes<'a> {
 impl<'a> Nodes<'a> {
     /// None yet, for a cable with a greatest tension (N).
     pub fn new(problem: &'a Problem, greatest: f64) -> Self {
-        let (flat, least_tension) = (FLATNESS * problem.length, TENSION_FLOOR * greatest);
+        let (flat, least_tension) = (MAX_CHORD_DISTANCE_FRACTION * problem.length, TENSION_FLOOR * greatest);
         Self { problem, flat, least_tension, turned: false, out: Vec::new() }
     }
 

@@ -48,7 +48,7 @@ const MAX_RETURN_TRIALS: usize = 40;
 /// that tension. Smaller: coarse meshes, on which a contact in one point changes the tension by 8
 /// %, neglect the whole bend instead; larger: a rest that was not found again is used. A choice,
 /// tuned on no campaign.
-const SAME_REST: f64 = 0.25;
+const SAME_REST_TENSION_FRACTION: f64 = 0.25;
 
 /// Number of times that a cable may come back to wheels in one step. More: cables that tremble on a
 /// wheel take long; fewer: they are laid on it late. A choice, tuned on no campaign.
@@ -639,7 +639,7 @@ impl LeavableWheels {
         let greatest = |answer: &CableSolution| answer.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
         let Ok(inner) = self.built(Some(&posts), &Start::Rest(&start, state.time_s)) else { return false };
         let (before, after) = (greatest(&start), greatest(&inner.solution()));
-        let same = (after - before).abs() <= SAME_REST * before;
+        let same = (after - before).abs() <= SAME_REST_TENSION_FRACTION * before;
         if same {
             self.continue_with(inner, Some(posts));
         }

@@ -1,7 +1,7 @@
 //! This method finds the bracketed root of a function of one variable with a known derivative.
 
 /// Accuracy of a root, as a fraction of the searched interval (round-off).
-const ROOT: f64 = 1e-15;
+const ROOT_TOLERANCE_FRACTION: f64 = 1e-15;
 /// Relative difference of tensions that counts as round-off. Smaller: where old and new tension
 /// nearly coincide the search bisects within round-off. Larger: the material is off by this
 /// fraction of the strain.
@@ -28,7 +28,7 @@ pub(in crate::model::spans) fn crossing(
     if f1.abs() <= floor {
         return b;
     }
-    let rounding = ROOT * (a.abs() + b.abs());
+    let rounding = ROOT_TOLERANCE_FRACTION * (a.abs() + b.abs());
     let (mut x, mut before) = (a + (b - a) * (f0 / (f0 - f1)), f64::INFINITY);
     for _ in 0..MAX_ROUNDS {
         let (value, slope) = f(x);

@@ -68,7 +68,7 @@ pub use crate::model::spans::settings::SpansSettings;
 /// Difference of tensions within which two histories agree, as a fraction of the greatest tension.
 /// Larger: a cable held by little friction is reported to have one equilibrium; smaller: round-off
 /// is reported as another history.
-const SAME_TENSION: f64 = 1e-9;
+const SAME_TENSION_FRACTION: f64 = 1e-9;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -475,7 +475,7 @@ impl SpansModel {
         else {
             return false;
         };
-        let same = |[low, high]: &[f64; 2]| high - low <= SAME_TENSION * greatest_n;
+        let same = |[low, high]: &[f64; 2]| high - low <= SAME_TENSION_FRACTION * greatest_n;
         let answer = CableSolution { contacts: self.present_report().contacts, ..CableSolution::default() };
         same(start_n) && same(end_n) && !self.problem.rubs(&answer)
     }

@@ -16,7 +16,7 @@ const EDGE_NODES: usize = 8;
 
 /// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad:
 /// accurate to 1e-11.
-const PANEL: f64 = 1.0;
+const LONGEST_PANEL_RAD: f64 = 1.0;
 /// Longest stretch for which 3 points are as accurate, rad.
 const THREE_POINT_ARC: f64 = 0.1;
 
@@ -241,7 +241,7 @@ fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
     for stretch in stretches {
         let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.cached_piece.turns());
-        let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
+        let panels = if turns { (way / LONGEST_PANEL_RAD).ceil().max(1.0) } else { 1.0 };
         let h = way / panels;
         let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &GAUSS_3 } else { &GAUSS_5 };
         for k in 0..panels as usize {
@@ -421,9 +421,9 @@ fn heap(section: &CableSection, context: &SolveContext, j: usize, name: &str) ->
 /// if all are equal.
 fn parts(c: &Contact, friction: f64, stretches: &[ContactStretch]) -> Vec<ContactPart> {
     /// Fraction of mobilised friction from which it counts as fully mobilised (round-off).
-    const LIMIT: f64 = 1.0 - 1e-9;
+    const MOBILISED_FRACTION: f64 = 1.0 - 1e-9;
     let state = |s: &ContactStretch| {
-        if s.mobilised.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick }
+        if s.mobilised.abs() >= MOBILISED_FRACTION * friction { ContactState::Slip } else { ContactState::Stick }
     };
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
         return Vec::new();

@@ -10,7 +10,7 @@ use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 
 /// Distance from the foot of the canvas, points: the scale bar and the axis stay in sight.
-const ABOVE_FOOT: f32 = 58.0;
+const FOOT_DISTANCE_POINTS: f32 = 58.0;
 /// Space round the words, points.
 const MARGIN: Margin = Margin { left: 10, right: 10, top: 4, bottom: 4 };
 /// Space between the words and the buttons, points.
@@ -32,7 +32,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
     let area = |name: &str, at: Pos2| {
         Area::new(Id::unique(("first steps", name.to_owned()))).order(Order::Middle).fixed_pos(at)
     };
-    let foot = pos2(canvas.center().x - BUTTONS, canvas.bottom() - ABOVE_FOOT);
+    let foot = pos2(canvas.center().x - BUTTONS, canvas.bottom() - FOOT_DISTANCE_POINTS);
     let hints = area("words", foot).pivot(Align2::CENTER_BOTTOM).interactable(false).show(ui.ctx(), |ui| {
         Frame::popup(ui.style()).inner_margin(MARGIN).show(ui, |ui| {
             ui.horizontal(|ui| {

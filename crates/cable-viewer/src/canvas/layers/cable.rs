@@ -15,7 +15,7 @@ use crate::units::format;
 /// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;
 /// Width of the soft edge, points.
-const FEATHER: f32 = 0.8;
+const SOFT_EDGE_WIDTH: f32 = 0.8;
 /// A joint is drawn sharp up to this ratio of its miter to the half width, then cut.
 const MITER: f32 = 2.0;
 
@@ -148,7 +148,7 @@ impl Ribbon {
     /// Adds the ribbon in the colours of its points; where a point has none, the ribbon is broken.
     pub fn add(&self, mesh: &mut Mesh, width: f32, colour: impl Fn(usize) -> Option<Color32>) {
         let half = width / 2.0;
-        let soft = (half + FEATHER) / half;
+        let soft = (half + SOFT_EDGE_WIDTH) / half;
         let mut before: Option<u32> = None;
         for (i, (&p, &o)) in self.points.iter().zip(&self.offsets).enumerate() {
             let Some(c) = colour(i) else {

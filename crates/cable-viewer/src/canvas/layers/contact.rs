@@ -11,9 +11,9 @@ use crate::render::theme::Palette;
 use crate::state::AppState;
 
 /// Width of the band beyond that of the cable, points.
-const BAND: f32 = 6.0;
+const BAND_WIDTH: f32 = 6.0;
 /// Width of its edge where it is hollow, points.
-const EDGE: f32 = 2.8;
+const HOLLOW_EDGE_WIDTH: f32 = 2.8;
 /// Half the length of the tick at a slip front, points.
 const TICK: f32 = 11.0;
 
@@ -54,9 +54,9 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
                 ContactState::Stick => (view.palette.normal, None),
                 ContactState::Slip => (view.palette.friction, Some(view.palette.background)),
             };
-            line.add(&mut mesh, width + BAND, |_| Some(colour));
+            line.add(&mut mesh, width + BAND_WIDTH, |_| Some(colour));
             if let Some(inside) = inside {
-                line.add(&mut mesh, width + BAND - EDGE, |_| Some(inside));
+                line.add(&mut mesh, width + BAND_WIDTH - HOLLOW_EDGE_WIDTH, |_| Some(inside));
             }
         }
     }
@@ -119,7 +119,7 @@ pub fn sample(painter: &Painter, palette: &Palette, rect: Rect, state: ContactSt
             painter.rect_filled(rect, 0.0, palette.normal);
         }
         ContactState::Slip => {
-            let line = Stroke::new(EDGE / 2.0, palette.friction);
+            let line = Stroke::new(HOLLOW_EDGE_WIDTH / 2.0, palette.friction);
             painter.rect(rect, 0.0, palette.background, line, StrokeKind::Inside);
         }
     }

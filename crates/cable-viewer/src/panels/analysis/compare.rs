@@ -10,7 +10,7 @@ use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::panels::display_names;
 use crate::panels::pin_names::{PinName, pin_names};
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::OUTDATED_FIGURE_OPACITY;
 use crate::record::kept_run::Peak;
 use crate::record::plotted_quantity::Measure;
 use crate::render::colour::{CableQuantity, LINES};
@@ -25,7 +25,7 @@ const MIN_COLUMN_WIDTH: f32 = 28.0;
 /// Width of the panel from which columns stand apart, points: below, they have no room to.
 const MIN_WIDE_TABLE: f32 = 300.0;
 /// Size of its figures, points. Larger: the last column is cut in US units.
-const FIGURES: f32 = 12.0;
+const FIGURE_SIZE_POINTS: f32 = 12.0;
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
 
@@ -130,7 +130,7 @@ fn name_above(ui: &mut Ui, k: usize, name: &str) {
 fn dimmed_row_if_old(ui: &mut Ui, state: &AppState, cells: impl FnOnce(&mut Ui)) {
     let before = ui.opacity();
     if !state.is_current() {
-        ui.multiply_opacity(DIMMED);
+        ui.multiply_opacity(OUTDATED_FIGURE_OPACITY);
     }
     cells(ui);
     ui.set_opacity(before);
@@ -191,7 +191,8 @@ fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
                 ("Most pull", "Of the cable on the robot, and when"),
                 ("Events", "Warnings that began"),
             ] {
-                ui.add(egui::Label::new(RichText::new(title).weak().size(FIGURES)).extend()).on_hover_text(help);
+                ui.add(egui::Label::new(RichText::new(title).weak().size(FIGURE_SIZE_POINTS)).extend())
+                    .on_hover_text(help);
             }
             ui.end_row();
             let held = state.analysis.references.iter().enumerate();
@@ -277,7 +278,7 @@ fn figure(ui: &mut Ui, text: &str, below: Option<String>) -> Option<Response> {
         let (figure, unit) = text.split_at(text.find([' ', '\u{a0}']).unwrap_or(text.len()));
         let mut words = egui::text::LayoutJob::default();
         for (part, colour) in [(figure, ui.visuals().strong_text_color()), (unit, ui.visuals().weak_text_color())] {
-            words.append(part, 0.0, egui::TextFormat::simple(egui::FontId::proportional(FIGURES), colour));
+            words.append(part, 0.0, egui::TextFormat::simple(egui::FontId::proportional(FIGURE_SIZE_POINTS), colour));
         }
         ui.add(egui::Label::new(words).extend());
         below.map(|below| ui.add(egui::Label::new(RichText::new(below).small().weak()).extend()))

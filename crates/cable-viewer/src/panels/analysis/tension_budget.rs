@@ -21,7 +21,7 @@ const BAR_ROW_HEIGHT: f32 = 15.0;
 /// Terms below this share of the greatest are not listed: rounding.
 const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 
-const END: Color32 = Color32::from_rgb(136, 136, 136);
+const END_COLOUR: Color32 = Color32::from_rgb(136, 136, 136);
 const WEIGHT: Color32 = LINES[1];
 const WIND: Color32 = Color32::from_rgb(110, 190, 190);
 /// Neighbouring contacts differ.
@@ -175,7 +175,7 @@ fn how(answer: &Solution, cable: usize, term: &Contribution) -> String {
 
 fn colour(term: &Contribution) -> Color32 {
     match term.cause {
-        Cause::End => END,
+        Cause::End => END_COLOUR,
         Cause::Weight => WEIGHT,
         Cause::Wind => WIND,
         Cause::Contact(k) => CONTACTS[k % CONTACTS.len()],

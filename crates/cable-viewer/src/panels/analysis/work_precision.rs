@@ -160,9 +160,9 @@ fn legend(ui: &mut Ui, found: &WorkPrecision) {
 
 /// Whole powers of ten, few enough to be read.
 fn decades(input: GridInput) -> Vec<GridMark> {
-    const MOST: f64 = 5.0;
+    const MAX_DECADE_MARKS: f64 = 5.0;
     let (low, high) = input.bounds;
-    let step = ((high - low) / MOST).ceil().max(1.0);
+    let step = ((high - low) / MAX_DECADE_MARKS).ceil().max(1.0);
     let first = (low / step).ceil();
     let count = ((high / step).floor() - first).clamp(0.0, 20.0) as u32;
     (0..=count).map(|k| GridMark { value: (first + f64::from(k)) * step, step_size: step }).collect()

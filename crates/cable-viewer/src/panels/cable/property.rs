@@ -133,7 +133,7 @@ pub const PROPERTIES: [Property; 13] = [
     property!(
         friction,
         "Friction",
-        Unit::NONE,
+        Unit::PLAIN_NUMBER,
         [0.0, 1.5],
         false,
         "Coulomb coefficient with every obstacle that does not say otherwise. It is poorly known: half a turn round a post multiplies tension by 4.8 at 0.5 and by 12 at 0.8, so try low and high."

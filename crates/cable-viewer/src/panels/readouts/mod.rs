@@ -25,13 +25,13 @@ use crate::widgets::{field, readout};
 
 /// Opacity of figures that are not of the scene as it is. More: they are read as answers; less:
 /// what was there cannot be read at all.
-pub const DIMMED: f32 = 0.4;
+pub const OUTDATED_FIGURE_OPACITY: f32 = 0.4;
 
 /// Draws figures of the answer on screen: dimmed while that is not of the scene as it is.
 pub fn dimmed_if_old<R>(ui: &mut Ui, state: &AppState, figures: impl FnOnce(&mut Ui) -> R) -> R {
     let scope = ui.scope(|ui| {
         if !state.is_current() {
-            ui.multiply_opacity(DIMMED);
+            ui.multiply_opacity(OUTDATED_FIGURE_OPACITY);
         }
         figures(ui)
     });
@@ -83,7 +83,7 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             })
             .response
             .on_hover_text(help);
-            ui.multiply_opacity(DIMMED);
+            ui.multiply_opacity(OUTDATED_FIGURE_OPACITY);
         }
         if state.live.snapshot.solution.as_ref().is_some_and(|s| s.cables.len() > 1) {
             ui.strong(&solved.name);
@@ -105,7 +105,7 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         return;
     };
     if state.freshness() != Freshness::Current {
-        ui.multiply_opacity(DIMMED);
+        ui.multiply_opacity(OUTDATED_FIGURE_OPACITY);
     }
     ui.push_id(("figures", index), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;

@@ -118,7 +118,7 @@ pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>
     }
     if let Some(mu) = obstacle.friction {
         let text = ["Obstacle friction", "Coulomb coefficient with every cable"];
-        if let Some(mu) = optional(ui, text, Unit::NONE, Some(mu), &mut faults) {
+        if let Some(mu) = optional(ui, text, Unit::PLAIN_NUMBER, Some(mu), &mut faults) {
             value.friction = Some(mu);
         }
     }

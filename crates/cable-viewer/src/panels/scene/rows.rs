@@ -6,7 +6,7 @@ use egui::{Atom, AtomExt, Button, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::panels::display_names::capital;
-use crate::panels::readouts::DIMMED;
+use crate::panels::readouts::OUTDATED_FIGURE_OPACITY;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
@@ -33,7 +33,7 @@ pub const GAP: f32 = 3.0;
 pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
     let selected = state.selection.selected == Some(item);
     let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
-    let opacity = if state.is_current() { 1.0 } else { DIMMED };
+    let opacity = if state.is_current() { 1.0 } else { OUTDATED_FIGURE_OPACITY };
     let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
     // A name given by the user gives way to the word about it, but what is always called the same
     // does not.

@@ -258,7 +258,7 @@ fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
         });
     }
     let text = ["Pulley friction", "Coulomb coefficient; 0 = turns freely"];
-    if let Some(v) = optional(ui, text, Unit::NONE, s.friction, faults) {
+    if let Some(v) = optional(ui, text, Unit::PLAIN_NUMBER, s.friction, faults) {
         row.changed(commands, |s| s.friction = Some(v));
     }
 }

@@ -9,7 +9,7 @@ use crate::model::fem::free::places;
 
 /// Step of the differences of a state's slope, as a fraction of an element. Smaller: round-off;
 /// larger: an error that grows with its square.
-const DIFFERENCE: f64 = 1e-2;
+const DIFFERENCE_STEP_ELEMENTS: f64 = 1e-2;
 
 /// Element length, in layers √(EI/T), up to which an element resolves the bend. Smaller: states are
 /// interpolated with less than their order; larger: errors of shear appear as bends.
@@ -102,7 +102,7 @@ impl Elastica {
     /// Change of the slope `f` of a state along a piece, by central differences over a part of an
     /// element of length `h`.
     fn second_slope(&self, contact: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
-        let step = DIFFERENCE * h;
+        let step = DIFFERENCE_STEP_ELEMENTS * h;
         let [back, on] = [-step, step].map(|by| self.slope(contact, &std::array::from_fn(|i| u[i] + by * f[i])));
         std::array::from_fn(|i| (on[i] - back[i]) / (2.0 * step))
     }

@@ -17,7 +17,7 @@ const MOST_PARTS: f64 = 400.0;
 
 /// Distance by which the straight line between two nodes may leave the cable: a fraction of its
 /// diameter, and a length in m.
-const FLATNESS: [f64; 2] = [0.01, 5e-4];
+const MAX_CHORD_DISTANCE: [f64; 2] = [0.01, 5e-4];
 
 /// Distance of the last node before the end of a piece in contact, as a fraction of the piece.
 const END_NODE_OFFSET: f64 = 1e-6;
@@ -40,7 +40,7 @@ const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 const CHORD_EXCESS: f64 = 1.0 / 24.0;
 
 /// Round-off of the straight line between two nodes, of the length of the cable.
-const ROUNDING: f64 = 1e-9;
+const STRAIGHT_LINE_ROUNDING_FRACTION: f64 = 1e-9;
 
 /// Maximum number of elements of all pieces together after refinement.
 const MOST_ELEMENTS: usize = 4000;
@@ -106,7 +106,8 @@ fn chords_fit(elastica: &Elastica, problem: &Problem, answer: &CableSolution) ->
         let turn = larger(a.curvature_per_m.abs(), b.curvature_per_m.abs()) * material;
         let change = (b.tension_n - a.tension_n).abs() / problem.axial_stiffness;
         let arc = elastica.thermal_stretch * material * (1.0 + pull / problem.axial_stiffness);
-        (b.at() - a.at()).norm() - arc <= (CHORD_EXCESS * turn * turn + change) * material + ROUNDING * elastica.length
+        (b.at() - a.at()).norm() - arc
+            <= (CHORD_EXCESS * turn * turn + change) * material + STRAIGHT_LINE_ROUNDING_FRACTION * elastica.length
     })
 }
 
@@ -359,7 +360,7 @@ fn report_of_whole(elastica: &Elastica, problem: &Problem) -> Option<ContactRepo
 
 /// The states of a piece at as many places as straight lines need to draw it.
 fn drawn(elastica: &Elastica, problem: &Problem, piece: &ElasticaPiece) -> Vec<[f64; STATES]> {
-    let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
+    let flat = (MAX_CHORD_DISTANCE[0] * 2.0 * problem.radius).min(MAX_CHORD_DISTANCE[1]);
     let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
     for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
         let (a, b) = (&pair[0], &pair[1]);

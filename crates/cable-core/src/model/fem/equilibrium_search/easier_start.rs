@@ -29,7 +29,7 @@ pub(in crate::model::fem) enum SpansStart {
 /// Parts of its bending stiffness by which a stiff cable is stiffened before it has all of it.
 /// Fewer: a heap of slack springs open where it is laid on the next; more: time for cables that are
 /// found nowhere.
-const STIFFENING: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
+const STIFFENING_FRACTIONS: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 
 impl FemModel {
     /// Finds the first equilibrium of a stiff cable from that of a flexible one, which is stiffened
@@ -43,7 +43,7 @@ impl FemModel {
         }
         let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
         let mut softer: Option<CableSolution> = None;
-        for part in STIFFENING {
+        for part in STIFFENING_FRACTIONS {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
             let mut model = self.of_easier_cable(problem, self.settings)?;
             let rests = match &softer {

@@ -10,7 +10,7 @@ use crate::scene::SupportKind;
 
 /// Number of steps of the half turn by which an end is leaned to either side until it is clear of
 /// obstacles below it. Larger: the same at more cost; smaller: it begins higher than it needs to.
-const LEANS: i32 = 36;
+const LEAN_STEPS: i32 = 36;
 
 /// Number of halvings in the search for the angle of an arc: down to round-off.
 const ARC_HALVINGS: usize = 52;
@@ -72,14 +72,14 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
         // A clamp determines the side to which it leans.
         let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
-        let step = std::f64::consts::PI / f64::from(LEANS);
+        let step = std::f64::consts::PI / f64::from(LEAN_STEPS);
         let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -step } else { step };
         let leaned = |k: i32| {
             let (sin, cos) = (lean * f64::from(k)).sin_cos();
             at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
         };
         let clear = |k: &i32| problem.world.signed_gap(leaned(*k), problem.length).is_none_or(|g| g.gap_m >= 0.0);
-        let both = (1..=LEANS).flat_map(|k| [k, -k]);
+        let both = (1..=LEAN_STEPS).flat_map(|k| [k, -k]);
         let Some(k) = std::iter::once(0).chain(both).find(clear).filter(|k| *k != 0) else { continue };
         let leg = [(hinged, at), (s, leaned(k))];
         if reach < 0.0 {

@@ -32,18 +32,18 @@ const CORRECTION_TOLERANCE: f64 = 0.01;
 /// Factor by which the number of elements grows if the present ones give no estimate.
 const REFINEMENT_FACTOR: usize = 4;
 /// Maximum number of such refinements: 4⁵ = 1024 times as many elements.
-const MOST_FINER: usize = 5;
+const MAX_REFINEMENTS: usize = 5;
 /// Maximum number of elements of a span that is solved only for its error: some milliseconds.
 const MAX_ELEMENTS: usize = 1 << 15;
 /// Round-off of a span's closure, in units of the last place of its length. Measured against the
 /// closed form: up to 5 for the difference of two answers.
-const ROUNDING: f64 = 8.0;
+const CLOSURE_ROUNDING_ULPS: f64 = 8.0;
 
 /// Error of friction that remembers many steps, relative to the greatest tension: where round-off
 /// stops Newton's method a balance is accepted at 1e-8, and the remainders add up. Smaller: one in
 /// ten histories of stiff cables differs by more from that of `spans` (up to 8e-8 in 300); larger:
 /// a worse bound than necessary.
-const MEMORY: f64 = 1e-7;
+const FRICTION_MEMORY_ERROR_FRACTION: f64 = 1e-7;
 
 /// Difference of arc lengths (m) up to which two nodes of two meshes are the same.
 const NODE_TOLERANCE_M: f64 = 1e-9;
@@ -68,7 +68,7 @@ pub fn relative_error(network: &mut PulleyNetwork) -> f64 {
     let memory = match (network.pulleys().is_empty(), network.rubs()) {
         (true, _) => 0.0,
         (false, false) => SMOOTH_PULLEY_TOLERANCE * largest,
-        (false, true) => MEMORY * largest,
+        (false, true) => FRICTION_MEMORY_ERROR_FRACTION * largest,
     };
     let error = error + rounding(network) + memory;
     // The error is relative to the least value that the greatest tension can have.
@@ -91,7 +91,7 @@ pub fn position_error(network: &mut PulleyNetwork) -> f64 {
         let closing = changes.get(ends.first).map_or(0.0, |c| (span.span_response.compliance * c[1]).norm());
         most = larger(most, lack + closing);
     }
-    most + ROUNDING * f64::EPSILON * layout.length
+    most + CLOSURE_ROUNDING_ULPS * f64::EPSILON * layout.length
 }
 
 /// Greatest distance of points of one mesh from those of the same arc length on another, m.
@@ -113,7 +113,7 @@ fn rounding(network: &PulleyNetwork) -> f64 {
     for (&SpanEnds { first, last }, span) in network.ends.iter().zip(&network.spans) {
         let length = network.layout.stations[last].arc_length - network.layout.stations[first].leaves();
         let stiffness = span.span_response.compliance.try_inverse().map_or(0.0, |k| k.norm());
-        most = larger(most, stiffness * length * ROUNDING * f64::EPSILON);
+        most = larger(most, stiffness * length * CLOSURE_ROUNDING_ULPS * f64::EPSILON);
     }
     most
 }
@@ -144,7 +144,7 @@ fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &BarSpan) -> Vec
     }
     let mut layout = network.layout.clone();
     let mut force = span.force;
-    for _ in 0..MOST_FINER {
+    for _ in 0..MAX_REFINEMENTS {
         layout.stations[ends.first..ends.last].iter_mut().for_each(|s| s.element_count *= REFINEMENT_FACTOR);
         if layout.stations[ends.first..ends.last].iter().map(|s| s.element_count).sum::<usize>() > MAX_ELEMENTS {
             break;

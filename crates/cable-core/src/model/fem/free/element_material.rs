@@ -15,7 +15,7 @@ const AUXILIARY_WEIGHT: f64 = 1e-12;
 /// Smoothing tension as a fraction of the load, see [`Material::smoothing`]. It has an effect only
 /// where the tension falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, because the force
 /// had too few digits.
-const SMOOTHING: f64 = 1e-7;
+const SMOOTHING_TENSION_FRACTION: f64 = 1e-7;
 
 /// The origin of the force per length of cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub(super) fn material_at(problem: &Problem, time: f64, layout: &StationLayout) 
         axial_stiffness: problem.axial_stiffness,
         thermal_stretch: problem.thermal_stretch,
         body,
-        smoothing: SMOOTHING * (body.norm() * problem.length + loads),
+        smoothing: SMOOTHING_TENSION_FRACTION * (body.norm() * problem.length + loads),
     };
     (material, kind)
 }

@@ -38,7 +38,7 @@ const MOST_SEGMENTS: usize = 4000;
 /// Fraction of the tolerance below which the estimate must stay.
 const ESTIMATE_FRACTION: f64 = 0.5;
 /// Order of the corrected bar.
-const ORDER: f64 = 4.0;
+const BAR_ORDER: f64 = 4.0;
 /// Maximum number of rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
 /// Maximum number of slow steps in one call.
@@ -206,7 +206,7 @@ impl Statics {
             if !(adaptive && estimate > ESTIMATE_FRACTION * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
             }
-            let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / ORDER);
+            let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / BAR_ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
             if network.pulley_states.is_empty() { network.solve() } else { network.balance_with_friction() }

@@ -9,7 +9,7 @@ use crate::model::spans::contact::{CableProperties, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
 /// Distance from a wheel within which a node of an answer lies on it, as a fraction of its radius.
-const ON_WHEEL: f64 = 1e-9;
+const WHEEL_DISTANCE_RADII: f64 = 1e-9;
 
 impl PulleyNetwork {
     /// The properties of the cable that the law of wheels needs.
@@ -56,7 +56,7 @@ impl PulleyNetwork {
                     let mut points: Vec<[f64; 3]> = Vec::new();
                     for node in &answer.nodes {
                         let out = node.at() - wheel.center;
-                        let near = (out.norm() - wheel.radius).abs() <= ON_WHEEL * wheel.radius;
+                        let near = (out.norm() - wheel.radius).abs() <= WHEEL_DISTANCE_RADII * wheel.radius;
                         let along = perp(out) * -self.clockwise_at(k, &wheel);
                         let last = points.last().map_or(w.angle(along, 0.0), |p| p[0]);
                         if near && node.tension_n > 0.0 {

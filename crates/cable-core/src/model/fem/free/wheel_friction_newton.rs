@@ -33,13 +33,13 @@ const MAX_HALVINGS: usize = 14;
 /// Maximum number of sets of modes, per pulley.
 const MAX_MODES: usize = 12;
 /// Greatest residual of solved equations: relative for a tension, in rad for an angle, and relative
-/// to [`MATERIAL`] times the cable's length for an arc length.
+/// to [`MATERIAL_ERROR_FRACTION`] times the cable's length for an arc length.
 const RESIDUAL_TOLERANCE: f64 = 1e-13;
 /// As above if no step makes the residual smaller, as in `pulley_balance`.
 const RESIDUAL_LIMIT: f64 = 1e-8;
 /// Fraction of the cable's length whose error counts as much as an error of the whole tension.
 /// Larger: steps are judged by tension alone; smaller: by material.
-const MATERIAL: f64 = 0.01;
+const MATERIAL_ERROR_FRACTION: f64 = 0.01;
 /// Greatest turn of an end round its wheel in a step, rad: with more it could come out on the other
 /// side.
 const MOST_TURN: f64 = 0.5;
@@ -133,7 +133,7 @@ impl PulleyNetwork {
             own: DMatrix::zeros(count, count),
             by_force: Vec::with_capacity(4 * count),
         };
-        let unit = 1.0 / (MATERIAL * self.layout.length);
+        let unit = 1.0 / (MATERIAL_ERROR_FRACTION * self.layout.length);
         let mut pulley_states = std::mem::take(&mut self.pulley_states);
         let mut row = 0;
         for (&k, r) in pulleys.iter().zip(&mut pulley_states) {

@@ -29,10 +29,10 @@
 //! of the stiffness.
 
 /// α, −13 + √167.75.
-const END: f64 = -0.048_166_153_011_381_5;
+const END_WEIGHT_ALPHA: f64 = -0.048_166_153_011_381_5;
 
 /// Fraction of a bar's mass that couples its nodes: 0 is lumped, 1/6 consistent.
-const MEAN: f64 = 1.0 / 12.0;
+const COUPLING_MASS_FRACTION: f64 = 1.0 / 12.0;
 
 /// The kind of mass matrix of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Spread {
         let mut this = Self { more: vec![0.0; bars + 1], coupling: Vec::with_capacity(bars) };
         for &(count, bar) in stretches {
             let first = this.coupling.len();
-            this.coupling.resize(first + count, MEAN * bar);
+            this.coupling.resize(first + count, COUPLING_MASS_FRACTION * bar);
             // A single bar does not show how slopes change along it.
             if count > 1 {
                 let last = first + count;
@@ -74,11 +74,11 @@ impl Spread {
 
     /// Adds the terms of an end of a stretch: its nodes from there on, and its last bar.
     fn end(&mut self, nodes: [usize; 3], last: usize, bar: f64) {
-        let weights = [-(3.0 + 2.0 * END), 4.0 + 4.0 * END, -(1.0 + 2.0 * END)];
+        let weights = [-(3.0 + 2.0 * END_WEIGHT_ALPHA), 4.0 + 4.0 * END_WEIGHT_ALPHA, -(1.0 + 2.0 * END_WEIGHT_ALPHA)];
         for (node, weight) in nodes.into_iter().zip(weights) {
             self.more[node] += weight * bar / 48.0;
         }
-        self.coupling[last] = MEAN * (1.0 - END) * bar;
+        self.coupling[last] = COUPLING_MASS_FRACTION * (1.0 - END_WEIGHT_ALPHA) * bar;
     }
 
     /// True if the mass is lumped.

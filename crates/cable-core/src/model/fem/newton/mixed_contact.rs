@@ -23,7 +23,7 @@ use crate::model::fem::system::{
 };
 
 /// Strain below which a bar counts as unstretched.
-const ROUNDING: f64 = 1e-12;
+const UNSTRETCHED_STRAIN: f64 = 1e-12;
 
 /// Number of iterations above which the energy of an answer is compared with that of its start.
 /// Smaller: two more assemblies in steps that converge quickly; larger: another local minimum is
@@ -281,7 +281,7 @@ impl Workspace {
         let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
         rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
             && self.mixed.carried.iter().enumerate().all(|(e, carried)| {
-                PlainBar::of(mesh, input, e).is_on(carried.branch, (x[e + 1] - x[e]).norm(), ROUNDING)
+                PlainBar::of(mesh, input, e).is_on(carried.branch, (x[e + 1] - x[e]).norm(), UNSTRETCHED_STRAIN)
             })
     }
 

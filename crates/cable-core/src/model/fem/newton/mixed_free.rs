@@ -24,7 +24,7 @@ use crate::model::fem::mesh::Mesh;
 use crate::model::fem::system::{BarBranch, Converged, PlainBar, StepInput, Unknowns, bar_energy};
 
 /// Round-off of a bar's length, in units of the round-off of a coordinate.
-const ROUNDING: f64 = 16.0;
+const BAR_LENGTH_ROUNDINGS: f64 = 16.0;
 
 /// A symmetric 2×2 matrix: xx, xy, yy.
 type Symmetric = [f64; 3];
@@ -151,7 +151,7 @@ impl MixedFreeSolver {
             let (now, stiffness) = PlainBar::of(mesh, input, e).pull(self.branch[e], p);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
-            let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();
+            let off = (now - pull).abs() - BAR_LENGTH_ROUNDINGS * f64::EPSILON * stiffness * x[e].norm();
             balance.pull = larger(balance.pull, off);
             let (coupling, chord) = input.inertial.coupling.get(e).copied().unwrap_or_default();
             let inertia = (d - chord) * coupling;

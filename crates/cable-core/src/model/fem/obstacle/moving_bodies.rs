@@ -29,10 +29,10 @@ use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
 /// Displacement of the outline below which it stands still, m.
-const STANDS_M: f64 = 1e-12;
+const STANDSTILL_DISPLACEMENT_M: f64 = 1e-12;
 
 /// Lack of a gap below which the gap counts as restored, m.
-const NONE: f64 = 1e-13;
+const RESTORED_GAP_LACK_M: f64 = 1e-13;
 
 /// Returns whether a segment that moves evenly stays clear of an edge because its ends stay on one
 /// side of the edge's line. For a cable that is dragged along the ground this test decides at once,
@@ -153,7 +153,7 @@ pub(in crate::model::fem) fn prepare_way(
 fn way_of_outline(cable: &CableState, to: f64) -> Option<[RigidPose; 2]> {
     let (outline, from) = (cable.outline.as_ref()?, cable.motion.placement?);
     let goal = outline.goal(to);
-    let moves = !outline.waits && outline.shape.max_displacement(&from, &goal) > STANDS_M;
+    let moves = !outline.waits && outline.shape.max_displacement(&from, &goal) > STANDSTILL_DISPLACEMENT_M;
     moves.then_some([from, goal])
 }
 
@@ -186,7 +186,7 @@ fn hitch_on(cable: &mut CableState, outline_motion: &BodyMotion) -> bool {
         return true;
     };
     let on_it = outline_motion.to.place(outline.shape.hitch);
-    if (cable.input.supports.target[k] - on_it).norm() > STANDS_M {
+    if (cable.input.supports.target[k] - on_it).norm() > STANDSTILL_DISPLACEMENT_M {
         cable.input.supports.target[k] =
             stopped_by_obstacles(&cable.problem, &cable.mesh, cable.input.supports.start[k], on_it);
     }
@@ -207,7 +207,7 @@ fn hitch_on(cable: &mut CableState, outline_motion: &BodyMotion) -> bool {
 pub(in crate::model::fem) fn outline_report(cable: &CableState) -> Option<RobotContact> {
     let (outline, at) = (cable.outline.as_ref()?, cable.motion.placement?);
     let left = outline.shape.max_displacement(&at, &outline.to.1);
-    let left_m = if left > STANDS_M { left } else { 0.0 };
+    let left_m = if left > STANDSTILL_DISPLACEMENT_M { left } else { 0.0 };
     Some(RobotContact {
         force_n: cable.contacts.force_on(outline.obstacle, &cable.problem, &cable.mesh, &cable.motion.positions),
         placement: at,
@@ -315,7 +315,7 @@ impl<'a> BodiesStep<'a> {
                     false => 0.0,
                 });
                 let sum = free[0] * free[0] + free[1] * free[1];
-                if !(lack > NONE) || sum < 1e-6 {
+                if !(lack > RESTORED_GAP_LACK_M) || sum < 1e-6 {
                     continue;
                 }
                 worst = larger(worst, lack);

@@ -19,15 +19,15 @@ use crate::model::fem::state::CableState;
 /// Distance from a round at which it takes a load over from a cable in motion, in even bars.
 /// Smaller: shorter bars in front of the round; larger: the bend of the cable at the load is
 /// neglected for longer. A choice, tuned on no campaign, as are the four below.
-const NEAR_BARS: f64 = 0.02;
+const LOAD_DISTANCE_BARS: f64 = 0.02;
 
 /// The same without inertia, where one step can move the cable by more. Smaller: steps fail in
 /// front of rounds, and are halved; larger: as above.
-const NEAR_BARS_AT_REST: f64 = 0.1;
+const LOAD_DISTANCE_BARS_AT_REST: f64 = 0.1;
 
 /// Number of steps whose way counts as well. Smaller: the load jams in front of the round within a
 /// step; larger: the bend at the load is neglected for longer.
-const NEAR_STEPS: f64 = 1.5;
+const LOAD_WAY_STEPS: f64 = 1.5;
 
 /// Multiple of that distance beyond the round at which the load gets a node of its own again.
 /// Smaller: a load that comes to and fro is taken over again and again; larger: the bend at the
@@ -52,8 +52,8 @@ pub(super) fn pass_loads(cable: &mut CableState, inertia: Inertia) -> bool {
 fn near(cable: &CableState, inertia: Inertia) -> f64 {
     cable.even()
         * match inertia {
-            Inertia::QuasiStatic => NEAR_BARS_AT_REST,
-            Inertia::Dynamic => NEAR_BARS,
+            Inertia::QuasiStatic => LOAD_DISTANCE_BARS_AT_REST,
+            Inertia::Dynamic => LOAD_DISTANCE_BARS,
         }
 }
 
@@ -67,7 +67,7 @@ fn comes_to(cable: &CableState, [j, k]: [usize; 2], force: Vec2, inertia: Inerti
     let from = m.positions[j];
     let to = match inertia {
         Inertia::QuasiStatic => from,
-        Inertia::Dynamic => from + (m.velocities[j] - m.velocities[k]) * (NEAR_STEPS * m.step_before),
+        Inertia::Dynamic => from + (m.velocities[j] - m.velocities[k]) * (LOAD_WAY_STEPS * m.step_before),
     };
     let nearest = from + (to - from) * nearest_fraction(round.center, from, to) - round.center;
     let comes = inertia == Inertia::QuasiStatic || nearest.norm() < (from - round.center).norm();
@@ -127,7 +127,7 @@ fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
         let slid = cable.motion.slide_rates[k] * cable.motion.step_before;
         // Material after the round runs off it where the arc length there falls.
         let runs_off = if e < k { slid } else { -slid };
-        let near = larger(near(cable, inertia), NEAR_STEPS * slid.abs());
+        let near = larger(near(cable, inertia), LOAD_WAY_STEPS * slid.abs());
         let clear = CLEAR_FACTOR * near + more_round(cable, load, e);
         let is_clear = beyond > if runs_off < 0.0 { larger(clear, cable.even()) } else { clear };
         if !is_clear || to_load(e) < least || to_load(e + 1) < least {

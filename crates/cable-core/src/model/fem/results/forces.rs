@@ -10,7 +10,7 @@ use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 
 /// Difference of two bars, in parts of their length, up to which they count as equal. It only keeps
 /// rounding out: between even bars the tension of a node is their mean.
-const EVEN_BARS: f64 = 1e-9;
+const EVEN_BARS_LENGTH_FRACTION: f64 = 1e-9;
 
 /// Tension in the middle of the straight part of each bar, N; it may be negative in a stiff cable.
 pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
@@ -60,7 +60,7 @@ pub(super) fn tension_at_node(d: &CableState, x: &[Vec2], tension: &[f64], k: us
     let [before, after] =
         if slides { [0, 1].map(|side| half(d, k, side, x)) } else { [s[k] - s[k - 1], s[k + 1] - s[k]] };
     let whole = before + after;
-    if !((before - after).abs() > EVEN_BARS * whole) {
+    if !((before - after).abs() > EVEN_BARS_LENGTH_FRACTION * whole) {
         return 0.5 * (tension[k - 1] + tension[k]);
     }
     (tension[k - 1] * after + tension[k] * before) / whole

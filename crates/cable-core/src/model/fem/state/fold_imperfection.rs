@@ -6,7 +6,7 @@ use crate::model::fem::mesh::Mesh;
 
 /// Distance by which the middle of a fold is moved aside, as a fraction of a bar. Smaller: the fold
 /// opens later than it would; larger: its bars are stretched by half of the square of it.
-const ASIDE: f64 = 1e-4;
+const FOLD_OFFSET_BARS: f64 = 1e-4;
 
 /// Sine of the angle between the limbs below which a fold counts as collinear.
 const FOLD_LINE_SINE: f64 = 1e-6;
@@ -19,7 +19,7 @@ pub(in crate::model::fem) fn open_collinear_folds(mesh: &Mesh, x: &mut [Vec2]) {
         let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
         let size = a.norm() * b.norm();
         if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
-            x[k] += perp(a) * ASIDE;
+            x[k] += perp(a) * FOLD_OFFSET_BARS;
         }
     }
 }

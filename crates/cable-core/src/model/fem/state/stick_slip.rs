@@ -12,7 +12,7 @@ const SCALE_TOLERANCE: f64 = 1e-9;
 
 /// Relative difference below which two forces at a sliding node are equal: tensions of bars are
 /// known only to the residual.
-const EVEN_FORCE: f64 = 1e-7;
+const EVEN_FORCE_FRACTION: f64 = 1e-7;
 
 /// The difference between the friction of sliding nodes at a solution and the friction assumed for
 /// it.
@@ -94,7 +94,7 @@ fn slip_law(cable: &CableState, k: usize, node: &SlidingNode, load: &SlidingNode
     let presses = turn > 0.0 && load.at_material[1] > momentum_flux;
     let exponent = if presses { node.friction * turn } else { 0.0 };
     let pulls = load.pull[0].abs() + load.pull[1].abs();
-    let slack = cable.input.stopping.tolerance + EVEN_FORCE * pulls;
+    let slack = cable.input.stopping.tolerance + EVEN_FORCE_FRACTION * pulls;
     let stiffness = cable.mesh.axial_stiffness;
     let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
     let lawful = off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;

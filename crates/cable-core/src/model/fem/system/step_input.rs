@@ -11,7 +11,7 @@ use crate::problem::Problem;
 pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
 /// Accepted unbalanced force, as a fraction of the whole load.
-const TOLERANCE: f64 = 1e-6;
+const FORCE_TOLERANCE_FRACTION: f64 = 1e-6;
 
 /// Round-off of the strain of a bar that may remain in its axial force, in units of the last place.
 /// Smaller: steps of stiff cables never converge; larger: their forces are less accurate than
@@ -281,5 +281,5 @@ pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
 /// Unbalanced force to reach, N: at least the round-off of the axial forces.
 pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
     let rounding = STRAIN_ROUNDINGS * f64::EPSILON * problem.axial_stiffness * COORDINATE_BARS;
-    (TOLERANCE * whole).max(rounding)
+    (FORCE_TOLERANCE_FRACTION * whole).max(rounding)
 }

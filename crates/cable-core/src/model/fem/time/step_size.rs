@@ -131,39 +131,39 @@ mod tests {
     use super::*;
     use crate::model::fem::settings::Tuning;
 
-    const LONGEST: f64 = 1.0 / 240.0;
+    const LONGEST_STEP_S: f64 = 1.0 / 240.0;
 
     fn frame(pace: &mut StepSizeController, iterations: usize) -> f64 {
         pace.note_solved(iterations);
-        pace.choose(&Tuning::default().step, 1e-3, 1.0, LONGEST);
+        pace.choose(&Tuning::default().step, 1e-3, 1.0, LONGEST_STEP_S);
         pace.longest_step()
     }
 
     #[test]
     fn after_a_refused_step_the_next_ones_are_as_short_as_the_one_that_was_solved() {
-        let mut pace = StepSizeController::new(LONGEST);
-        pace.note_refused(&Tuning::default().step, 0.5 * LONGEST);
-        pace.note_refused(&Tuning::default().step, 0.25 * LONGEST);
+        let mut pace = StepSizeController::new(LONGEST_STEP_S);
+        pace.note_refused(&Tuning::default().step, 0.5 * LONGEST_STEP_S);
+        pace.note_refused(&Tuning::default().step, 0.25 * LONGEST_STEP_S);
         // The frame of the refusal gives no evidence for a longer step, however easy its end was.
-        assert_eq!(frame(&mut pace, 1), 0.25 * LONGEST);
+        assert_eq!(frame(&mut pace, 1), 0.25 * LONGEST_STEP_S);
         // A hard frame keeps the step.
-        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations + 1), 0.25 * LONGEST);
+        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations + 1), 0.25 * LONGEST_STEP_S);
         // Easy ones lengthen it again, up to the longest.
-        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations), 0.5 * LONGEST);
-        assert_eq!(frame(&mut pace, 2), LONGEST);
-        assert_eq!(frame(&mut pace, 2), LONGEST);
+        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations), 0.5 * LONGEST_STEP_S);
+        assert_eq!(frame(&mut pace, 2), LONGEST_STEP_S);
+        assert_eq!(frame(&mut pace, 2), LONGEST_STEP_S);
     }
 
     #[test]
     fn no_frame_begins_with_steps_shorter_than_the_shortest() {
-        let mut pace = StepSizeController::new(LONGEST);
-        pace.note_refused(&Tuning::default().step, 1e-3 * LONGEST);
-        assert_eq!(pace.longest_step(), Tuning::default().step.shortest_fraction * LONGEST);
+        let mut pace = StepSizeController::new(LONGEST_STEP_S);
+        pace.note_refused(&Tuning::default().step, 1e-3 * LONGEST_STEP_S);
+        assert_eq!(pace.longest_step(), Tuning::default().step.shortest_fraction * LONGEST_STEP_S);
     }
 
     #[test]
     fn hard_steps_alone_do_not_shorten_the_step() {
-        let mut pace = StepSizeController::new(LONGEST);
-        assert_eq!(frame(&mut pace, 100), LONGEST);
+        let mut pace = StepSizeController::new(LONGEST_STEP_S);
+        assert_eq!(frame(&mut pace, 100), LONGEST_STEP_S);
     }
 }

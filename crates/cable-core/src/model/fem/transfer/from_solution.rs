@@ -18,15 +18,15 @@ use crate::solution::Node;
 use crate::state::State;
 
 /// Distance over which directions are read, as a fraction of an even bar.
-const NEAR: f64 = 1e-3;
+const DIRECTION_DISTANCE_BARS: f64 = 1e-3;
 
 /// Distance from a round within which a node of an answer lies on it, as a fraction of its radius.
-const ON_ROUND: f64 = 1e-3;
+const ROUND_DISTANCE_RADII: f64 = 1e-3;
 
 /// Tension below which a bar is slack, as a fraction of the greatest. Smaller: the round-off of an
 /// answer counts as tension, and loose bars lose material; larger: taut bars are given too much
 /// material.
-const SLACK: f64 = 1e-6;
+const SLACK_TENSION_FRACTION: f64 = 1e-6;
 
 /// The nodes of an answer, interpolated as a curve.
 pub(in crate::model::fem) struct SolutionCurve<'a>(pub(in crate::model::fem) &'a [Node]);
@@ -166,7 +166,7 @@ fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<RoundA
     let geometry = cable.problem.world.geometry();
     let mut out: Vec<RoundArc> = Vec::new();
     for (i, n) in curve.0.iter().enumerate() {
-        let within = ON_ROUND * cable.problem.radius;
+        let within = ROUND_DISTANCE_RADII * cable.problem.radius;
         let Some(gap) = cable.problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m.abs() <= within) else {
             continue;
         };
@@ -228,7 +228,7 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
             let (material, tension) = (s[e + 1] - s[e], curve.tension(0.5 * (s[e] + s[e + 1])));
             let strained = cable.mesh.thermal_stretch * (1.0 + tension / cable.mesh.axial_stiffness);
             let taut = cable.mesh.path(e, &cable.motion.positions).length / strained;
-            let loose = tension <= SLACK * greatest && taut < material;
+            let loose = tension <= SLACK_TENSION_FRACTION * greatest && taut < material;
             BarMaterial {
                 length: if loose { material } else { taut },
                 spare: if loose { material - taut } else { 0.0 },
@@ -252,7 +252,7 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
         (false, false) => 0.5,
     };
     let from = s[first] - taken * share;
-    let least = NEAR * cable.even();
+    let least = DIRECTION_DISTANCE_BARS * cable.even();
     if from > s[first - 1] + least && from + lengths[last - first] < s[last + 1] - least {
         for (k, length) in lengths.iter().enumerate() {
             cable.mesh.arc_length[first + k] = from + length;
@@ -291,7 +291,7 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
         return;
     }
     let s = &cable.mesh.arc_length;
-    let near = NEAR * cable.even();
+    let near = DIRECTION_DISTANCE_BARS * cable.even();
     for (k, limit) in
         cable.input.loads.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !cable.mesh.held[*k])
     {
@@ -317,7 +317,7 @@ pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &Solu
     let mut touches: Vec<ContactPair> = Vec::new();
     cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.positions, &mut touches);
     let s = &cable.mesh.arc_length;
-    let near = NEAR * cable.even();
+    let near = DIRECTION_DISTANCE_BARS * cable.even();
     for touch in &touches {
         let k = touch.node;
         let (low, high) = if touch.on_segment {
@@ -353,7 +353,7 @@ impl RoundArc {
     /// Extends the arc by all nodes before and after it that lie on a round of this radius (m).
     fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
-        let is_on_round = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
+        let is_on_round = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ROUND_DISTANCE_RADII * radius;
         let before = curve.0[..self.nodes[0]].iter().rev().take_while(|n| is_on_round(n)).count();
         let after = curve.0[self.nodes[1]..].iter().skip(1).take_while(|n| is_on_round(n)).count();
         self.nodes = [self.nodes[0] - before, self.nodes[1] + after];

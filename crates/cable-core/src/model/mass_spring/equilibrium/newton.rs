@@ -27,7 +27,7 @@ const MIN_SHIFT: f64 = 1e-14;
 /// Units in the last place by which positions are off when they are good: strain is off by that
 /// over l₀, tension EA times it. Two positions and the length between them lose about one each, and
 /// both springs of a node add up.
-const ULPS: f64 = 8.0;
+const POSITION_ROUNDING_ULPS: f64 = 8.0;
 
 /// An unbalanced force and its node.
 #[derive(Clone, Copy, Debug)]
@@ -183,7 +183,7 @@ impl<'a> EquilibriumSolver<'a> {
             .fold(self.mesh.problem.length, |a: f64, b| if b > a { b } else { a });
         let shortest = self.mesh.rest_length.iter().copied().fold(f64::INFINITY, f64::min);
         part * self.mesh.problem.force_scale()
-            + ULPS * f64::EPSILON * self.mesh.problem.axial_stiffness * far / shortest
+            + POSITION_ROUNDING_ULPS * f64::EPSILON * self.mesh.problem.axial_stiffness * far / shortest
     }
 
     /// Goes one step; returns true if the tangent was positive. The system keeps the state before.

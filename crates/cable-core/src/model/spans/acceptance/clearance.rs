@@ -14,11 +14,11 @@ use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::section::{CableSection, Contact, Failure, SolveContext};
 
 /// Depth inside an obstacle that every answer may have, m.
-const DEPTH: f64 = 1e-6;
+const ACCEPTED_DEPTH_M: f64 = 1e-6;
 /// Maximum number of halvings: 2⁻⁴⁰ of any cable is a point.
 const MOST_HALVINGS: u32 = 40;
 /// Longest stretch of an arc that is checked at once, rad.
-const TURN: f64 = 1.0;
+const LONGEST_ARC_RAD: f64 = 1.0;
 
 /// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector
 /// inwards).
@@ -91,7 +91,7 @@ impl BoundingTriangle {
     /// True if it is clear of a body. `beside` is a corner or circle round which its stretch runs
     /// at the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
-        let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
+        let r = body.offset - smaller(ACCEPTED_DEPTH_M, 0.1 * body.offset);
         if let Some(center) = body.center {
             return beside == Some(body.first + 1) || self.misses_point(center, r);
         }
@@ -142,7 +142,7 @@ fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, V
     while p < c.ends.place[1] {
         let border = contact_path.next_border(p, c.ends.place[1]);
         let arc = contact_path.turns(0.5 * (p + border));
-        let q = if arc && border > p + TURN { p + TURN } else { border };
+        let q = if arc && border > p + LONGEST_ARC_RAD { p + LONGEST_ARC_RAD } else { border };
         let piece = contact_path.curve.piece(contact_path.curve.locate(0.5 * (p + q), c.chain_range));
         let point = |p: f64| {
             let place = contact_path.place(p);
@@ -183,7 +183,7 @@ fn search(
     }
     let s = 0.5 * (from + to);
     let middle = point(s);
-    if depth >= MOST_HALVINGS || (b.0 - a.0).norm() <= DEPTH * DEPTH {
+    if depth >= MOST_HALVINGS || (b.0 - a.0).norm() <= ACCEPTED_DEPTH_M * ACCEPTED_DEPTH_M {
         return Some((s, middle.0));
     }
     search(body, point, [(from, a), (s, middle)], beside, depth + 1)

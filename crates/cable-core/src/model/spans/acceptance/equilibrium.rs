@@ -28,7 +28,7 @@ const TAUT_PANELS: usize = 4;
 const ONE_PANEL_FOLD_DISTANCE: f64 = 4.0;
 /// Length of a panel of the quadrature of a span, in v; 5 Gauss points in each leave an error of
 /// 1e-12.
-const PANEL: f64 = 0.5;
+const PANEL_LENGTH: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
 /// with which the contacts were solved.
@@ -157,7 +157,7 @@ fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f6
         return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + context.rate(force(s)) * weight);
     }
     let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());
-    let panels = ((v1 - v0) / PANEL).ceil().max(1.0);
+    let panels = ((v1 - v0) / PANEL_LENGTH).ceil().max(1.0);
     let h = (v1 - v0) / panels;
     let mut sum = Vec2::zeros();
     for j in 0..panels as usize {

@@ -10,7 +10,7 @@ const SAME_PLACE_FRACTION: f64 = 1e-7;
 /// Number of returns of the contacts that make a cycle: a single one may be a near miss.
 const REPEATS: usize = 2;
 /// Number of changes after which contacts are first stored: most solves need fewer.
-const FIRST_KEPT: usize = 4;
+const CHANGES_BEFORE_STORING: usize = 4;
 
 /// A search for cycles among the solves of one section (R. P. Brent, "An improved Monte Carlo
 /// factorization algorithm", BIT 20, 1980): contacts are stored after 4, 8, 16 … changes, and later
@@ -26,13 +26,13 @@ impl CycleSearch {
     /// Records a solved section; returns whether it is in a cycle.
     pub fn returns(&mut self, section: &CableSection) -> bool {
         self.changes += 1;
-        if self.changes >= FIRST_KEPT && self.changes.is_power_of_two() {
+        if self.changes >= CHANGES_BEFORE_STORING && self.changes.is_power_of_two() {
             self.kept.clone_from(&section.contacts);
             self.repeats = 0;
             return false;
         }
         let within = SAME_PLACE_FRACTION * (section.to - section.from);
-        if self.changes > FIRST_KEPT
+        if self.changes > CHANGES_BEFORE_STORING
             && self.kept.len() == section.contacts.len()
             && self.kept.iter().zip(&section.contacts).all(|(a, b)| are_alike(a, b, within))
         {

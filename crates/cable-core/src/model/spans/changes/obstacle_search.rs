@@ -18,7 +18,7 @@ const SAMPLES: usize = 8;
 /// Maximum number of bisections of a root.
 const MAX_HALVINGS: usize = 60;
 /// Accuracy of roots, as a fraction of the catenary.
-const ROOT: f64 = 1e-12;
+const ROOT_TOLERANCE_FRACTION: f64 = 1e-12;
 
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
@@ -109,7 +109,7 @@ impl<'a> SpanArc<'a> {
             if before < 0.0 && after >= 0.0 {
                 let (mut ga, mut gb) = (before, after);
                 for round in 0..MAX_HALVINGS {
-                    if b - a <= ROOT * self.length() {
+                    if b - a <= ROOT_TOLERANCE_FRACTION * self.length() {
                         break;
                     }
                     let s = if round % 3 == 2 { 0.5 * (a + b) } else { a + (b - a) * (ga / (ga - gb)) };

@@ -109,7 +109,7 @@ fn pin(
         return;
     }
     let k = place.stretch / (2.0 * drop * law.stiffness * law.thermal);
-    let solved = out.residual[side].abs() <= ROUNDING * size;
+    let solved = out.residual[side].abs() <= MATERIAL_ROUNDING_FRACTION * size;
     let phi = sign * (out.residual[side] - gap);
     let root = |v: f64| v.signum() * v.abs().sqrt();
     let flat = phi.abs() <= 1e-3 * gap.abs();
@@ -303,7 +303,7 @@ pub(in crate::model::spans) fn next_mode(
 /// by round-off; larger: creep.
 const CONE_ROUNDING: f64 = 1e-13;
 /// Relative round-off of the material coordinate.
-const ROUNDING: f64 = 1e-15;
+const MATERIAL_ROUNDING_FRACTION: f64 = 1e-15;
 /// Relative step of a tension for a difference quotient.
 const DIFFERENCE_STEP: f64 = 1e-6;
 /// Difference of slopes of tension below which they are equal, as a fraction of the load.

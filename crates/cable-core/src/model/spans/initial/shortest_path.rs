@@ -19,9 +19,9 @@ const POST_POINTS: usize = 12;
 const POST_POINTS_RADIUS_FRACTION: f64 = 0.5;
 /// Displacement of the end, as a fraction of a leg, below which nothing is met: otherwise round-off
 /// could meet the corner just left again.
-const SAME: f64 = 1e-12;
+const LEAST_DISPLACEMENT_FRACTION: f64 = 1e-12;
 /// Maximum number of events along one leg, in multiples of the number of corners.
-const MOST: usize = 8;
+const MAX_EVENTS_PER_CORNER: usize = 8;
 
 /// A corner the string bends round.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +65,7 @@ pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[Impassable
         }
         let (mut done, mut skip) = (0.0, None);
         for round in 0.. {
-            if round > MOST * (corners.len() + bends.len() + 8) {
+            if round > MAX_EVENTS_PER_CORNER * (corners.len() + bends.len() + 8) {
                 return None;
             }
             let pivot = bends.last().map_or(start, |b| b.corner.at);
@@ -127,7 +127,7 @@ fn meets(
             continue;
         }
         let u = -cross(to, from - pivot) / rate;
-        let early = if skip == Some(k) { done + SAME } else { done };
+        let early = if skip == Some(k) { done + LEAST_DISPLACEMENT_FRACTION } else { done };
         if !(u >= early && u <= 1.0) {
             continue;
         }

@@ -13,7 +13,7 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::slack::upper_surfaces::{LoadFrame, NONE_M, SurfaceShape, UpperSurfaces};
 
 /// Maximum number of upper surfaces over which a cable that nothing holds slides down.
-const MOST_DOWN: usize = 1000;
+const MAX_SURFACES_DOWN: usize = 1000;
 
 /// A leg of a drained route.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,7 +117,7 @@ impl RouteDraining<'_> {
         self.height = height;
         let mut u = on;
         // Cable that does not stick there slides down, to the first place that holds it.
-        for _ in 0..MOST_DOWN {
+        for _ in 0..MAX_SURFACES_DOWN {
             let here = &self.surfaces.all[surface];
             let slope = here.slope(u);
             if slope.abs() <= here.friction {

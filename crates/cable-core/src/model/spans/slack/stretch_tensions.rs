@@ -23,7 +23,7 @@ use crate::model::spans::slack::slack_parts::{HALVINGS, LooseShapes, STRAIGHT_TU
 use crate::numerics::bisect;
 
 /// Maximum number of doublings of the force across the load in the search for an upper bound.
-const MOST_DOUBLED: usize = 60;
+const MAX_FORCE_DOUBLINGS: usize = 60;
 
 /// Distance from a round within which a span touches it, as a fraction of its radius. Larger: a
 /// jump of the distance could pass for a root. Smaller: if tension hardly changes along the ground,
@@ -119,7 +119,7 @@ impl SlackSolver<'_> {
         let comes = |x: f64| tension(from.coordinates[end] - way * if x < room(from) { x } else { room(from) });
         let lacks = |h: f64| h * 1.0f64.hypot(m1) < comes(aside(h).0[0]);
         let (mut low, mut high) = (0.0, tension(from.coordinates[end]));
-        for _ in 0..MOST_DOUBLED {
+        for _ in 0..MAX_FORCE_DOUBLINGS {
             if !lacks(high) {
                 break;
             }

@@ -21,7 +21,7 @@ use crate::numerics::bisect;
 /// Greatest distance from its support at which a span may end, as a fraction of its length and of
 /// the size of coordinates: for a nearly plumb span the round-off of the touching point moves its
 /// end a thousand times as much. Larger: a jump could pass for a root.
-const ENDS: f64 = 1e-10;
+const END_DISTANCE_FRACTION: f64 = 1e-10;
 /// Rounds of Newton's method for the length of a span, whose first error is its strain.
 const ROUNDS: usize = 8;
 
@@ -66,8 +66,8 @@ impl SlackSolver<'_> {
                 continue;
             }
             let [low, _] = bisect([low, high], HALVINGS, |p| !seen(k, p).is_none_or(|s| s.over > 0.0));
-            let found =
-                seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
+            let found = seen(k, low)
+                .filter(|s| s.over.abs() <= END_DISTANCE_FRACTION * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = context.law.load * found.length;
             // The force there is the pull of the rest of the cable; at the support the load of the
             // span is added.

@@ -9,7 +9,7 @@ use crate::model::spans::section::SolveContext;
 
 /// Cosine between a boundary's normal and the load below which the boundary is a wall, beside which
 /// the cable hangs.
-const FACES: f64 = 1e-9;
+const WALL_COSINE: f64 = 1e-9;
 
 /// Lengths that count as zero, m: the round-off of kilometres.
 pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
@@ -184,7 +184,7 @@ fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: LoadFrame, o
     match given.form {
         PieceShape::Edge { from, tangent } => {
             let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
-            if along.x > FACES && given.extent > 0.0 {
+            if along.x > WALL_COSINE && given.extent > 0.0 {
                 let u = [from.x, from.x + along.x * given.extent];
                 out.push(UpperSurface {
                     body,

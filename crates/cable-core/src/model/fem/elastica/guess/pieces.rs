@@ -24,7 +24,7 @@ const POINT_LAYERS: f64 = 4.0;
 
 /// Sine of the angle between a clamp and a surface below which their directions are equal
 /// (round-off).
-const SAME_DIRECTION: f64 = 1e-9;
+const SAME_DIRECTION_SINE: f64 = 1e-9;
 
 /// Fraction of an arc that is given up where two contacts leave no cable between them.
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
@@ -99,7 +99,7 @@ impl ElasticaGuess<'_> {
             // A clamp that points into the surface cannot turn the cable there.
             End::Held(at, Some(angle)) => {
                 let rises = out * Vec2::new(angle.cos(), angle.sin()).dot(&contact.gap(*at).1);
-                rises < SAME_DIRECTION && contact.curvature() == 0.0
+                rises < SAME_DIRECTION_SINE && contact.curvature() == 0.0
             }
             End::Held(_, None) => contact.curvature() == 0.0,
             End::Loaded(_) => true,

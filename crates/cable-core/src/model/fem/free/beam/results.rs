@@ -18,7 +18,7 @@ enum PointDensity {
 /// Greatest distance of the cable from the straight line between two points, as a fraction of its
 /// length. Larger: places read between points are off by as much (with the nodes alone by 1e-3 of a
 /// span); smaller: thousands of points.
-const FLATNESS: f64 = 1e-5;
+const MAX_CHORD_DISTANCE_FRACTION: f64 = 1e-5;
 /// Maximum number of parts of a bar. Smaller: a bar of a coarse given mesh shows corners; larger:
 /// more points than can be seen.
 const MOST_PARTS: f64 = 32.0;
@@ -128,13 +128,13 @@ impl Beam {
     }
 
     /// Appends the points inside bar `e`, which begins at `at`, so that the cable leaves the
-    /// straight line between two of them by `FLATNESS` at most.
+    /// straight line between two of them by `MAX_CHORD_DISTANCE_FRACTION` at most.
     fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<SolutionPoint>) {
         let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
         let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
         // A sagitta κl²/8 with κ of the half that turns more.
         let off = 0.25 * half_turn * bar.ds;
-        let parts = (off / (FLATNESS * self.layout.length)).sqrt().ceil().clamp(1.0, MOST_PARTS);
+        let parts = (off / (MAX_CHORD_DISTANCE_FRACTION * self.layout.length)).sqrt().ceil().clamp(1.0, MOST_PARTS);
         let mut places: Vec<f64> = (1..parts as usize).map(|k| k as f64 / parts).collect();
         let clear = |x: &f64| places.iter().chain(&[0.0, 1.0]).all(|y| (x - y).abs() > PLACE_SPACING);
         places.extend(self.peak(e, starts).filter(clear));
