@@ -29,6 +29,11 @@ pub(crate) fn backtrack<T>(longest: f64, tries: usize, mut accepted: impl FnMut(
     None
 }
 
+/// Fraction of the decrease that the slope predicts which a step of a line search must give (L.
+/// Armijo, *Pacific Journal of Mathematics* 16(1), 1966). Smaller: steps that hardly descend are
+/// taken; larger, toward 1/2: full steps of Newton's method are refused.
+pub(crate) const ARMIJO_FRACTION: f64 = 1e-4;
+
 /// Most halvings of a step of a model: one of which a thousandth part fails, fails. Fewer: a step
 /// fails where a corner or a pulley has to be met first; more: a failure costs more.
 pub(crate) const MAX_HALVINGS: u32 = 10;

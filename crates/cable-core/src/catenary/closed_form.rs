@@ -24,7 +24,7 @@
 //!
 //! Nothing divides by w, so a weightless piece is no special case.
 
-use crate::numerics::backtrack;
+use crate::numerics::{ARMIJO_FRACTION, backtrack};
 
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the
 /// logarithms would lose as many to their difference; anything between 0.5 and 0.9 gives the same
@@ -176,8 +176,6 @@ impl ChainPiece {
 const MAX_ITERATIONS: usize = 60;
 /// Maximum number of halvings of one step: 2⁻⁴⁰ of a Newton step is round-off.
 const MAX_HALVINGS: usize = 40;
-/// Sufficient decrease (Armijo 1966): any small value serves a convex function.
-const ARMIJO: f64 = 1e-4;
 /// Predicted decrease, as a fraction of the energy, below which it is lost in round-off, and a
 /// smaller gradient counts as progress instead. Smaller: the search stalls a few digits short.
 /// Larger: a step that climbs may pass.
@@ -250,7 +248,7 @@ pub(super) fn minimise(
             let (gxn, gzn) = (en.x - chord[0], en.z - chord[1]);
             let decrease = en.phi - hn * chord[0] - vn * chord[1] - value;
             let in_noise = -slope * alpha <= ENERGY_NOISE * (e.phi.abs() + value.abs());
-            if decrease <= ARMIJO * alpha * slope || (in_noise && gxn.abs() + gzn.abs() < closure) {
+            if decrease <= ARMIJO_FRACTION * alpha * slope || (in_noise && gxn.abs() + gzn.abs() < closure) {
                 return Some(Some((hn, vn, en, gxn, gzn)));
             }
             // Halving a Newton step reduces any gradient above round-off.

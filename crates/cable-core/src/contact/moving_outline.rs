@@ -7,6 +7,13 @@ use super::distance::{cross_properly, point_segment, segment_segment};
 use crate::math::{Point, RigidPose, Vec2, cross, larger, vec2};
 use crate::scene::Shape;
 
+/// Distance of a point that is outside for certain, in greatest distances of a corner from the
+/// origin (at least 1 m). Smaller, below 1: it may lie inside; larger: rounding.
+const OUTSIDE_DISTANCE_FACTOR: f64 = 4.0;
+/// Slope of the ray to that point. Zero would lead along the edges of most outlines, and a ray
+/// through a corner may count it twice; any other slope will do.
+const RAY_SLOPE: f64 = 0.6;
+
 /// Depth to which a round or thick obstacle may reach into an outline that it touches, m. Smaller:
 /// rounding of what stands on it counts; larger: shallow overlaps are not spoken of.
 const TOUCHING_DEPTH_M: f64 = 1e-3;
@@ -94,8 +101,8 @@ impl Outline {
         };
         let crosses = |a: Vec2, b: Vec2| self.edges(placement).filter(|[p, q]| cross_properly(a, b, *p, *q)).count();
         // A ray from a point inside leaves the outline once more than it enters it.
-        let beyond = self.corners.iter().map(|c| c.norm()).fold(1.0, larger) * 4.0;
-        let is_inside = |p: Vec2| crosses(p, placement.at + Vec2::new(beyond, 0.6 * beyond)) % 2 == 1;
+        let beyond = self.corners.iter().map(|c| c.norm()).fold(1.0, larger) * OUTSIDE_DISTANCE_FACTOR;
+        let is_inside = |p: Vec2| crosses(p, placement.at + Vec2::new(beyond, RAY_SLOPE * beyond)) % 2 == 1;
         ring.first().is_some_and(|p| is_inside(*p))
             || ring.windows(2).any(|w| crosses(w[0], w[1]) > 0)
             || (radius > TOUCHING_DEPTH_M && !self.is_clear(placement, ring.into_iter(), radius - TOUCHING_DEPTH_M))

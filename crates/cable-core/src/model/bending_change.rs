@@ -5,6 +5,10 @@
 
 use crate::math::larger;
 
+/// Part of a change, short of the whole, within which it is the whole: the rounding of a sum of
+/// parts. Smaller: a change ends a rounding short of its goal; larger: its end is a jump.
+pub(in crate::model) const WHOLE_ROUNDING: f64 = 1e-9;
+
 /// Time with which the stiffness changes, s: half of it has changed after 1.7 times as long.
 /// Smaller: the tension changes like a blow; larger: the cable is stiffer or softer than its scene
 /// says. A choice, tuned on no campaign.
@@ -48,7 +52,7 @@ impl BendingChange {
     /// Changes the stiffness by a part of what is left.
     pub fn approach(&mut self, part: f64) {
         let now = self.stiffness();
-        let to = if part < 1.0 - 1e-9 { now + (self.to_n_m2 - now) * part } else { self.to_n_m2 };
+        let to = if part < 1.0 - WHOLE_ROUNDING { now + (self.to_n_m2 - now) * part } else { self.to_n_m2 };
         (self.from_n_m2, self.since_s) = (to, 0.0);
     }
 

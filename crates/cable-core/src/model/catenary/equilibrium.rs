@@ -7,8 +7,25 @@ use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::linalg::{TridiagonalRow as Row, solve_tridiagonal};
 use crate::math::larger;
 use crate::model::Model;
-use crate::numerics::{MAX_HALVINGS, backtrack};
+use crate::numerics::{ARMIJO_FRACTION, MAX_HALVINGS, backtrack};
 use crate::problem::Problem;
+
+/// Material that must have moved against the friction of a pulley before the pulley holds again, as
+/// a fraction of the cable's length. Smaller: round-off makes it hold and slip in turn; larger: it
+/// slips on where it ought to hold.
+const REVERSAL_FRACTION: f64 = 1e-12;
+/// Pivot below which an energy counts as not convex, as a fraction of the largest. Smaller: steps
+/// as long as round-off makes them; larger: flat energies are shifted without need, and converge
+/// slowly.
+const LEAST_PIVOT_FRACTION: f64 = 1e-12;
+/// First shift of the diagonal of an energy that is not convex, as a fraction of the largest pivot.
+/// Smaller: more shifts are tried; larger: the first steps are shorter than they need be.
+const FIRST_SHIFT_FRACTION: f64 = 1e-3;
+/// Factor from one shift of the diagonal to the next. Smaller: more are tried; larger: as above.
+const SHIFT_GROWTH: f64 = 4.0;
+/// Maximum number of shifts of the diagonal: 4⁶⁰ exceeds every matrix. Fewer: a solve could fail
+/// that a larger shift would save.
+const MAX_SHIFTS: usize = 60;
 
 /// A balance found.
 #[derive(Clone, Debug)]
@@ -151,7 +168,9 @@ fn contact(
                 }
                 // Friction +μ acts against material that moves to the side after the pulley, so σ
                 // must have fallen.
-                PulleyMode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
+                PulleyMode::Slip(m)
+                    if m * (sigma[k] - held[k]) > REVERSAL_FRACTION * a.friction * slide.problem.length =>
+                {
                     sigma[k] = held[k];
                     PulleyMode::Stick
                 }
@@ -231,14 +250,14 @@ fn rows(
 fn step(r: &[f64], j: &[Row], form: BalanceForm) -> Option<Vec<f64>> {
     let largest = j.iter().fold(0.0f64, |m, row| if row[1].abs() > m { row[1].abs() } else { m });
     let mut shift = 0.0;
-    for _ in 0..60 {
+    for _ in 0..MAX_SHIFTS {
         let lifted: Vec<Row> = j.iter().map(|[before, own, after]| [*before, own + shift, *after]).collect();
         let mut p: Vec<f64> = r.iter().map(|r| -r).collect();
-        let will_do = |pivot: &f64| form == BalanceForm::SlipLaw || *pivot > 1e-12 * largest;
+        let will_do = |pivot: &f64| form == BalanceForm::SlipLaw || *pivot > LEAST_PIVOT_FRACTION * largest;
         if solve_tridiagonal(&lifted, &mut p, |pivot| Some(pivot).filter(will_do)) {
             return p.iter().all(|v| v.is_finite()).then_some(p);
         }
-        shift = if shift > 0.0 { 4.0 * shift } else { 1e-3 * largest };
+        shift = if shift > 0.0 { SHIFT_GROWTH * shift } else { FIRST_SHIFT_FRACTION * largest };
     }
     None
 }
@@ -396,10 +415,10 @@ fn search(
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
         let t = slide.stretches(&trial, Some(s))?;
         spent += t.iterations;
-        let down = form == BalanceForm::Energy && t.energy - energy <= 1e-4 * alpha * slope;
+        let down = form == BalanceForm::Energy && t.energy - energy <= ARMIJO_FRACTION * alpha * slope;
         let noise = form == BalanceForm::SlipLaw || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
-        let closer =
-            noise && rows(slide, &t, modes, form).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+        let closer = noise
+            && rows(slide, &t, modes, form).is_some_and(|(rt, ..)| size(&rt) < (1.0 - ARMIJO_FRACTION * alpha) * norm);
         (down || closer).then_some((trial, t))
     });
     (found, spent)

@@ -7,6 +7,11 @@ use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
+/// Material of dangling ends of a cable that is too short for its way, as a fraction of its length.
+/// Smaller: an end that pays out from nothing; larger: spans that begin tauter than they are. A
+/// choice, tuned on no campaign.
+const TAUT_SPARE_FRACTION: f64 = 0.05;
+
 /// The arcs of straight ways from wheel to wheel.
 pub(super) fn first_arcs(layout: &SupportLayout) -> Vec<WheelArc> {
     let all = &layout.anchors;
@@ -51,7 +56,7 @@ pub(super) fn spread(layout: &SupportLayout, p: &Problem) -> Vec<f64> {
     let (n, total) = (layout.anchors.len(), way.1);
     let way = way.0;
     let last = way[n - 1];
-    let spare = if p.length > last - way[0] { p.length - (last - way[0]) } else { 0.05 * p.length };
+    let spare = if p.length > last - way[0] { p.length - (last - way[0]) } else { TAUT_SPARE_FRACTION * p.length };
     // Known material points, as (way, s), the ends of the cable where they dangle included.
     let mut known: Vec<(f64, f64)> = Vec::with_capacity(n + 2);
     if layout.free[0] {

@@ -48,6 +48,10 @@ use crate::solution::{
 };
 use crate::state::State;
 
+/// Most moves into which a step is divided. Smaller: long drags go farther at once than the method
+/// follows; larger: a support that is carried off by kilometres takes minutes.
+const MAX_MOVES: f64 = 1000.0;
+
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -330,11 +334,11 @@ impl Mechanics for CatenaryModel {
             return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
+            return Err(SolveError::TimeStep { dt_s, longest_s: LONGEST_STEP_S });
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
         let pieces =
-            (self.support_travel(start, end) / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, 1000.0);
+            (self.support_travel(start, end) / (MAX_MOVE_FRACTION * self.problem.length)).ceil().clamp(1.0, MAX_MOVES);
         let mut steps = HalvedSteps::new(end, dt_s / pieces, MAX_HALVINGS, JOINED_FRACTION);
         let mut total = StepReport::default();
         while let Some(next) = steps.next(self.time_s) {

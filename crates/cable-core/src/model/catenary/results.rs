@@ -13,6 +13,10 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
 
+/// Difference of arc lengths within which two nodes are at one material point, as a fraction of the
+/// cable's length: round-off. Smaller: nodes that round-off makes two; larger: near nodes are lost.
+const SAME_POINT_FRACTION: f64 = 1e-12;
+
 /// Greatest distance of the cable from the straight line between two nodes, as a fraction of its
 /// length. Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
 /// thousands of nodes.
@@ -80,7 +84,7 @@ impl<'a> Nodes<'a> {
         // A node twice at the same material point only where the tension jumps (a load, a rubbing
         // pulley).
         if let Some(last) = self.out.last_mut()
-            && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
+            && node.arc_length_m - last.arc_length_m <= SAME_POINT_FRACTION * self.problem.length
             && (node.tension_n - last.tension_n).abs() <= TENSION_JUMP_TOLERANCE * node.tension_n
         {
             if !self.turned {
@@ -185,7 +189,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibriu
 
 fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let at_node = |s: f64| {
-        let k = nodes.partition_point(|n| n.arc_length_m < s - 1e-12 * p.length);
+        let k = nodes.partition_point(|n| n.arc_length_m < s - SAME_POINT_FRACTION * p.length);
         nodes.get(k).map_or(Vec2::zeros(), |n| Vec2::new(n.x_m, n.y_m))
     };
     p.supports

@@ -22,6 +22,10 @@ use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
 use crate::problem::wheel_passage::angle_near;
 
+/// Change of the tension by which the slope of a wheel is read, as a fraction of the tension.
+/// Smaller: round-off; larger: the error of a one-sided difference.
+const DIFFERENCE_FRACTION: f64 = 1e-6;
+
 /// State of a pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum PulleyMode {
@@ -239,7 +243,7 @@ impl SlidingProblem<'_> {
         let arrive = self.arcs[k].arrive;
         let passed = traverse_wheel(&chain, a, tb, arrive, turn, m).tension;
         let slope = if a.radius > 0.0 {
-            let d = 1e-6 * tb;
+            let d = DIFFERENCE_FRACTION * tb;
             (traverse_wheel(&chain, a, tb + d, arrive, turn, m).tension - passed) / d * tb / passed
         } else {
             1.0

@@ -227,7 +227,7 @@ impl ChainModel {
     /// Advances time by `dt_s`; on an error nothing has changed but the time that is due.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia, gauge: &mut TensionGauge) -> Result<(), SolveError> {
         if !(dt_s > 0.0 && dt_s <= MAX_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, longest_s: 60.0 });
+            return Err(SolveError::TimeStep { dt_s, longest_s: MAX_STEP_S });
         }
         self.has_shape = true;
         let end_s = self.chain.clock.time_s + dt_s;

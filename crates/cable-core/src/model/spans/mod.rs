@@ -65,6 +65,10 @@ use crate::state::State;
 
 pub use crate::model::spans::settings::SpansSettings;
 
+/// Most moves into which a step is divided. Smaller: long drags go farther at once than the method
+/// follows; larger: a support that is carried off by kilometres takes minutes.
+const MAX_MOVES: f64 = 1000.0;
+
 /// Difference of tensions within which two histories agree, as a fraction of the greatest tension.
 /// Larger: a cable held by little friction is reported to have one equilibrium; smaller: round-off
 /// is reported as another history.
@@ -193,7 +197,7 @@ impl SpansModel {
         mut goes_on: Option<NodesWatch<'_>>,
     ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
+            return Err(SolveError::TimeStep { dt_s, longest_s: LONGEST_STEP_S });
         }
         self.refuse_moved_posts(self.time_s + dt_s)?;
         if self.cable_equilibrium.is_none() {
@@ -205,7 +209,7 @@ impl SpansModel {
         let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
         self.layout.instant(&self.dragged, end, &mut last);
         let longest_move = self.layout.settings.continuation.max_move_fraction * length;
-        let moves = (Self::travel(&cable_equilibrium.instant, &last) / longest_move).ceil().clamp(1.0, 1000.0);
+        let moves = (Self::travel(&cable_equilibrium.instant, &last) / longest_move).ceil().clamp(1.0, MAX_MOVES);
         let mut workspace = std::mem::take(&mut self.workspace);
         let mut sum = StepReport::default();
         first.clone_from(&cable_equilibrium.instant);

@@ -11,6 +11,10 @@ use crate::model::spans::section::{CableEquilibrium, CableSection, Connection, C
 use crate::model::spans::section_layout::SectionLayout;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SharedNodes, SupportReaction};
 
+/// Difference of arc lengths within which a node is at a support, as a fraction of the cable's
+/// length: round-off. Smaller: the node after it is taken; larger: the node before it.
+const SAME_POINT_FRACTION: f64 = 1e-12;
+
 /// Number of nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
@@ -491,7 +495,7 @@ fn supports(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium, nodes:
                 (r.x_m, r.y_m) = (at.x, at.y);
             } else {
                 force = -force;
-                let i = nodes.partition_point(|n| n.arc_length_m < arc_length - 1e-12 * p.length);
+                let i = nodes.partition_point(|n| n.arc_length_m < arc_length - SAME_POINT_FRACTION * p.length);
                 (r.x_m, r.y_m) = nodes.get(i).map_or((0.0, 0.0), |n| (n.x_m, n.y_m));
             }
             (r.reaction_x_n, r.reaction_y_n) = (force.x, force.y);

@@ -27,6 +27,10 @@ use crate::solution::{TensionPeak, TensionPeaks};
 use incubation_mean::IncubationMean;
 use peaks::{PeaksOfMeans, greatest_of, higher};
 
+/// Change of the cable's length, as a fraction of it, from which a history begins on new points:
+/// round-off. Smaller: a history is lost by round-off; larger: peaks are kept at wrong places.
+const SAME_LENGTH_FRACTION: f64 = 1e-9;
+
 /// Two times (s) that differ by less are the same: sums of steps round.
 const SAME_TIME_S: f64 = 1e-9;
 
@@ -143,7 +147,7 @@ impl TensionGauge {
             return;
         }
         let whole = arcs.last().copied().unwrap_or(0.0) * self.scale[0];
-        if !self.points.last().is_some_and(|last| (last - whole).abs() <= 1e-9 * whole) {
+        if !self.points.last().is_some_and(|last| (last - whole).abs() <= SAME_LENGTH_FRACTION * whole) {
             self.points.clear();
             self.points.extend(arcs.iter().map(|s| s * self.scale[0]));
         }

@@ -4,6 +4,10 @@
 use crate::linalg::PivotingBand;
 use crate::math::{Vec2, perp};
 
+/// Difference of the normals of one line in two contacts: round-off. Smaller: a line counts as two;
+/// larger: two neighbouring edges of one polygon count as one.
+const SAME_NORMAL_DIFFERENCE: f64 = 1e-9;
+
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 pub(super) const STATES: usize = 8;
 /// Index of θ among the unknowns.
@@ -94,7 +98,11 @@ impl ContactSurface {
     pub(super) fn is_same_surface(&self, other: &Self) -> bool {
         self.owner == other.owner
             && self.radius == other.radius
-            && if self.radius.is_some() { self.at == other.at } else { (self.normal - other.normal).norm() < 1e-9 }
+            && if self.radius.is_some() {
+                self.at == other.at
+            } else {
+                (self.normal - other.normal).norm() < SAME_NORMAL_DIFFERENCE
+            }
     }
 
     /// True if it is a sharp corner: a cable slides over it, and no stretch of cable can lie on it.

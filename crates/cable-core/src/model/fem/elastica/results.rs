@@ -12,6 +12,12 @@ use crate::solution::{
     Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Cost, Node, SupportReaction,
 };
 
+/// Difference of arc lengths within which two nodes are the joint of two pieces, as a fraction of
+/// the cable's length: round-off. Smaller: a joint has two nodes; larger: short pieces lose theirs.
+const SAME_POINT_FRACTION: f64 = 1e-12;
+/// The error of a method of the fourth order is its change by halved elements over this, 2⁴ − 1.
+const FOURTH_ORDER_DIVISOR: f64 = 15.0;
+
 /// Maximum number of nodes of a piece in an answer.
 const MOST_PARTS: f64 = 400.0;
 
@@ -81,7 +87,7 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
         } else {
             change = f64::INFINITY;
         }
-        let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
+        let estimate = if largest > 0.0 { change / (FOURTH_ORDER_DIVISOR * largest) } else { change };
         let coarse = std::mem::replace(elastica, fine);
         let count: usize = elastica.pieces.iter().map(|p| p.nodes.len()).sum();
         let answer = solution(elastica, problem);
@@ -146,7 +152,7 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
             match out.last_mut() {
                 // At the joint of two pieces, the greater tension and the force of the second piece
                 // count, and the sharper of two bends between which a clamp is.
-                Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
+                Some(l) if node.arc_length_m <= l.arc_length_m + SAME_POINT_FRACTION * elastica.length => {
                     let bends = [l.curvature_per_m, node.curvature_per_m];
                     if node.tension_n > l.tension_n {
                         *l = node;

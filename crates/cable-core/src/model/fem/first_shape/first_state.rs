@@ -19,6 +19,10 @@ use crate::model::material_loss::Loss;
 use crate::problem::{PointLoad, Problem};
 use crate::scene::SupportKind;
 
+/// Distance within which two places of a mesh are one node, as a fraction of the cable's length:
+/// round-off. Smaller: bars of no length; larger: a load beside a support is moved to it.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// The cable along its route.
 pub(in crate::model::fem) fn cable_along_route(
     problem: Arc<Problem>,
@@ -59,7 +63,7 @@ fn places_of_nodes(problem: &Problem, route: &[(f64, Vec2)], near: f64) -> Vec<f
     breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
     breaks.extend(problem.loads.iter().map(|l| l.arc_length));
     breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
+    breaks.dedup_by(|a, b| *a - *b < SAME_POINT_FRACTION * problem.length);
     if !problem.world.is_empty() || problem.cable.self_contact {
         for (s, _) in route {
             if breaks.iter().all(|b| (b - s).abs() > near) {

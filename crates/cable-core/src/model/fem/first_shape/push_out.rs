@@ -5,6 +5,14 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
+/// Part of a point of a bar that must be free for its nodes to move the point out: held nodes do
+/// not. Smaller: a free node beside a held one is thrown a hundred times as far; larger: points
+/// beside supports stay inside. A choice, tuned on no campaign.
+const LEAST_FREE_SHARE: f64 = 0.01;
+/// Lack of a gap from which a point is pushed out, as a fraction of the gap. Smaller: more rounds
+/// for points that are clear already; larger: points are left at the surface.
+const MIN_LACK_FRACTION: f64 = 0.5;
+
 /// Maximum number of passes that push the first shape out of obstacles. Ten are enough for routes
 /// drawn within a diameter.
 const MAX_PASSES: usize = 60;
@@ -47,11 +55,11 @@ pub fn push_chain_out(
                 // A segment that cuts off a corner is nearest to it from inside.
                 let (way, lack) =
                     if inside { (-g.normal, clear - g.gap_m + 2.0 * distance) } else { (g.normal, clear - g.gap_m) };
-                if lack > 0.5 * clear {
+                if lack > MIN_LACK_FRACTION * clear {
                     let shares = [1.0 - g.fraction, g.fraction];
                     let free = [0, 1].map(|j| if held[e + j] { 0.0 } else { shares[j] });
                     let sum = free[0] * shares[0] + free[1] * shares[1];
-                    if sum > 0.01 {
+                    if sum > LEAST_FREE_SHARE {
                         x[e] += way * (lack * free[0] / sum);
                         x[e + 1] += way * (lack * free[1] / sum);
                         moved = true;

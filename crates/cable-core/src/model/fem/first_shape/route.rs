@@ -8,6 +8,10 @@ use crate::problem::ground_route::above_ground;
 use crate::problem::way_over::{bodies_in_the_way, hull_over};
 use crate::scene::SupportKind;
 
+/// Width of a leg below which it is plumb and no hull over obstacles leads along it, m. Smaller:
+/// hulls of no width; larger: steep legs are not lifted.
+const LEAST_LEG_WIDTH_M: f64 = 1e-9;
+
 /// Number of steps of the half turn by which an end is leaned to either side until it is clear of
 /// obstacles below it. Larger: the same at more cost; smaller: it begins higher than it needs to.
 const LEAN_STEPS: i32 = 36;
@@ -160,7 +164,7 @@ fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
     for leg in points.windows(2) {
         let (a, b) = (leg[0], leg[1]);
         let bodies = bodies_in_the_way(&problem.world, a, b);
-        if !bodies.is_empty() && (b.x - a.x).abs() > 1e-9 {
+        if !bodies.is_empty() && (b.x - a.x).abs() > LEAST_LEG_WIDTH_M {
             let hull = hull_over(&problem.world, &bodies, a, b);
             out.extend(hull.iter().skip(1));
         } else {

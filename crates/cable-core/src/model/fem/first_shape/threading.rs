@@ -13,6 +13,11 @@ use crate::problem::{Departure, Problem};
 use crate::scene::PulleySide;
 use crate::state::State;
 
+/// Least distance of a new sliding node from the nodes beside it, in even bars. Smaller: bars so
+/// short that the system is badly conditioned; larger: the node begins farther from where the
+/// material lies on the wheel. A choice, tuned on no campaign.
+const LEAST_NODE_DISTANCE_BARS: f64 = 0.05;
+
 /// Puts a sliding node at every pulley that has none: at the material that is nearest to it in
 /// `state`, else at the arc length of the layout.
 pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Option<&State>) {
@@ -28,7 +33,7 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         clear_of_nodes(cable, lies);
         let s = 0.5 * (lies[0] + lies[1]);
         let k = cable.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, cable.mesh.nodes() - 1);
-        let room = 0.05 * problem.length / cable.meshing.even_bars as f64;
+        let room = LEAST_NODE_DISTANCE_BARS * problem.length / cable.meshing.even_bars as f64;
         let (low, high) = (cable.mesh.arc_length[k - 1] + room, cable.mesh.arc_length[k] - room);
         let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];

@@ -25,6 +25,14 @@ use crate::model::fem::free::span;
 use crate::model::fem::free::span::{BarSpan, elements};
 use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 
+/// The change from a mesh to one with bars half as long, per error of the coarser: 1 − 2⁻⁴, for the
+/// fourth order.
+const FOURTH_ORDER_CHANGE: f64 = 0.9375;
+/// The error of the finer of two meshes is their difference over this: 2⁴ − 1 for the fourth order
+/// of forces at stations, 2³ − 1 for the third order between nodes.
+const STATION_ERROR_DIVISOR: f64 = 15.0;
+const NODE_ERROR_DIVISOR: f64 = 7.0;
+
 /// Maximum number of rounds of the correction.
 const ROUNDS: usize = 8;
 /// Change of the correction, relative to it, below which another round is not worth while.
@@ -193,7 +201,7 @@ pub fn difference(coarse: &PulleyNetwork, fine: &PulleyNetwork) -> f64 {
         largest = larger(larger(largest, b[0].norm()), b[1].norm());
         off = larger(larger(off, d[0].norm()), larger(d[1].norm(), (d[1] - d[0]).norm()));
     }
-    if largest > 0.0 { off / (0.9375 * largest) } else { off }
+    if largest > 0.0 { off / (FOURTH_ORDER_CHANGE * largest) } else { off }
 }
 
 /// Adds the response of frictionless pulleys to small changes of the forces beside the stations:
@@ -227,8 +235,8 @@ pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     for (a, b) in coarse.station_forces().iter().flatten().zip(fine.station_forces().iter().flatten()) {
         let (size, off) = (b.norm(), (b - a).norm());
         largest = larger(largest, size);
-        change = larger(change, off / 15.0);
+        change = larger(change, off / STATION_ERROR_DIVISOR);
     }
-    change = larger(change, (fine.greatest_tension() - coarse.greatest_tension()).abs() / 7.0);
+    change = larger(change, (fine.greatest_tension() - coarse.greatest_tension()).abs() / NODE_ERROR_DIVISOR);
     if largest > 0.0 { change / largest } else { change }
 }

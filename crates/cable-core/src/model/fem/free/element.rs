@@ -22,6 +22,14 @@
 
 use crate::math::{GAUSS_2_HALF_DISTANCE, Mat2, Vec2, cross};
 
+/// Ratio of an element's load to the tensions at its ends below which artanh r / r is its series to
+/// the second order: the next term is 2e-13. Smaller: the quotient loses digits; larger: so does
+/// the series.
+const MAX_SERIES_RATIO: f64 = 1e-3;
+/// Greatest such ratio, one rounding below 1, where artanh is infinite. Smaller: vertical elements
+/// are too short; larger: infinity.
+const MAX_LOAD_RATIO: f64 = 1.0 - 1e-15;
+
 /// The values that all elements of a cable share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -104,7 +112,11 @@ impl Material {
         let across = Vec2::new(up.y, -up.x);
         let (h, v) = (force.dot(&across), force.dot(&up));
         // For a vertical element r is 1 and H = 0, and their product 0·∞ is avoided.
-        let stretch = if ratio < 1e-3 { 1.0 + ratio * ratio / 3.0 } else { ratio.min(1.0 - 1e-15).atanh() / ratio };
+        let stretch = if ratio < MAX_SERIES_RATIO {
+            1.0 + ratio * ratio / 3.0
+        } else {
+            ratio.min(MAX_LOAD_RATIO).atanh() / ratio
+        };
         let exact = (across * (h * 2.0 * stretch) + up * (2.0 * v)) * (rest / ends) + elastic;
         exact - self.respond(ds, force).chord
     }

@@ -21,6 +21,16 @@ use crate::model::fem::free::span::{BarSpan, SpanEnd, elements};
 use crate::model::fem::free::stations::{Restraint, SpanEnds, StationLayout, Wheel};
 use crate::numerics::backtrack;
 
+/// Material that must have passed a pulley for it to slide, as a fraction of the cable's length:
+/// round-off. Smaller: the direction of friction changes with it; larger: small slides have none.
+const LEAST_SLIDE_FRACTION: f64 = 1e-12;
+/// Interval of the material at a pulley that jumps from one balance to another, as a fraction of
+/// the cable's length, at which the search for the jump ends. Smaller: more halvings; larger: the
+/// cable goes on from farther beyond the jump.
+const JUMP_INTERVAL_FRACTION: f64 = 1e-6;
+/// Most halvings of that interval; 60 exhaust the digits of an f64.
+const JUMP_HALVINGS: usize = 60;
+
 /// Maximum number of Newton steps for all pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
 
@@ -222,7 +232,7 @@ impl PulleyNetwork {
             return Some(b.ratio - b.law[1]);
         }
         let slid = self.slid(station);
-        let still = 1e-12 * self.layout.length;
+        let still = LEAST_SLIDE_FRACTION * self.layout.length;
         if slid > still {
             Some(b.ratio - b.law[0])
         } else if slid < -still {
@@ -432,14 +442,14 @@ impl PulleyNetwork {
             let other = if imbalance < 0.0 { station + 1 } else { station - 1 };
             return self.pass(station, other);
         }
-        for _ in 0..60 {
+        for _ in 0..JUMP_HALVINGS {
             let middle = 0.5 * (near + far);
             self.try_at(station, middle)?;
             match self.imbalance(station, &wheel) {
                 Some(f) if f * imbalance > 0.0 => near = middle,
                 _ => far = middle,
             }
-            if (far - near).abs() <= 1e-6 * self.layout.length {
+            if (far - near).abs() <= JUMP_INTERVAL_FRACTION * self.layout.length {
                 break;
             }
         }

@@ -9,6 +9,10 @@ use crate::model::fem::free::wheel_arcs;
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
+/// Difference of arc lengths within which a point is at a place, relative to the arc length:
+/// round-off. Smaller: the point after it is taken; larger: the point before it.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// A point of the cable.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SolutionPoint {
@@ -238,6 +242,6 @@ pub fn reactions(
 }
 
 fn position_at(points: &[SolutionPoint], arc_length: f64) -> Vec2 {
-    let k = points.partition_point(|p| p.arc_length < arc_length - 1e-9 * arc_length.abs());
+    let k = points.partition_point(|p| p.arc_length < arc_length - SAME_POINT_FRACTION * arc_length.abs());
     points.get(k).or(points.last()).map_or(Vec2::zeros(), |p| p.at)
 }

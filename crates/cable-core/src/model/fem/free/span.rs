@@ -13,15 +13,25 @@
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::stations::{SpanEnds, StationLayout};
-use crate::numerics::backtrack;
+use crate::numerics::{ARMIJO_FRACTION, backtrack};
+
+/// Width of a span below which it hangs plumb, as a fraction of its length: the parameter of its
+/// catenary is then infinite. Smaller: overflow; larger: narrow loops begin as folds.
+const PLUMB_WIDTH_FRACTION: f64 = 1e-6;
+/// Most Newton steps of the guess of a taut span, which gains digits fast. Fewer: a worse guess.
+const GUESS_STEPS: usize = 12;
+/// Least part of the tension that such a step leaves: a guess below zero would not come back.
+/// Smaller: a step across the pole; larger: more steps down.
+const LEAST_LEFT_TENSION: f64 = 0.1;
+/// Relative error of the tension at which the guess is good. Smaller: steps that Newton's method of
+/// the span would take anyway; larger: more of those.
+const GUESS_TOLERANCE: f64 = 1e-6;
 
 /// Maximum number of Newton steps of a span. Measured: 3 to 14, up to 40 for a span folded on
 /// itself.
 const MAX_STEPS: usize = 200;
 /// Maximum number of halvings of a Newton step.
 const MAX_HALVINGS: usize = 40;
-/// Fraction of the predicted decrease that a step must give (Armijo). Any small number will do.
-const ARMIJO: f64 = 1e-4;
 /// Gap, as a fraction of the length, below which a span is closed: a few rounding errors of a sum
 /// over its elements.
 const CLOSURE_TOLERANCE: f64 = 4e-16;
@@ -173,7 +183,7 @@ pub fn first_guess(material: &Material, layout: &StationLayout, ends: SpanEnds, 
     let across = d - up * rise;
     if strain < SLACK_STRAIN || chord == 0.0 {
         let width = across.norm();
-        let lambda = if width > 1e-6 * rest {
+        let lambda = if width > PLUMB_WIDTH_FRACTION * rest {
             (3.0 * ((rest * rest - rise * rise) / (width * width) - 1.0)).max(0.0).sqrt()
         } else {
             f64::INFINITY
@@ -193,12 +203,12 @@ pub fn first_guess(material: &Material, layout: &StationLayout, ends: SpanEnds, 
     // the left is monotone.
     let ea = material.axial_stiffness;
     let mut tension = if strain > 0.0 { (ea * strain).max((beta * ea).cbrt()) } else { (beta * ea).cbrt() };
-    for _ in 0..12 {
+    for _ in 0..GUESS_STEPS {
         let f = tension / ea - beta / (tension * tension) - strain;
         let slope = 1.0 / ea + 2.0 * beta / tension.powi(3);
         let next = tension - f / slope;
-        tension = if next > 0.1 * tension { next } else { 0.1 * tension };
-        if !(f.abs() > 1e-6 * slope * tension) {
+        tension = if next > LEAST_LEFT_TENSION * tension { next } else { LEAST_LEFT_TENSION * tension };
+        if !(f.abs() > GUESS_TOLERANCE * slope * tension) {
             break;
         }
     }
@@ -235,8 +245,8 @@ pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec
         let taken = backtrack(1.0, MAX_HALVINGS, |alpha| {
             let trial = force + step * alpha;
             let t = span_response(material, layout, ends, trial);
-            let descends = t.energy - trial.dot(&d) <= value + ARMIJO * alpha * slope;
-            let closes = (t.reach - d).norm() <= (1.0 - ARMIJO * alpha) * gap.norm();
+            let descends = t.energy - trial.dot(&d) <= value + ARMIJO_FRACTION * alpha * slope;
+            let closes = (t.reach - d).norm() <= (1.0 - ARMIJO_FRACTION * alpha) * gap.norm();
             let accepted =
                 (descends && alpha < 1.0) || closes || (descends && (t.reach - d).norm() <= 2.0 * gap.norm());
             accepted.then_some((trial, t))

@@ -30,6 +30,14 @@ use crate::solution::error_estimates::greatest_tension;
 use crate::solution::{Assumptions, CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
+/// Least and greatest factor by which the number of elements grows in one round. Less at the least:
+/// rounds that gain nothing; more at the greatest: one bad estimate makes a mesh that takes
+/// seconds.
+const ELEMENT_GROWTH_RANGE: [f64; 2] = [1.2, 4.0];
+/// Difference of arc lengths within which a state ends where the cable ends, as a fraction of its
+/// length. Smaller: states read from text are refused; larger: those of another cable are taken.
+const STATE_END_FRACTION: f64 = 1e-6;
+
 /// First number of elements if none is given: an error of 1e-6 for a usual span, in 50 µs.
 const FIRST_SEGMENTS: usize = 40;
 /// Maximum number of elements by the error estimate. Beyond it round-off grows faster than the
@@ -207,7 +215,9 @@ impl Statics {
                 break;
             }
             let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / BAR_ORDER);
-            segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
+            segments = ((segments as f64 * factor.clamp(ELEMENT_GROWTH_RANGE[0], ELEMENT_GROWTH_RANGE[1])).ceil()
+                as usize)
+                .min(MOST_SEGMENTS);
             network.layout.cut(segments);
             if network.pulley_states.is_empty() { network.solve() } else { network.balance_with_friction() }
                 .map_err(|f| solve_error(&self.problem, &network, self.time, f))?;
@@ -416,7 +426,7 @@ impl Statics {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }
-        let near = 1e-6 * self.problem.length;
+        let near = STATE_END_FRACTION * self.problem.length;
         let fits = state.arc_length_m.len() == state.position_m.len()
             && state.arc_length_m.first().is_some_and(|s| s.abs() <= near)
             && state.arc_length_m.last().is_some_and(|s| (s - self.problem.length).abs() <= near);

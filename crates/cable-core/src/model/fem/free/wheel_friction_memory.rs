@@ -8,6 +8,10 @@ use crate::model::fem::free::stations::Restraint;
 use crate::model::spans::contact::{CableProperties, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
+/// Angle (rad) by which the end of a wheel's arc may lie before its start by round-off. Smaller: an
+/// arc of no length becomes a whole turn; larger: the end of a nearly whole turn is its start.
+const ANGLE_ROUNDING_RAD: f64 = 1e-6;
+
 /// Distance from a wheel within which a node of an answer lies on it, as a fraction of its radius.
 const WHEEL_DISTANCE_RADII: f64 = 1e-9;
 
@@ -34,7 +38,8 @@ impl PulleyNetwork {
             if let FrictionState::Wheel(w) = &mut pulley.friction {
                 let first = w.angle(before, 0.0);
                 let last = w.angle(after, first);
-                let last = if last < first - 1e-6 { last + std::f64::consts::TAU } else { larger(last, first) };
+                let last =
+                    if last < first - ANGLE_ROUNDING_RAD { last + std::f64::consts::TAU } else { larger(last, first) };
                 pulley.angles = [first, last];
                 let ends = [[first, pulley.material[0], before.norm()], [last, pulley.material[1], after.norm()]];
                 w.begin(&on, &ends);

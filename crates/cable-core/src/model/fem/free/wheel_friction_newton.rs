@@ -16,7 +16,7 @@
 //! directions, which is more than a stiff cable stretches, so friction could get the wrong sign.
 //! Newton's method with a line search solves one set of modes; then the modes are checked.
 
-use crate::numerics::backtrack;
+use crate::numerics::{ARMIJO_FRACTION, backtrack};
 use nalgebra::{DMatrix, DVector};
 
 use crate::math::{Vec2, cross, larger, perp};
@@ -257,7 +257,8 @@ impl PulleyNetwork {
                 self.move_unknowns(&from, &step, part);
                 self.steps += 1;
                 self.take_unknowns(pulleys).ok()?;
-                Some(self.equations(pulleys)).filter(|next| next.residual.norm_squared() <= (1.0 - 1e-4 * part) * norm)
+                Some(self.equations(pulleys))
+                    .filter(|next| next.residual.norm_squared() <= (1.0 - ARMIJO_FRACTION * part) * norm)
             });
             let Some(next) = better else {
                 self.move_unknowns(&from, &step, 0.0);

@@ -14,6 +14,10 @@ use crate::model::fem::settings::Tuning;
 use crate::model::length_change::LEAST_EXCESS;
 use crate::problem::Problem;
 
+/// Distance within which a node is at an arc length, as a fraction of the cable's length. Smaller:
+/// nodes that a scene's digits miss are not found; larger: the wrong one of two near nodes is.
+const NODE_DISTANCE_FRACTION: f64 = 1e-6;
+
 /// A direction prescribed at a node. The bars on both sides of the node are bent against it, each
 /// by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -323,7 +327,7 @@ impl Mesh {
     /// The node at an arc length (m), within a millionth of the cable.
     #[must_use]
     pub fn node_at(&self, arc_length: f64) -> Option<usize> {
-        let near = 1e-6 * self.arc_length.last().copied().unwrap_or(0.0);
+        let near = NODE_DISTANCE_FRACTION * self.arc_length.last().copied().unwrap_or(0.0);
         let k = self.arc_length.partition_point(|&s| s < arc_length - near);
         (k < self.nodes() && (self.arc_length[k] - arc_length).abs() <= near).then_some(k)
     }

@@ -21,6 +21,10 @@ use crate::contact::geometry::Geometry;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 
+/// Exponent z below which (e^z − 1)/z is a series of three terms, of which the next is below
+/// round-off. Smaller: the quotient loses digits; larger: the series does.
+const MAX_SERIES_EXPONENT: f64 = 1e-4;
+
 /// The corner, post or pulley of a sliding node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SlideOver {
@@ -333,8 +337,7 @@ pub fn round_of(geometry: &Geometry, feature: usize, clear: f64, least: f64) -> 
 /// (γ − 1)/ln γ.
 pub(in crate::model::fem) fn mean_factor(ratio: f64) -> f64 {
     let z = ratio.ln();
-    // At this size the terms of the series after the third are below round-off.
-    if z.abs() < 1e-4 { 1.0 + z * (0.5 + z / 6.0) } else { (ratio - 1.0) / z }
+    if z.abs() < MAX_SERIES_EXPONENT { 1.0 + z * (0.5 + z / 6.0) } else { (ratio - 1.0) / z }
 }
 
 #[cfg(test)]

@@ -28,6 +28,11 @@ use crate::model::fem::system::{BodyMotion, ContactPair, Failure, FailureCause, 
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
+/// Sum of the squared shares of free nodes in a gap from which they restore it. Smaller: a free
+/// node beside a held one is thrown a thousand times as far; larger: gaps beside supports stay
+/// lost.
+const LEAST_SQUARED_SHARES: f64 = 1e-6;
+
 /// Displacement of the outline below which it stands still, m.
 const STANDSTILL_DISPLACEMENT_M: f64 = 1e-12;
 
@@ -315,7 +320,7 @@ impl<'a> BodiesStep<'a> {
                     false => 0.0,
                 });
                 let sum = free[0] * free[0] + free[1] * free[1];
-                if !(lack > RESTORED_GAP_LACK_M) || sum < 1e-6 {
+                if !(lack > RESTORED_GAP_LACK_M) || sum < LEAST_SQUARED_SHARES {
                     continue;
                 }
                 worst = larger(worst, lack);

@@ -10,6 +10,10 @@ use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, FrictionContact, RoundFloorFriction};
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
+/// Part of the slip over which friction grows to its limit, from which a contact slides. Smaller:
+/// sticking contacts are reported as sliding; larger: round-off hides those that slide.
+const SLIDING_SLIP_FRACTION: f64 = 0.999;
+
 /// One report for each stretch of neighbouring contacts with one obstacle.
 pub(super) fn contacts(
     d: &CableState,
@@ -194,7 +198,7 @@ impl NeighbouringContacts<'_> {
             let e = rub.touch.node.min(x.len() - 2);
             let along = d.mesh.direction(e, x);
             out.force_n += d.contacts.friction_force(rub, x).dot(&along) * self.part(&rub.touch);
-            if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
+            if rub.sliding(x).abs() > SLIDING_SLIP_FRACTION * d.contacts.slip {
                 out.sliding_n += rub.limit;
             }
         }

@@ -8,6 +8,11 @@ use crate::model::fem::mesh::{Mesh, SlidingNodeLoad};
 use crate::model::fem::state::CableState;
 use crate::model::fem::system::{ContactPair, Weight, bar_weight};
 
+/// Distance within which a load is at a support, as a fraction of the cable's length: round-off.
+/// Smaller: a load that the support carries counts as unbalanced; larger: a load beside it does
+/// not.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// Difference of two bars, in parts of their length, up to which they count as equal. It only keeps
 /// rounding out: between even bars the tension of a node is their mean.
 const EVEN_BARS_LENGTH_FRACTION: f64 = 1e-9;
@@ -192,8 +197,12 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
 pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
-    let at_support =
-        |s: f64| problem.supports.iter().any(|p| p.arc_length.is_some_and(|a| (a - s).abs() <= 1e-9 * problem.length));
+    let at_support = |s: f64| {
+        problem
+            .supports
+            .iter()
+            .any(|p| p.arc_length.is_some_and(|a| (a - s).abs() <= SAME_POINT_FRACTION * problem.length))
+    };
     let loads: Vec2 = problem.loads.iter().filter(|l| !at_support(l.arc_length)).map(|l| l.force.at(time_s)).sum();
     let mut sum = problem.body_force(time_s) * problem.length + hung + loads;
     let mut touches: Vec<ContactPair> = Vec::new();

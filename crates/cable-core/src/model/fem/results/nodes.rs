@@ -9,6 +9,10 @@ use crate::model::fem::results::points_on_round::points_on_round;
 use crate::model::fem::state::CableState;
 use crate::solution::Node;
 
+/// Least arc length between two points of an answer on a round, m. Smaller: two nodes at one place;
+/// larger: points of small rounds are lost.
+const LEAST_POINT_DISTANCE_M: f64 = 1e-9;
+
 /// Room for so many points on each round: more are rare, and only cost a copy.
 const USUAL_POINTS_ON_ROUND: usize = 8;
 
@@ -39,7 +43,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
                 let velocity = v[k] - along * (d.motion.slide_rates[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
-                if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {
+                if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + LEAST_POINT_DISTANCE_M) {
                     out.push(node(p.arc_length, (p.at, velocity), p.tension, (curvature, p.force)));
                 } else if let Some(last) = out.last_mut() {
                     last.force_n = p.force.into();

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Model;
-use crate::model::bending_change::BendingChange;
+use crate::model::bending_change::{BendingChange, WHOLE_ROUNDING};
 use crate::model::fem::mesh::{Mesh, SlideOver, SlidingNodeLoad};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::NodalMotion;
@@ -17,6 +17,13 @@ use crate::model::material_loss::{Loss, Rubbing};
 use crate::problem::{MovingPost, Problem};
 use crate::solution::CableSolution;
 use crate::state::State;
+
+/// Most steps without inertia into which a change is divided. Smaller: long moves on fine meshes go
+/// farther at once than half a bar; larger: a scene that moves by kilometres takes minutes.
+const MAX_STATIC_STEPS: f64 = 1e4;
+/// Longest move of a support or post in a step without inertia, in even bars. Smaller: more steps;
+/// larger: a cable may be carried past a corner.
+const LONGEST_STATIC_MOVE_BARS: f64 = 0.5;
 
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -112,7 +119,7 @@ impl CableState {
         hand_targets.clear();
         hand_targets.extend(dragged.iter().enumerate().map(|(k, target)| {
             let (target, now) = ((*target)?, self.support_position(k));
-            Some(now.filter(|_| part < 1.0 - 1e-9).map_or(target, |now| now + (target - now) * part))
+            Some(now.filter(|_| part < 1.0 - WHOLE_ROUNDING).map_or(target, |now| now + (target - now) * part))
         }));
     }
 
@@ -156,9 +163,9 @@ impl CableState {
     pub(in crate::model::fem) fn approach_edit(&mut self, part: f64) {
         if self.motion.length_change.is_some() {
             let [now, to] = [self.mesh.thermal_stretch, self.problem.thermal_stretch];
-            self.set_thermal_stretch(if part < 1.0 - 1e-9 { now + (to - now) * part } else { to });
+            self.set_thermal_stretch(if part < 1.0 - WHOLE_ROUNDING { now + (to - now) * part } else { to });
         }
-        self.mesh.fade_excess(if part < 1.0 - 1e-9 { 1.0 - part } else { 0.0 });
+        self.mesh.fade_excess(if part < 1.0 - WHOLE_ROUNDING { 1.0 - part } else { 0.0 });
         self.change_bending(|bending| bending.approach(part));
     }
 
@@ -273,10 +280,10 @@ impl CableState {
         // A post goes no farther at once than a support, and than its own radius.
         let steps = |post: &MovingPost| {
             let body = bodies.iter().find(|body| body.obstacle == post.obstacle);
-            way(post) / smaller(0.5 * even, body.map_or(f64::INFINITY, |body| body.offset))
+            way(post) / smaller(LONGEST_STATIC_MOVE_BARS * even, body.map_or(f64::INFINITY, |body| body.offset))
         };
         let posts = self.problem.moving_posts.iter().map(steps).fold(0.0, larger);
         let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(max_way));
-        larger(most / (0.5 * even), larger(carried, posts)).ceil().clamp(1.0, 1e4)
+        larger(most / (LONGEST_STATIC_MOVE_BARS * even), larger(carried, posts)).ceil().clamp(1.0, MAX_STATIC_STEPS)
     }
 }

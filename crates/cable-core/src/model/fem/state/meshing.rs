@@ -5,6 +5,11 @@ use crate::model::fem::mesh::{Mesh, rotate};
 use crate::model::fem::system::ContactPair;
 use crate::problem::TimeSeries;
 
+/// Length over which the weight of an element gives the shift of the Hessian, m. Smaller: a stiffer
+/// shift, and slack nodes take more iterations; larger: they wander. A choice, tuned on no
+/// campaign.
+const SHIFT_LENGTH_M: f64 = 0.1;
+
 /// The node at which a point load acts.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct LoadNode {
@@ -71,10 +76,10 @@ pub(in crate::model::fem) struct Meshing {
 }
 
 impl Meshing {
-    /// Shift of the Hessian (N/m): the weight of an element over a tenth of a metre, enough to keep
+    /// Shift of the Hessian (N/m): the weight of an element over [`SHIFT_LENGTH_M`], enough to keep
     /// slack nodes from wandering.
     pub(in crate::model::fem) fn soft_shift(&self) -> f64 {
-        self.bar_weight / 0.1
+        self.bar_weight / SHIFT_LENGTH_M
     }
 
     /// Length of an even bar of a cable of this length, m of arc length.

@@ -12,6 +12,10 @@ use crate::model::tension_gauge::{TensionBefore, TensionGauge};
 use crate::model::{Inertia, StepReport};
 use crate::solution::{Cost, Warning, WarningCause};
 
+/// Part of a step by which a time may exceed a whole number of steps: round-off. Smaller: one more
+/// step of nearly no length; larger: steps longer than the longest.
+const STEP_COUNT_ROUNDING: f64 = 1e-9;
+
 impl Stepper {
     /// Advances time.
     ///
@@ -52,7 +56,9 @@ impl Stepper {
             }
         }
         let steps = match inertia {
-            Inertia::Dynamic => (dt_s / self.time_control.step_size.longest_step() - 1e-9).ceil().max(1.0),
+            Inertia::Dynamic => {
+                (dt_s / self.time_control.step_size.longest_step() - STEP_COUNT_ROUNDING).ceil().max(1.0)
+            }
             Inertia::QuasiStatic => self.cable.static_steps(end, dragged),
         };
         let h = dt_s / steps;

@@ -5,6 +5,11 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::problem::Problem;
 
+/// Least load per metre, as a fraction of the whole load over the cable's length: that of a cable
+/// that weighs nothing. Smaller: its contacts are softer than its loads need; larger: those of
+/// light cables with heavy loads are stiffer. A choice, tuned on no campaign.
+const LEAST_LINE_LOAD_FRACTION: f64 = 1e-3;
+
 /// Fraction of force times coordinate that counts as magnitude of an energy: with the noise of an
 /// energy it is four roundings of the coordinate. Without it, a stiff pendulum's last iteration is
 /// lost in the round-off of 98 N times 1 m and its step is halved without need.
@@ -274,7 +279,7 @@ pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
     // The normal force on the floor of a plan view counts by its friction.
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
     let whole = problem.force_scale().max(problem.max_whole_floor_friction());
-    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
+    let per_m = problem.body_force(0.0).norm().max(floor).max(LEAST_LINE_LOAD_FRACTION * whole / problem.length);
     (per_m, whole)
 }
 

@@ -9,6 +9,10 @@ use crate::model::mass_spring::forces::{bending, nodal, reactions, tension};
 use crate::model::mass_spring::mesh::{Mesh, Pulley};
 use crate::solution::{Node, SupportReaction};
 
+/// Distance within which a load is at a node, as a fraction of the cable's length: round-off.
+/// Smaller: its jump of tension is averaged away; larger: nodes beside it count as loaded.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// Relative difference of the tensions on both sides of a point up to which they make one node.
 const TENSION_JUMP_TOLERANCE: f64 = 1e-9;
 
@@ -159,7 +163,7 @@ impl NodeReader<'_> {
 
     /// True if a support or a point load acts on a node.
     fn bears_point_force(&self, i: usize) -> bool {
-        let here = |s: f64| (s - self.mesh.arc_length[i]).abs() <= 1e-9 * self.mesh.problem.length;
+        let here = |s: f64| (s - self.mesh.arc_length[i]).abs() <= SAME_POINT_FRACTION * self.mesh.problem.length;
         self.mesh.support_node.contains(&i) || self.mesh.problem.loads.iter().any(|l| here(l.arc_length))
     }
 

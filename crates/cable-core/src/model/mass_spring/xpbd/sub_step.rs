@@ -28,6 +28,10 @@ use crate::model::settings::Stepping;
 use crate::model::tension_gauge::TensionGauge;
 use crate::solution::{Warning, WarningCause};
 
+/// Part of a step by which a time may exceed a whole number of steps: round-off. Smaller: one more
+/// step of nearly no length; larger: steps longer than the limit.
+const STEP_COUNT_ROUNDING: f64 = 1e-9;
+
 /// Advances by `dt_s` in sub-steps.
 pub(in crate::model::mass_spring) fn preview(
     chain: &mut ChainState,
@@ -49,7 +53,7 @@ pub(in crate::model::mass_spring) fn preview(
         if let Some(e) = lifted_wheel(&chain.mesh, chain.clock.time_s) {
             return Err(e);
         }
-        let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
+        let parts = (left / if limit > shortest { limit } else { shortest } - STEP_COUNT_ROUNDING).ceil().max(1.0);
         let h = left / parts;
         left = if parts > 1.0 { left - h } else { 0.0 };
         chain.clock.time_s = end - left;

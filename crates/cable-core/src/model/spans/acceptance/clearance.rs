@@ -13,6 +13,10 @@ use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::section::{CableSection, Contact, Failure, SolveContext};
 
+/// Most of the offset of a body that the accepted depth may take. Smaller: thin cables are refused
+/// for round-off; larger: they may pass through.
+const ACCEPTED_DEPTH_OFFSET_FRACTION: f64 = 0.1;
+
 /// Depth inside an obstacle that every answer may have, m.
 const ACCEPTED_DEPTH_M: f64 = 1e-6;
 /// Maximum number of halvings: 2⁻⁴⁰ of any cable is a point.
@@ -91,7 +95,7 @@ impl BoundingTriangle {
     /// True if it is clear of a body. `beside` is a corner or circle round which its stretch runs
     /// at the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
-        let r = body.offset - smaller(ACCEPTED_DEPTH_M, 0.1 * body.offset);
+        let r = body.offset - smaller(ACCEPTED_DEPTH_M, ACCEPTED_DEPTH_OFFSET_FRACTION * body.offset);
         if let Some(center) = body.center {
             return beside == Some(body.first + 1) || self.misses_point(center, r);
         }

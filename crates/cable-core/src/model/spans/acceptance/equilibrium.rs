@@ -10,6 +10,10 @@ use crate::model::spans::results::{end_force, held_by, loose, wheel_force};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Contact, EndCondition, Failure, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 
+/// Tension that is none, N: what round-off leaves where the greatest tension is nearly zero.
+/// Smaller: cables of a few milligrams are refused; larger: compression of such cables passes.
+const FORCE_ROUNDING_N: f64 = 1e-9;
+
 /// Relative error with which equations of length, tension and angle must hold. The solver stops at
 /// 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
@@ -207,7 +211,7 @@ fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f
                 return Err(unsound(EquilibriumFault::EndTension, e.place[side], e.material[side]));
             }
         }
-        if !(e.tension[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
+        if !(e.tension[side] >= -COMPRESSION_ROUNDING * greatest - FORCE_ROUNDING_N) {
             return Err(Failure::Compressed {
                 s: e.material[side],
                 at: contact_path.place(e.place[side]).at,
@@ -236,7 +240,7 @@ const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 /// breakpoints, or between the ends and the first and last of them.
 fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = contact_path.friction_of_loose;
-    let room = BALANCE_TOLERANCE * (greatest + 1e-9);
+    let room = BALANCE_TOLERANCE * (greatest + FORCE_ROUNDING_N);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (contact_path.drag, c.history.breakpoints())
         && (lost(first.arc_length, c.ends.material[0]) || lost(last.arc_length, c.ends.material[1]))
@@ -258,7 +262,7 @@ fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64
             let whole = contact_path.slide(p, q, t, breakpoint.mobilised);
             let look = |x: f64, way: SlideResult| {
                 let place = contact_path.place(x);
-                if !(way.tension >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
+                if !(way.tension >= -COMPRESSION_ROUNDING * greatest - FORCE_ROUNDING_N) {
                     return Err(Failure::Compressed { s: s + way.material, at: place.at, tension: way.tension });
                 }
                 if !(contact_path.law.press(&place, way.tension) >= -room) {

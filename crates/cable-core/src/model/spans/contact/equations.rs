@@ -15,6 +15,14 @@
 use crate::math::larger;
 use crate::model::spans::boundary::{BoundaryPoint, ContactPath, Ends, Mode, SlipFront, StickZone, TensionProfile};
 
+/// Distance inside a contact at which the slope of its old tensions is read, as a fraction of its
+/// length. Smaller: round-off puts it outside; larger: the slope of the next stretch.
+const INNER_PLACE_FRACTION: f64 = 1e-9;
+/// Material that still slides, as a fraction of the gap, below which the root of a slip front is
+/// replaced by its tangent. Smaller: the slope of the root overflows; larger: Newton's method takes
+/// more steps at the start of a slip.
+const FLAT_ROOT_FRACTION: f64 = 1e-3;
+
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct ContactEquations {
@@ -95,7 +103,7 @@ fn pin(
     let target = -sign * gap;
     // The sign of the required change of tension decides the direction of sliding there.
     let m = front.mobilised.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
-    let inner = e.place[side] + (e.place[1 - side] - e.place[side]) * 1e-9;
+    let inner = e.place[side] + (e.place[1 - side] - e.place[side]) * INNER_PLACE_FRACTION;
     let drop = (law.slope(&place, old_t, m) - history.slope(contact_path, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
         // It continues to slide as before: the material follows the tension along the whole old
@@ -112,7 +120,7 @@ fn pin(
     let solved = out.residual[side].abs() <= MATERIAL_ROUNDING_FRACTION * size;
     let phi = sign * (out.residual[side] - gap);
     let root = |v: f64| v.signum() * v.abs().sqrt();
-    let flat = phi.abs() <= 1e-3 * gap.abs();
+    let flat = phi.abs() <= FLAT_ROOT_FRACTION * gap.abs();
     let value = if flat { x * k.sqrt() } else { root(phi) };
     // The root of round-off is much larger than round-off.
     out.residual[side] = if solved { 0.0 } else { (value - root(target)) / k.sqrt() };

@@ -15,6 +15,10 @@ use crate::model::spans::section::{BoundaryConditions, CableSection, Contact, En
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 
+/// Distance within which two nodes of an answer are at one place, as a fraction of the stretch:
+/// round-off. Smaller: a jump of tension is two places; larger: near nodes are lost.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// Least material between two contacts, as a fraction of the section.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
@@ -60,7 +64,7 @@ pub(in crate::model::spans) fn sections_of(
 /// it.
 fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<AnswerStation> {
     let mut out: Vec<AnswerStation> = Vec::with_capacity(nodes.len());
-    let rounding = 1e-9 * (to - from);
+    let rounding = SAME_POINT_FRACTION * (to - from);
     for n in nodes.iter().filter(|n| n.arc_length_m >= from - rounding && n.arc_length_m <= to + rounding) {
         match out.last_mut() {
             Some(last) if n.arc_length_m <= last.arc_length + rounding => last.tension[1] = n.tension_n,

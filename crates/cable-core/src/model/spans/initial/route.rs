@@ -8,6 +8,16 @@ use crate::model::spans::section::BoundaryConditions;
 use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::problem::way_over::bodies_in_the_way;
 
+/// Relative difference, and difference in m, by which a distance must be less than an earlier one
+/// to count as less. Smaller: round-off chooses among turns that are alike; larger: a later turn
+/// that is nearer is passed over.
+const NEARER_FRACTION: f64 = 1e-6;
+const NEARER_M: f64 = 1e-12;
+/// Least material that dangling ends get, as a fraction of the stretch. Smaller: an end that pays
+/// out from nothing; larger: stretches that begin tauter than they are. A choice, tuned on no
+/// campaign.
+const LEAST_SPARE_FRACTION: f64 = 0.05;
+
 /// Clearance of a route over obstacles, as a fraction of the distance between its ends. Smaller:
 /// round-off may let it touch. Larger: it goes round more obstacles than necessary.
 const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
@@ -46,7 +56,7 @@ impl RoutePolyline {
             let u = if self.along[k] + u < from { from - self.along[k] } else { u };
             let distance = (self.points[k] + d * (u / l) - at).norm();
             // Of equal distances the first counts, because several turns round a post are alike.
-            if distance < best * (1.0 - 1e-6) - 1e-12 {
+            if distance < best * (1.0 - NEARER_FRACTION) - NEARER_M {
                 (best, found) = (distance, self.along[k] + u);
             }
         }
@@ -149,7 +159,8 @@ pub(in crate::model::spans) fn section_route(
     }
     let mut points: Vec<Vec2> = Vec::new();
     let used: f64 = stops.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    let spare = (part.material[1] - part.material[0] - used).max(0.05 * (part.material[1] - part.material[0]));
+    let spare =
+        (part.material[1] - part.material[0] - used).max(LEAST_SPARE_FRACTION * (part.material[1] - part.material[0]));
     let loose = part.supports.iter().filter(|s| s.is_none()).count().max(1) as f64;
     let tail = |side: usize| {
         let force = layout.end_force(instant, part.material[side]) + instant.load * (0.5 * spare);

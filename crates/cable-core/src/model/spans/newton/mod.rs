@@ -38,6 +38,11 @@ use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::section::{BoundaryConditions, CableSection, SolveContext};
 use crate::model::spans::settings::NewtonSettings;
+use crate::numerics::ARMIJO_FRACTION;
+
+/// Greatest factor by which stiffness may widen the accepted residual of a section. Smaller: taut
+/// stiff cables are halved at round-off until the search fails; larger: places are off.
+const MAX_STIFF_RESIDUAL_FACTOR: f64 = 1e3;
 
 /// Residual of round-off for EA/T = 1; the residual grows in proportion to EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
@@ -118,7 +123,7 @@ fn squares(r: &[f64]) -> f64 {
 fn tolerance(section: &CableSection, context: &SolveContext) -> f64 {
     let (least, wanted) = (least_tension(section, context), context.settings.newton.residual);
     let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * context.law.stiffness / least } else { 0.0 };
-    larger(wanted, stiff.min(1e3 * wanted))
+    larger(wanted, stiff.min(MAX_STIFF_RESIDUAL_FACTOR * wanted))
 }
 
 /// True if an accepted residual still means a large error of forces: a missing length is a strain,
@@ -428,7 +433,7 @@ fn search(section: &mut CableSection, context: &SolveContext, before: f64, works
         }
         scatter(section, context, &workspace.best);
         assemble(section, context, &mut workspace.system);
-        if squares(&workspace.system.residual) < (1.0 - 1e-4 * alpha) * before {
+        if squares(&workspace.system.residual) < (1.0 - ARMIJO_FRACTION * alpha) * before {
             return true;
         }
     }

@@ -8,6 +8,10 @@ use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
+/// Shortest contact that is reported, in lengths that are none. Smaller: contacts of round-off are
+/// reported; larger: those in one point are lost.
+const LEAST_CONTACT_NONES: f64 = 1e-3;
+
 /// Number of nodes of a plumb leg and of a straight stretch.
 const NODES: usize = 8;
 
@@ -204,7 +208,7 @@ impl LooseRun {
         let curve = &context.curves[self.curve];
         let middle = 0.5 * (self.ends[0] + self.ends[1]);
         let nearest = self.at.iter().min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
-        let (_, at) = nearest.filter(|_| self.ends[1] - self.ends[0] > NONE_M * 1e-3)?;
+        let (_, at) = nearest.filter(|_| self.ends[1] - self.ends[0] > NONE_M * LEAST_CONTACT_NONES)?;
         let unit = self.push.try_normalize(0.0)?;
         let mut report = ContactReport {
             x_m: at.x,

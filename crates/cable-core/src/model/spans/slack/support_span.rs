@@ -18,6 +18,10 @@ use crate::model::spans::slack::slack_parts::{HALVINGS, SlackSolver};
 use crate::model::spans::slack::stretch_tensions::StretchTensions;
 use crate::numerics::bisect;
 
+/// Relative change of a length at which its iteration ends: some roundings. Smaller: it never ends;
+/// larger: the span ends farther from its support.
+const LENGTH_TOLERANCE_FRACTION: f64 = 1e-15;
+
 /// Greatest distance from its support at which a span may end, as a fraction of its length and of
 /// the size of coordinates: for a nearly plumb span the round-off of the touching point moves its
 /// end a thousand times as much. Larger: a jump could pass for a root.
@@ -110,7 +114,7 @@ impl SlackSolver<'_> {
             let next = v + b * length;
             let by = (across(length) - far) / (h * law.thermal * (law.compliance + 1.0 / h.hypot(next)));
             length = larger(length - by, 0.0);
-            if by.abs() <= 1e-15 * length {
+            if by.abs() <= LENGTH_TOLERANCE_FRACTION * length {
                 break;
             }
         }

@@ -7,6 +7,14 @@ use crate::model::fem::first_shape::push_chain_out;
 use crate::model::fem::free::place as support_place;
 use crate::scene::SupportKind;
 
+/// The whole load over the pull that is assumed at a bend, which says how fine the mesh is. Larger:
+/// bends count as wider, and the mesh is coarser; smaller: it is finer than they need. A choice,
+/// tuned on no campaign.
+const BEND_PULL_DIVISOR: f64 = 3.0;
+/// Least pull, N, that keeps a cable without load from a division by zero. Larger than any pull of
+/// a scene: coarse meshes; smaller: it is no number.
+const LEAST_PULL_N: f64 = 1e-300;
+
 /// Number of bars in the bend beside a contact, whose length is √(EI/T) with T a third of the
 /// weight. The whole cable gets at least `LEAST_BARS` and at most `MOST_BARS`.
 const BARS_IN_BEND: f64 = 3.0;
@@ -88,7 +96,7 @@ impl<'a> BarChain<'a> {
         }
         let stations = stations(chain_input)?;
         let scale = problem.force_scale();
-        let bend = (problem.bending_stiffness / larger(scale / 3.0, 1e-300)).sqrt();
+        let bend = (problem.bending_stiffness / larger(scale / BEND_PULL_DIVISOR, LEAST_PULL_N)).sqrt();
         let count = (BARS_IN_BEND * problem.length / bend).clamp(LEAST_BARS, MOST_BARS) * refinement;
         let mut chain = Self {
             chain_input,

@@ -76,6 +76,9 @@ pub(in crate::model::fem::elastica) const LYING_EULER: f64 = 4.0 * CLAMPED_EULER
 
 /// Cosine of the angle between two bars up to which a stretch is straight: half a radian.
 const STRAIGHT_COSINE: f64 = 0.88;
+/// Least distance of two nodes, m, that keeps nodes at one place from a division by zero. Larger
+/// than any bar: the nodes are moved by less; smaller: it is no number.
+const LEAST_DISTANCE_M: f64 = 1e-300;
 
 /// The state in which a relaxation ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -231,7 +234,7 @@ impl BarChain<'_> {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
             let size = PERTURBATION_FRACTION * self.chain_input.problem.radius * phase.sin();
-            self.positions[k] += perp(along) * (size / larger(along.norm(), 1e-300));
+            self.positions[k] += perp(along) * (size / larger(along.norm(), LEAST_DISTANCE_M));
         }
     }
 

@@ -9,6 +9,10 @@ use crate::model::fem::elastica::chain::{BarChain, ChainContact};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
+/// Difference of arc lengths within which a node is at a support, as a fraction of the cable's
+/// length: round-off. Smaller: the node after it is taken; larger: the node before it.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// Distance between two contacts with one obstacle, in bars, up to which they are merged.
 const CONTACT_MERGE_BARS: f64 = 2.5;
 
@@ -113,7 +117,7 @@ impl BarChain<'_> {
         let ends = p.supports.len().saturating_sub(1);
         let reaction = |(k, s): (usize, &crate::problem::SupportPoint)| {
             let arc = if k == 0 { 0.0 } else { s.arc_length.filter(|_| k < ends).unwrap_or(p.length) };
-            let i = self.arc.partition_point(|a| *a < arc - 1e-9 * p.length).min(last);
+            let i = self.arc.partition_point(|a| *a < arc - SAME_POINT_FRACTION * p.length).min(last);
             let before = if i > 0 { forces[i - 1] } else { Vec2::zeros() };
             let after = if i < last { forces[i] } else { Vec2::zeros() };
             let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free);

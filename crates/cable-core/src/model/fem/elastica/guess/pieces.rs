@@ -6,6 +6,11 @@ use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_F
 use crate::model::fem::elastica::reference_curve::ReferenceCurve;
 use crate::model::fem::free::places;
 
+/// Part of the rise over two rounds that the sag between them may reach before the cable lies on
+/// the line between: a cable that sags by less is lifted off it. Smaller: more contacts that the
+/// solver must give up; larger: more that it must find. A choice, tuned on no campaign.
+const LIFTED_SAG_FRACTION: f64 = 0.25;
+
 /// First number of elements of a free piece, and of one that lies on a contact. Smaller: Newton's
 /// method starts outside its region of convergence; larger: more time.
 const FREE_ELEMENTS: usize = 32;
@@ -139,7 +144,8 @@ impl ElasticaGuess<'_> {
             let Attachment { from, to, .. } = attachments[i];
             let (l, pull) = (to - from, curve.tension_at(0.5 * (from + to)));
             elastica.contacts[k].radius.is_none()
-                && elastica.body.norm() * l * l / (8.0 * pull) < 0.25 * elastica.layer_thickness(pull) * (a + b)
+                && elastica.body.norm() * l * l / (8.0 * pull)
+                    < LIFTED_SAG_FRACTION * elastica.layer_thickness(pull) * (a + b)
         };
         let kept: Vec<bool> = (0..attachments.len()).map(|i| !is_lifted(i)).collect();
         let mut keep = kept.iter();

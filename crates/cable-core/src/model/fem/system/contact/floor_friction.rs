@@ -14,6 +14,10 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::{Mesh, mean_factor};
 use crate::problem::Problem;
 
+/// Exponent below which functions of it are series of two terms, whose error is its square.
+/// Smaller: the quotients lose digits; larger: the series do.
+const MAX_SERIES_EXPONENT: f64 = 1e-4;
+
 /// Iterations for the rate at which tension grows over a round: Newton's method on a convex
 /// function that is close to an exponential.
 const RATE_ITERATIONS: usize = 30;
@@ -74,7 +78,7 @@ impl RoundFloorFriction {
             let k = mean_factor(z.exp());
             let miss = leaves * z.exp() + floor * k - comes;
             // dk/dz = (e^z − k)/z.
-            let bend = if z.abs() < 1e-4 { 0.5 + z / 3.0 } else { (z.exp() - k) / z };
+            let bend = if z.abs() < MAX_SERIES_EXPONENT { 0.5 + z / 3.0 } else { (z.exp() - k) / z };
             let step = miss / (leaves * z.exp() + floor * bend);
             z -= step;
             if !(step.abs() > 4.0 * f64::EPSILON * z.abs()) {
@@ -97,7 +101,7 @@ impl RoundFloorFriction {
         // The integral is ∫ B e^{zu} + f (e^{zu} − 1)/z du from 0 to 1; that of the second term is
         // f (k(z) − 1)/z.
         let k = mean_factor(z.exp());
-        let rest = if z.abs() < 1e-4 { 0.5 + z / 6.0 } else { (k - 1.0) / z };
+        let rest = if z.abs() < MAX_SERIES_EXPONENT { 0.5 + z / 6.0 } else { (k - 1.0) / z };
         turn * (self.leaves * k + self.floor * rest)
     }
 }
