@@ -7,7 +7,7 @@ use egui::{Rect, Ui};
 use crate::canvas::canvas_view::hints_height;
 use crate::command::{Command, ViewCommand};
 use crate::geometry::bounds;
-use crate::geometry::leader::{Leader, leader};
+use crate::geometry::leader::{Leader, LeaderKind, leader};
 use crate::geometry::torn_cable::torn;
 use crate::state::AppState;
 
@@ -66,9 +66,9 @@ pub fn offer(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>)
     let out = |bounds_m| is_out_of_view(state.view.visible_m, bounds_m);
     let camera = &state.view.camera;
     let lost = |leader: &Leader| camera.leader_seen && !camera.follows && out(leader.bounds_m);
-    let name = match (torn(state), leader(state)) {
-        (Some(torn), _) if out(torn.piece) => "torn cable",
-        (None, Some(leader)) if lost(&leader) => leader.name,
+    let (name, kind) = match (torn(state), leader(state)) {
+        (Some(torn), _) if out(torn.piece) => ("torn cable", LeaderKind::Cable),
+        (None, Some(leader)) if lost(&leader) => (leader.kind.name(), leader.kind),
         _ => return,
     };
     let foot = egui::pos2(rect.center().x, rect.max.y - 46.0 - hints_height(state));
@@ -78,7 +78,10 @@ pub fn offer(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>)
             ui.horizontal(|ui| {
                 ui.label(format!("The {name} has left the picture"));
                 let help = "The view goes with it until you move the view (F shows the whole scene, C the cable)";
-                let button = if name == "robot" { "Follow the robot" } else { "Follow the cable" };
+                let button = match kind {
+                    LeaderKind::Robot => "Follow the robot",
+                    LeaderKind::MovingEnd | LeaderKind::Cable => "Follow the cable",
+                };
                 if ui.button(button).on_hover_text(help).clicked() {
                     commands.push(Command::View(ViewCommand::Follow));
                 }
