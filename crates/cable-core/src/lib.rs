@@ -26,6 +26,8 @@
 //! state → answer_verifier, breakage, model, record → files, simulated_cable
 //! → warnings, wording → any_error → simulation → analysis, summary, timeline`.
 
+#![warn(missing_debug_implementations)]
+
 pub mod analysis;
 pub mod answer_verifier;
 mod any_error;
