@@ -18,6 +18,10 @@ use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::solution::ContactReport;
 use crate::verification_report::{Balance, Law, Verification};
 
+/// Squared difference of two unit vectors from which they are two directions: the square of a
+/// rounding of 1e-10. Smaller: one direction is counted twice; larger: flat corners have one.
+const SAME_RAY_SQUARED: f64 = 1e-20;
+
 /// A piece of the cable between two nodes, including both.
 #[derive(Clone, Debug, Default)]
 struct CheckedPiece {
@@ -271,7 +275,7 @@ fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPie
         let along = Vec2::new(normal.y, -normal.x) * friction;
         let shorten = 1.0 / (1.0 + friction * friction).sqrt();
         for ray in [(normal + along) * shorten, (normal - along) * shorten] {
-            if out.iter().all(|r: &Vec2| (r - ray).norm_squared() > 1e-20) {
+            if out.iter().all(|r: &Vec2| (r - ray).norm_squared() > SAME_RAY_SQUARED) {
                 out.push(ray);
             }
         }

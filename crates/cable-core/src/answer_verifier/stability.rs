@@ -15,11 +15,15 @@ use crate::math::larger;
 use crate::scene::SupportKind;
 use crate::verification_report::{Law, Verification};
 
+/// Difference of arc lengths within which a support holds a node, as a fraction of the cable's
+/// length: round-off. Smaller: the node counts as free; larger: so does none beside a support.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// Checks the stability of stretches in compression.
 pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
     found.ask(Law::Stability);
     let nodes = &checked.answer.nodes;
-    let same = 1e-9 * checked.cable.length_m;
+    let same = SAME_POINT_FRACTION * checked.cable.length_m;
     // The support that holds a node, and whether it may turn there.
     let mut holds = vec![None; nodes.len()];
     for hold in checked.holds.iter().filter(|h| !matches!(h.role, Role::Clear { .. } | Role::Load | Role::Released)) {

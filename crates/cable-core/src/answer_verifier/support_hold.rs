@@ -4,6 +4,10 @@ use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Scene, Support, SupportKind, View};
 use crate::solution::{CableSolution, SupportReaction};
 
+/// Time before its release from which a support counts as released, s: the rounding of a sum of
+/// steps. Smaller: it holds a step longer than in the models; larger: a step shorter.
+const RELEASE_ROUNDING_S: f64 = 1e-9;
+
 /// Present action of a support on the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
@@ -43,7 +47,7 @@ pub(super) struct SupportHold<'a> {
 pub(super) fn support_holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64) -> Vec<SupportHold<'a>> {
     let last = cable.supports.len().saturating_sub(1);
     let hold = |(k, (support, reaction)): (usize, (&'a Support, &'a SupportReaction))| {
-        let released = support.release_s.is_some_and(|t| time_s >= t - 1e-9);
+        let released = support.release_s.is_some_and(|t| time_s >= t - RELEASE_ROUNDING_S);
         let wheel = support.radius_m.filter(|r| *r > 0.0);
         let role = match support.kind {
             SupportKind::Load | SupportKind::Free => Role::Load,

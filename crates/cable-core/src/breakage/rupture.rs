@@ -8,6 +8,10 @@ use crate::math::Vec2;
 use crate::solution::Node;
 use crate::state::State;
 
+/// Distance from the end of a part within which a node is its end, as a fraction of the part:
+/// round-off. Smaller: two nodes at one place; larger: near nodes are lost.
+const END_DISTANCE_FRACTION: f64 = 1e-9;
+
 /// Place of a rupture, and its time within the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rupture {
@@ -85,7 +89,7 @@ pub(crate) fn between(before: &State, after: &State, fraction: f64) -> State {
 
 /// The part of a state between two arc lengths (m), with nodes at both; its arc lengths start at 0.
 pub(crate) fn section(state: &State, from: f64, to: f64) -> State {
-    let near = 1e-9 * (to - from);
+    let near = END_DISTANCE_FRACTION * (to - from);
     let inside = |s: f64| s > from + near && s < to - near;
     let mut out = State { time_s: state.time_s, ..State::default() };
     let mut push = |s: f64, x: Option<Vec2>, v: Option<Vec2>| {

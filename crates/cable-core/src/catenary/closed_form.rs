@@ -26,6 +26,13 @@
 
 use crate::numerics::{ARMIJO_FRACTION, backtrack};
 
+/// Least tension of the guess of a plumb slack span, in units of the weight. Smaller: the guess has
+/// no horizontal force at all, and the first step overshoots; larger: more steps.
+const LEAST_PLUMB_GUESS: f64 = 0.05;
+/// Least square of the parameter λ of a slack guess. Smaller: a taut span begins at an infinite
+/// tension; larger: nearly taut spans begin too slack.
+const LEAST_GUESS_SQUARE: f64 = 1e-8;
+
 /// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the
 /// logarithms would lose as many to their difference; anything between 0.5 and 0.9 gives the same
 /// results to 2e-16.
@@ -293,11 +300,11 @@ pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
     let l = 1.0 + SLACK_GUESS_STRAIN * eps;
     let z = dz / l;
     if dx <= f64::MIN_POSITIVE || z.abs() >= 1.0 {
-        return (t.max(0.05) * dx / chord.max(f64::MIN_POSITIVE), vertical(dz, eps));
+        return (t.max(LEAST_PLUMB_GUESS) * dx / chord.max(f64::MIN_POSITIVE), vertical(dz, eps));
     }
     let y = ((1.0 - z) * (1.0 + z)).sqrt() * l / dx;
     let lambda = if y < 3.0 {
-        (6.0 * (y - 1.0)).max(1e-8).sqrt()
+        (6.0 * (y - 1.0)).max(LEAST_GUESS_SQUARE).sqrt()
     } else {
         let ln = (2.0 * y).ln();
         ln + ln.ln()

@@ -12,6 +12,13 @@ use crate::scene::froude_scaling::Similarity;
 use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
 use crate::solution::{CableSolution, Warning};
 
+/// Distance within which a load hangs on a support, as a fraction of the cable's length: round-off.
+/// Smaller: the support does not feel it; larger: nor does the cable beside it.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+/// Strain whose force says how large forces are where no load does. Smaller: tolerances near
+/// rounding; larger: forces of interest lie within them.
+const UNLOADED_STRAIN: f64 = 1e-6;
+
 /// One cable, resolved and validated.
 #[derive(Clone, Debug)]
 pub struct Problem {
@@ -334,7 +341,9 @@ impl Problem {
     pub(crate) fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
         let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
-        let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
+        let here = |l: &&PointLoad| {
+            s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= SAME_POINT_FRACTION * self.length)
+        };
         let points: Vec2 = self.loads.iter().filter(here).map(|l| l.force.at(time_s)).sum();
         s.force.at(time_s) + gravity * s.mass + points
     }
@@ -343,7 +352,7 @@ impl Problem {
     /// the weight of lumps, or EA·1e-6 without one.
     #[must_use]
     pub(crate) fn force_scale(&self) -> f64 {
-        self.whole_load().max(1e-6 * self.axial_stiffness)
+        self.whole_load().max(UNLOADED_STRAIN * self.axial_stiffness)
     }
 
     /// The whole distributed load, point loads and the weight of lumps, N.

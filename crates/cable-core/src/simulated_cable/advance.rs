@@ -5,6 +5,10 @@ use super::break_search::StepOutcome;
 use crate::error::SolveError;
 use crate::model::{Inertia, StepReport};
 
+/// Rest of a step of a piece that counts as none, as a fraction of the step: round-off. Smaller: a
+/// step of nearly no length; larger: a piece stays behind in time.
+const NO_REST_FRACTION: f64 = 1e-9;
+
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
 const MAX_PIECES: usize = 32;
 
@@ -92,7 +96,7 @@ impl SimulatedCable {
             let Some(piece) = self.pieces.get_mut(k) else { break };
             // A whole cable takes the very step it was asked for.
             let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
-            if !self.breaks.is_empty() && rest_s <= 1e-9 * dt_s {
+            if !self.breaks.is_empty() && rest_s <= NO_REST_FRACTION * dt_s {
                 k += 1;
                 continue;
             }

@@ -10,6 +10,10 @@ use crate::model::{Inertia, Mechanics, StepReport};
 use crate::solution::TensionPeaks;
 use crate::state::State;
 
+/// Part of a step by which a time may exceed a whole number of steps: round-off. Smaller: one more
+/// step of nearly no length; larger: steps longer than the longest.
+const STEP_COUNT_ROUNDING: f64 = 1e-9;
+
 /// Longest step with inertia at whose end a break is looked for, s: a longer one in which the piece
 /// breaks is taken again in parts. Longer: the place of the break is blurred; shorter: more steps
 /// for each break. It is the inner step of `fem`.
@@ -69,7 +73,7 @@ impl CablePiece {
         breaking_n: Option<f64>,
         sum: &mut StepReport,
     ) -> Result<StepOutcome, SolveError> {
-        let parts = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
+        let parts = (dt_s / BREAK_SEARCH_STEP_S - STEP_COUNT_ROUNDING).ceil().max(1.0);
         if parts > 1.0 && self.unwatched_steps == 0 {
             // A cable that cannot break never takes a step again, so no state is kept for it.
             let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));

@@ -24,6 +24,10 @@ use crate::scene::{Cable, SupportKind};
 use crate::simulated_cable::SimulatedCable;
 use crate::solution::{Cost, Going, Warning, WarningCause};
 
+/// Part of a step by which a time may exceed a whole number of steps: round-off. Smaller: one more
+/// step of nearly no length; larger: steps longer than the longest.
+const STEP_COUNT_ROUNDING: f64 = 1e-9;
+
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
 
@@ -68,7 +72,7 @@ impl Simulation {
                 Inertia::Dynamic => self.cables.iter().map(SimulatedCable::inner_step_s).fold(robot::STEP_S, smaller),
                 Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
             };
-            let pieces = (left / longest - 1e-9).ceil().max(1.0);
+            let pieces = (left / longest - STEP_COUNT_ROUNDING).ceil().max(1.0);
             let h = left / pieces;
             let iterations = self.couple(&CoupledStep { step_s: h, inertia, hitches: &hitches })?;
             left = if pieces > 1.0 { left - h } else { 0.0 };

@@ -8,6 +8,10 @@ use crate::problem::TimeSeries;
 use crate::scene::{Cable, Scene, SupportKind, View};
 use crate::solution::CableSolution;
 
+/// Distance within which a place is that of a support, as a fraction of the cable's length:
+/// round-off. Smaller: what hangs there is counted twice; larger: what hangs beside it, never.
+const SAME_POINT_FRACTION: f64 = 1e-9;
+
 /// The forces on a cable, N, right and up. In motion what is left is what accelerates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ForceBalance {
@@ -69,7 +73,7 @@ fn hangs_at_a_support(cable: &Cable, arc_length_m: f64) -> bool {
             _ => s.arc_length_m,
         };
         matches!(s.kind, SupportKind::Load | SupportKind::Free)
-            && at.is_some_and(|a| (a - arc_length_m).abs() <= 1e-9 * cable.length_m)
+            && at.is_some_and(|a| (a - arc_length_m).abs() <= SAME_POINT_FRACTION * cable.length_m)
     })
 }
 

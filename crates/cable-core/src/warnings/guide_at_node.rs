@@ -6,6 +6,18 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, ContactReport};
 
+/// Distance from the centre of a wheel up to which a node is on it, in radii, and what is added for
+/// wheels of no radius, m. Smaller: nodes of chords round it count as free; larger: nodes beside it
+/// count as led.
+const WHEEL_REACH_RADII: f64 = 1.05;
+const WHEEL_REACH_M: f64 = 1e-6;
+/// Arc length between a support without a wheel and a node within which it holds the node, m.
+/// Smaller: bends of a clamp count as free; larger: bends beside it as held.
+const SUPPORT_REACH_M: f64 = 1e-3;
+/// Distance within which a load hangs on a node, as a fraction of the cable's length. Smaller: the
+/// bend at a load counts as free; larger: so does none beside it.
+const LOAD_REACH_FRACTION: f64 = 1e-6;
+
 /// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a
 /// barrier's width off is missed; larger: what passes close by leads it. The models keep up to 1
 /// mm.
@@ -32,8 +44,8 @@ pub(super) fn guide_at_node(problem: &Problem, answer: &CableSolution, node: usi
     for (s, r) in problem.supports.iter().zip(&answer.supports) {
         let off = (here - Vec2::new(r.x_m, r.y_m)).norm();
         // On a wheel, give or take its chords.
-        if off <= 1.05 * s.wheel_radius + 1e-6
-            && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < 1e-3)
+        if off <= WHEEL_REACH_RADII * s.wheel_radius + WHEEL_REACH_M
+            && (s.wheel_radius > 0.0 || (r.arc_length_m - n.arc_length_m).abs() < SUPPORT_REACH_M)
         {
             return match s.kind {
                 SupportKind::Pulley if s.wheel_radius > 0.0 => Guide::Round(s.wheel_radius),
@@ -42,7 +54,7 @@ pub(super) fn guide_at_node(problem: &Problem, answer: &CableSolution, node: usi
             };
         }
     }
-    if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < 1e-6 * problem.length) {
+    if problem.loads.iter().any(|l| (l.arc_length - n.arc_length_m).abs() < LOAD_REACH_FRACTION * problem.length) {
         return Guide::Held;
     }
     if on_outline(problem, answer, node) {

@@ -10,6 +10,10 @@ use crate::solution::{CableSolution, Node, Warning, WarningCause};
 use super::guide_at_node::{Guide, guide_at_node};
 use crate::contact::self_crossings::{SelfCrossing, crossings};
 
+/// Turn at a node, rad, below which it does not matter what leads the node. Smaller: straight cable
+/// along an edge is no part of a loop; larger: gentle bends that an obstacle makes are.
+const NEGLIGIBLE_TURN_RAD: f64 = 1e-3;
+
 /// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and
 /// back, crosses itself in every element; larger: flat loops are missed. 10° is above what element
 /// ends stand out of a straight lay.
@@ -110,7 +114,8 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
                 // Only where nothing leads it: the turns of wheels, posts and corners are not its
                 // own.
                 let free = |k: usize| {
-                    turns[k].abs() < 1e-3 || matches!(guide_at_node(problem, answer, start + k), Guide::Free)
+                    turns[k].abs() < NEGLIGIBLE_TURN_RAD
+                        || matches!(guide_at_node(problem, answer, start + k), Guide::Free)
                 };
                 if (i..=j).all(free) {
                     best = Some((length, start + i, start + j));
