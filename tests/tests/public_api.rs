@@ -1,5 +1,5 @@
-//! The names that a user of `cable-core` can write are listed in `docs/public-api.txt`: this test
-//! compares the list with the crate.
+//! The names that a user of `cable-core` can write are listed in `docs/public-api.txt`, fields of
+//! structs with their types: this test compares the list with the crate.
 //!
 //! A change that means to add or take away a public item writes the list anew:
 //! ```text
@@ -67,6 +67,37 @@ fn private_room(text: &str, used: &str) -> Option<(String, Vec<String>)> {
     (is_private && !names.clone().any(|name| name.contains("::"))).then(|| (room.to_owned(), names.collect()))
 }
 
+/// The public fields of the public structs of a source, as `Struct.field: type`.
+fn fields(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        let Some(name) = name_after(line, "pub struct") else { continue };
+        if let Some((_, members)) = line.split_once('(').filter(|_| line.ends_with(");")) {
+            let members = members.trim_end_matches(");").split(", ").enumerate();
+            let public = members.filter_map(|(k, member)| Some((k, member.strip_prefix("pub ")?)));
+            found.extend(public.map(|(k, of)| format!("{name}.{k}: {of}")));
+        }
+        if !line.ends_with('{') {
+            continue;
+        }
+        let mut field = String::new();
+        for line in lines.by_ref().take_while(|line| *line != "}") {
+            let begins = line.strip_prefix("    pub ").filter(|_| field.is_empty());
+            match begins {
+                Some(begin) => field = begin.to_owned(),
+                // A type that does not fit on a line.
+                None if !field.is_empty() => field = format!("{field} {}", line.trim()),
+                None => continue,
+            }
+            if field.ends_with(',') && field.matches('<').count() == field.matches('>').count() {
+                found.push(format!("{name}.{}", std::mem::take(&mut field).trim_end_matches(',')));
+            }
+        }
+    }
+    found
+}
+
 /// Public items of some names that a module hands out of one of its private rooms.
 fn list_of_room(module: &str, room: &str, names: &[String], folder: &Path, out: &mut BTreeSet<String>) {
     let mut all = BTreeSet::new();
@@ -74,7 +105,7 @@ fn list_of_room(module: &str, room: &str, names: &[String], folder: &Path, out: 
     list(module, &file, &folder.join(room), &mut all);
     let inside = format!("{module}::");
     let of_names = |item: &String| {
-        let name = item.strip_prefix(&inside).and_then(|rest| rest.split("::").next());
+        let name = item.strip_prefix(&inside).and_then(|rest| rest.split([':', '.']).next());
         name.is_some_and(|name| names.iter().any(|n| n == name))
     };
     out.extend(all.into_iter().filter(of_names));
@@ -84,6 +115,7 @@ fn list_of_room(module: &str, room: &str, names: &[String], folder: &Path, out: 
 /// indented once.
 fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
     let text = one_line_a_use(&without_unit_tests(&std::fs::read_to_string(file).expect("a source")));
+    out.extend(fields(&text).into_iter().map(|field| format!("{module}::{field}")));
     let mut owner = String::new();
     for line in text.lines() {
         if line.starts_with("impl") {
@@ -119,6 +151,27 @@ fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
     }
 }
 
+/// Fields of structs that a public module hands out of a private one elsewhere in the crate: they
+/// have the path by which they are handed out.
+fn list_fields_of_handed_out(sources: &Path, out: &mut BTreeSet<String>) {
+    let mut found = Vec::new();
+    for (module, used) in out.iter().filter_map(|item| item.split_once(": use crate::")) {
+        let Some((path, names)) = used.rsplit_once("::") else { continue };
+        let parts: Vec<&str> = path.split("::").collect();
+        let (room, above) = parts.split_last().expect("a path");
+        let folder = above.iter().fold(sources.to_owned(), |folder, part| folder.join(part));
+        let Some(file) = file_of(&folder, room) else { continue };
+        let public = fields(&std::fs::read_to_string(file).expect("a source"));
+        let names = names.trim_matches(['{', '}']).split(", ");
+        let is_new = |name: &&str| !out.contains(&format!("cable_core::{path}::{name}"));
+        for name in names.filter(is_new) {
+            let own = public.iter().filter(|field| field.split('.').next() == Some(name));
+            found.extend(own.map(|field| format!("{module}::{field}")));
+        }
+    }
+    out.extend(found);
+}
+
 /// The files below a folder, without those of tests.
 fn sources_below(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path());
@@ -140,7 +193,7 @@ fn list_methods_of_other_files(sources: &Path, out: &mut BTreeSet<String>) {
     let is_type =
         |name: &str| name.starts_with(|c: char| c.is_uppercase()) && name.contains(|c: char| c.is_lowercase());
     let mut paths: BTreeMap<String, String> = BTreeMap::new();
-    for item in out.iter().filter(|item| !item.contains(": use ")) {
+    for item in out.iter().filter(|item| !item.contains(": ")) {
         if let Some(name) = item.rsplit("::").next().filter(|name| is_type(name)) {
             paths.entry(name.to_owned()).or_insert_with(|| item.clone());
         }
@@ -184,14 +237,24 @@ fn list_methods_of_other_files(sources: &Path, out: &mut BTreeSet<String>) {
 }
 
 #[test]
+fn fields_are_those_that_are_public() {
+    let text = "pub struct A<T> {\n    /// Doc.\n    pub a: Vec<T>,\n    b: f64,\n    pub(crate) c: f64,\n    pub d:\n        \
+                Option<(u8, u8)>,\n}\nstruct B {\n    pub a: u8,\n}\npub struct C(pub u64, f64);\n";
+    assert_eq!(fields(text), ["A.a: Vec<T>", "A.d: Option<(u8, u8)>", "C.0: u64"]);
+}
+
+#[test]
 fn the_list_of_public_items_is_that_of_the_crate() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let sources = root.join("crates/cable-core/src");
     let mut found = BTreeSet::new();
     list("cable_core", &sources.join("lib.rs"), &sources, &mut found);
     list_methods_of_other_files(&sources, &mut found);
+    list_fields_of_handed_out(&sources, &mut found);
     assert!(found.contains("cable_core::Simulation::settle"), "methods are seen");
     assert!(found.contains("cable_core::scene::Scene::from_toml"), "so are those of other files than their type's");
+    let field = "cable_core::solution::Solution.cables: Vec<CableSolution>";
+    assert!(found.contains(field), "fields are seen, those of private rooms too");
     let path = root.join("docs/public-api.txt");
     let text: String = found.iter().map(|item| item.clone() + "\n").collect();
     if std::env::var_os("UPDATE_PUBLIC_API").is_some() {
