@@ -4,7 +4,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use cable_tests::{files_below, root, without_unit_tests};
 
@@ -91,13 +91,21 @@ fn rooms_on_map(text: &str) -> BTreeSet<String> {
     names.map(|w| w.trim_end_matches('/').trim_end_matches(".rs").to_owned()).collect()
 }
 
+/// The folder whose rooms the map at the head of a source names: its own of a `mod.rs`, that of its
+/// name beside it of another file.
+fn mapped_folder(module: &Path) -> Option<PathBuf> {
+    let folder = if module.ends_with("mod.rs") { module.parent()?.to_owned() } else { module.with_extension("") };
+    (module.extension().is_some_and(|e| e == "rs") && folder.is_dir()).then_some(folder)
+}
+
 #[test]
 fn every_folder_opens_with_the_map_of_it() {
-    let mut wrong = Vec::new();
+    let (mut wrong, mut beside) = (Vec::new(), 0);
     let sources = ["cable-core", "cable-viewer", "cable-cli"].map(|c| root().join("crates").join(c).join("src"));
-    for module in sources.iter().flat_map(|s| files_below(s)).filter(|f| f.ends_with("mod.rs")) {
-        let folder = module.parent().expect("a folder");
-        let entries = std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path());
+    for module in sources.iter().flat_map(|s| files_below(s)) {
+        let Some(folder) = mapped_folder(&module) else { continue };
+        beside += usize::from(!module.ends_with("mod.rs"));
+        let entries = std::fs::read_dir(&folder).expect("a folder").map(|e| e.expect("an entry").path());
         let rooms = entries.filter(|p| p.is_dir() || p.extension().is_some_and(|e| e == "rs"));
         let names = rooms.map(|p| p.file_stem().expect("a name").to_string_lossy().into_owned());
         let names: BTreeSet<String> = names.filter(|n| n != "mod" && !n.ends_with("tests")).collect();
@@ -106,10 +114,12 @@ fn every_folder_opens_with_the_map_of_it() {
         if names.len() > 1 {
             wrong.extend(names.difference(&mapped).map(|n| format!("{}: `{n}` is not on the map", folder.display())));
         }
-        let is_room = |n: &&String| !n.contains('.') && *n != "mod" && !n.ends_with("tests");
+        let own = module.file_stem().expect("a name").to_string_lossy().into_owned();
+        let is_room = |n: &&String| !n.contains('.') && **n != own && !n.ends_with("tests");
         let gone = mapped.difference(&names).filter(is_room);
         wrong.extend(gone.map(|n| format!("{}: `{n}` on the map is not there", folder.display())));
     }
+    assert!(beside > 0, "maps at the head of other files than `mod.rs` are read");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 

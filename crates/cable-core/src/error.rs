@@ -1,5 +1,14 @@
 //! The errors of a scene and of a solve are data, by operation, with their numbers;
 //! [`crate::wording`] makes the sentences.
+//!
+//! | room | content |
+//! |---|---|
+//! | `document_fault.rs` | faults of keys, names and lines of a scene |
+//! | `unsupported.rs` | features that a model lacks |
+//! | `no_equilibrium.rs` | reasons for which a cable has no equilibrium |
+//! | `span_error.rs` | reasons for which a free span has no shape |
+//! | `equilibrium_fault.rs` | faults for which a model refuses its own equilibrium |
+//! | `failure_cause.rs` | reasons for which a step or a search fails |
 
 mod document_fault;
 mod equilibrium_fault;

@@ -3,11 +3,12 @@
 //! | room | content |
 //! |---|---|
 //! | `simulation.rs` | [`Simulation`]: settle, step, reset, edit |
-//! | `simulation/model_fallback.rs` | answers that break a law are refused, and the next model is asked |
-//! | `simulation/robot_coupling.rs` | robot and cables in one step; `simulation/speed_search.rs`: the speed at which both agree |
-//! | `simulation/non_unique_equilibrium.rs` | warnings of equilibria that are one of many |
-//! | `simulation/loading_histories.rs` | tensions that other loading histories would have left |
-//! | `simulation/cheaper_model_error.rs` | error of the next cheaper model |
+//! | `model_fallback.rs` | answers that break a law are refused, and the next model is asked |
+//! | `robot_coupling.rs` | robot and cables in one step |
+//! | `speed_search.rs` | the speed of the robot at which both agree |
+//! | `non_unique_equilibrium.rs` | warnings of equilibria that are one of many |
+//! | `loading_histories.rs` | tensions that other loading histories would have left |
+//! | `cheaper_model_error.rs` | error of the next cheaper model |
 
 mod cheaper_model_error;
 mod loading_histories;

@@ -4,6 +4,15 @@
 //! them is a step of a copy, which is then discarded, so no look changes what happens: states at
 //! common instants are equal to the bit. Instants are whole ticks of a third of a nanosecond: 1/240
 //! s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
+//!
+//! | room | content |
+//! |---|---|
+//! | `run_monitor.rs` | the greatest tensions of a run so far and the errors of its figures |
+//! | `run_peaks.rs` | ranges of the greatest tensions, and whether mesh and step resolve them |
+//! | `coarser_runs.rs` | coarser runs beside a run, from which its errors are estimated |
+//! | `run_without_inertia.rs` | a run without inertia beside one with it |
+//! | `motion_numbers.rs` | Mach and Froude numbers of a run |
+//! | `refinement.rs` | a run that is made anew until its errors are as asked |
 
 mod coarser_runs;
 mod motion_numbers;

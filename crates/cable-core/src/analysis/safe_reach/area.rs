@@ -5,6 +5,11 @@
 //! (`exploration.rs`), each on the shortest way that passes no obstacle, first on a coarse grid and
 //! then on finer ones. Each place continues from the cable at the place before, with the friction
 //! and the wraps of that way. The way back is the same way.
+//!
+//! | room | content |
+//! |---|---|
+//! | `exploration.rs` | the end moves from place to place of a grid, outwards |
+//! | `map.rs` | the greatest tension for each place of the grid |
 
 mod exploration;
 mod map;
