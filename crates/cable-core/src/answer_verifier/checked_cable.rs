@@ -164,7 +164,7 @@ impl CheckedCable<'_> {
     }
 
     /// Returns the points at which supports hold the cable by its axis, m.
-    pub fn held_at(&self) -> Vec<Vec2> {
+    pub fn support_places(&self) -> Vec<Vec2> {
         self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
     }
 

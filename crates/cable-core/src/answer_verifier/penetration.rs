@@ -13,7 +13,7 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
     let allowed = (DEPTH_DIAMETERS * checked.cable.diameter_m).min(to_scale);
     let nodes = &checked.answer.nodes;
     // If the scene itself holds the axis on a surface, the cable is as deep there as its radius.
-    let held = checked.held_at();
+    let held = checked.support_places();
     let on_surface = MATERIAL_TOLERANCE * checked.cable.length_m;
     for (k, n) in nodes.iter().enumerate() {
         // After a bar without near obstacles the depth is that of the node before.

@@ -45,7 +45,7 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
         bars.push(CompressedBar {
             length,
             pull: larger(pulls[0], pulls[1]),
-            held: checked.touches(near, k),
+            touches_obstacle: checked.touches(near, k),
             pinned: holds[k] == Some(false),
             clamped: [holds[k] == Some(true), holds[k + 1] == Some(true)],
         });
@@ -54,7 +54,7 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;
     // A force that may be out of balance is no compression, and a floor that rubs holds some.
-    let noise = larger(BALANCE_FRACTION * checked.scale, held_by_floor(checked, stiffness));
+    let noise = larger(BALANCE_FRACTION * checked.scale, floor_hold(checked, stiffness));
     if let Some((bar, push, most)) = excess(&bars, stiffness, ends).filter(|(_, push, _)| !(*push <= noise)) {
         found.report(checked.finding(Law::Stability, first_node[bar], push, most));
     }
@@ -66,7 +66,7 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
 /// A wave r sin kx needs r (P k² − EI k⁴) per metre to be held, at most r P²/4EI (with k² = P/2EI),
 /// and the floor gives μw. (As pipelines on a sea bed: R. E. Hobbs, "In-service buckling of heated
 /// pipelines", Journal of Transportation Engineering 110(2), 1984.)
-fn held_by_floor(checked: &CheckedCable<'_>, stiffness: f64) -> f64 {
+fn floor_hold(checked: &CheckedCable<'_>, stiffness: f64) -> f64 {
     (4.0 * stiffness * checked.floor_friction_n_per_m() / (0.5 * checked.cable.diameter_m)).sqrt()
 }
 
@@ -78,7 +78,7 @@ pub(super) struct CompressedBar {
     /// Force along it, N; negative in compression.
     pub pull: f64,
     /// True if an obstacle touches it, so that it does not turn.
-    pub held: bool,
+    pub touches_obstacle: bool,
     /// True if the node before it is a support that lets it turn.
     pub pinned: bool,
     /// True if the node before it is clamped, and the one after it.
@@ -112,17 +112,17 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
     let mut count = 0;
     let mut begun = ends[0];
     for (k, bar) in bars.iter().enumerate() {
-        if (bar.pinned || bar.clamped[0]) && k > 0 && !bar.held && !bars[k - 1].held {
+        if (bar.pinned || bar.clamped[0]) && k > 0 && !bar.touches_obstacle && !bars[k - 1].touches_obstacle {
             count += if begun { 2 } else { 0 };
             begun = true;
         }
-        if bar.held {
+        if bar.touches_obstacle {
             // A free stretch before it ends here.
-            count += if begun && k > 0 && !bars[k - 1].held { 2 } else { 0 };
+            count += if begun && k > 0 && !bars[k - 1].touches_obstacle { 2 } else { 0 };
             begun = true;
         }
     }
-    let free = bars.last().is_some_and(|b| !b.held);
+    let free = bars.last().is_some_and(|b| !b.touches_obstacle);
     count + if begun && free && ends[1] { 2 } else { 0 }
 }
 
@@ -131,7 +131,7 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
 fn negative_pivots(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
     let (mut count, mut before) = (0, None);
     for (k, bar) in bars.iter().enumerate() {
-        if bar.held {
+        if bar.touches_obstacle {
             before = None;
             continue;
         }
@@ -163,8 +163,13 @@ mod tests {
     }
 
     fn straight(n: usize, length: f64, push: f64, ends: Ends) -> Vec<CompressedBar> {
-        let bar =
-            CompressedBar { length: length / n as f64, pull: -push, held: false, pinned: false, clamped: [false; 2] };
+        let bar = CompressedBar {
+            length: length / n as f64,
+            pull: -push,
+            touches_obstacle: false,
+            pinned: false,
+            clamped: [false; 2],
+        };
         let mut bars = vec![bar; n];
         if ends == Ends::Clamped {
             (bars[0].clamped[0], bars[n - 1].clamped[1]) = (true, true);
@@ -189,9 +194,9 @@ mod tests {
     #[test]
     fn what_lies_in_a_groove_holds_any_push() {
         let mut bars = straight(50, 3.0, 1e6, Ends::Pinned);
-        bars.iter_mut().for_each(|b| b.held = true);
+        bars.iter_mut().for_each(|b| b.touches_obstacle = true);
         assert!(excess(&bars, 1.0, [true; 2]).is_none());
-        bars[20..30].iter_mut().for_each(|b| b.held = false);
+        bars[20..30].iter_mut().for_each(|b| b.touches_obstacle = false);
         let (_, push, holds) = excess(&bars, 1.0, [true; 2]).unwrap();
         assert!(push == 1e6 && holds > 30.0 && holds < 600.0, "{push} {holds}");
     }

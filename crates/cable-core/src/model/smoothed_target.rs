@@ -40,7 +40,7 @@ pub(crate) fn is_led(problem: &Problem, support: usize) -> bool {
 
 /// A warning of a support that lags behind the hand that drags it.
 #[must_use]
-pub(crate) fn held_warning(
+pub(crate) fn lag_warning(
     problem: &Problem,
     support: usize,
     arc_length_m: f64,

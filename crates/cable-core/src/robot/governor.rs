@@ -80,7 +80,7 @@ impl PlannedMotion {
     /// Returns the motion from which the governor continues after a step of `h` (s) that led from
     /// one speed (m/s) to another. A deceleration that the governor did not ask for is no planned
     /// acceleration.
-    pub fn held_up(self, h: f64, [from, to]: [f64; 2]) -> Self {
+    pub fn after_hindrance(self, h: f64, [from, to]: [f64; 2]) -> Self {
         let planned = self.acceleration;
         let acceleration = if (to - self.speed).abs() < PLAN_TOLERANCE_M_PER_S {
             planned

@@ -42,7 +42,7 @@
 //! and jerk; `speed_balance.rs` solves for the speed that drive, tracks and cable leave of it.
 //!
 //! Robot and cable are one system: how their steps are brought together stands in
-//! `simulation/coupling.rs`.
+//! `simulation/robot_coupling.rs`.
 
 mod governor;
 mod speed_balance;
@@ -330,7 +330,7 @@ impl Vehicle {
         // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.step_s * way;
         self.tipping_speed = (to.pitch - self.pose.pitch) / drive.step_s;
-        self.set = drive.asked.held_up(drive.step_s, [self.speed, speed]);
+        self.set = drive.asked.after_hindrance(drive.step_s, [self.speed, speed]);
         (self.pose, self.speed) = (to, speed);
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.step_s;
         self.pulls = pulls;

@@ -57,7 +57,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         camera: state.view.camera,
         painter: &painter,
         palette: theme::palette(ui.visuals()),
-        occupied: Vec::from_iter(take_kept_clear(ui)),
+        occupied: Vec::from_iter(take_clear_part(ui)),
         avoided: Vec::new(),
     };
     draw(&mut view, state);
@@ -69,7 +69,7 @@ pub fn keep_clear(ui: &Ui, part: Rect) {
     ui.data_mut(|d| d.insert_temp(Id::unique("kept clear"), Some(part)));
 }
 
-fn take_kept_clear(ui: &Ui) -> Option<Rect> {
+fn take_clear_part(ui: &Ui) -> Option<Rect> {
     ui.data_mut(|d| d.remove_temp::<Option<Rect>>(Id::unique("kept clear"))).flatten()
 }
 

@@ -121,7 +121,7 @@ pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k
 
 fn not_converged(p: &Problem, layout: &SupportLayout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
     let place = layout.anchors.get(anchor).map(|a| Place {
-        arc_length_m: a.held.unwrap_or(f64::NAN),
+        arc_length_m: a.material_point.unwrap_or(f64::NAN),
         at_m: a.at,
         near: p.supports.get(a.support).map(|s| Near {
             kind: NearKind::Support,
@@ -155,7 +155,7 @@ fn contact(
         sigma = found.sigma;
         let mut changed = false;
         for (k, a) in layout.anchors.iter().enumerate() {
-            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= joint) {
+            if a.material_point.is_some() || a.friction <= 0.0 || (changed && round >= joint) {
                 continue;
             }
             let (Some(b), Some(f)) = SlidingProblem::forces(&found.stretches, k) else { continue };
@@ -430,7 +430,7 @@ fn run_off(slide: &SlidingProblem<'_>, s: &SpanSolutions) -> Result<(), SolveErr
     for (i, k) in ends {
         let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF_LENGTH_FRACTION * slide.problem.length);
         let anchor = &slide.layout.anchors[k];
-        if short && anchor.held.is_none() {
+        if short && anchor.material_point.is_none() {
             let name = slide.problem.supports.get(anchor.support).map_or("", |p| p.name.as_str());
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::RunsOff { pulley: name.to_owned() } });
         }

@@ -69,7 +69,7 @@ pub(super) fn spread(layout: &SupportLayout, p: &Problem) -> Vec<f64> {
         };
         known.push((way[0] - head, 0.0));
     }
-    known.extend(layout.anchors.iter().zip(&way).filter_map(|(a, w)| a.held.map(|s| (*w, s))));
+    known.extend(layout.anchors.iter().zip(&way).filter_map(|(a, w)| a.material_point.map(|s| (*w, s))));
     if layout.free[1] {
         let tail = if p.route.len() > 1 {
             total - last
@@ -85,7 +85,7 @@ pub(super) fn spread(layout: &SupportLayout, p: &Problem) -> Vec<f64> {
         .iter()
         .zip(&way)
         .map(|(a, w)| {
-            a.held.unwrap_or_else(|| {
+            a.material_point.unwrap_or_else(|| {
                 let k = known.partition_point(|(kw, _)| kw <= w).clamp(1, known.len().max(2) - 1);
                 match (known.get(k - 1), known.get(k)) {
                     (Some(a), Some(b)) if b.0 > a.0 => a.1 + (b.1 - a.1) * (w - a.0) / (b.0 - a.0),

@@ -151,10 +151,12 @@ impl CatenaryModel {
         let mut modes: Vec<PulleyMode> = layout
             .anchors
             .iter()
-            .map(|a| if a.held.is_none() && a.friction <= 0.0 { PulleyMode::Slip(0.0) } else { PulleyMode::Stick })
+            .map(|a| {
+                if a.material_point.is_none() && a.friction <= 0.0 { PulleyMode::Slip(0.0) } else { PulleyMode::Stick }
+            })
             .collect();
         for (i, a) in layout.anchors.iter().enumerate() {
-            if a.held.is_some() {
+            if a.material_point.is_some() {
                 continue;
             }
             if let Some(s) = self.adopted.get(a.support).copied().flatten() {
@@ -218,7 +220,7 @@ impl CatenaryModel {
             return Ok(());
         }
         let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
-        let laid = laid(&self.problem, layout);
+        let laid = first_state(&self.problem, layout);
         let reached = |s: f64| unsupported(Unsupported::Obstacle { arc_length_m: s });
         for w in nodes.windows(2) {
             let (s0, s1) = (w[0].arc_length_m, w[1].arc_length_m);
@@ -276,7 +278,7 @@ impl CatenaryModel {
 }
 
 /// The way the cable is laid, its material spread evenly along it.
-fn laid(p: &Problem, layout: &SupportLayout) -> State {
+fn first_state(p: &Problem, layout: &SupportLayout) -> State {
     let mut state = State::default();
     if p.route.len() > 1 {
         let total: f64 = p.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();

@@ -43,7 +43,8 @@ fn tensions(nodes: &[Node]) -> [f64; 3] {
 fn starts(problem: &Problem, layout: &SupportLayout, sigma: &[f64]) -> Vec<Vec<f64>> {
     let way: Vec<f64> = taut_arc_lengths(layout).into_iter().map(|w| w / problem.thermal_stretch).collect();
     let last = sigma.len() - 1;
-    let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
+    let bounds: Vec<usize> =
+        (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].material_point.is_some()).collect();
     let mut out = Vec::new();
     for part in bounds.windows(2) {
         let [from, to] = [part[0], part[1]];
@@ -80,13 +81,13 @@ pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s
     let model = CatenaryModel::new(Arc::new(problem.clone()), Settings::default()).ok()?;
     let layout = model.layout(time_s).ok()?;
     let slides = |held: Option<f64>| if held.is_none() { PulleyMode::Slip(0.0) } else { PulleyMode::Stick };
-    let modes: Vec<PulleyMode> = layout.anchors.iter().map(|a| slides(a.held)).collect();
+    let modes: Vec<PulleyMode> = layout.anchors.iter().map(|a| slides(a.material_point)).collect();
     let from = |sigma: Vec<f64>| -> Option<Equilibrium> {
         let held = sigma.clone();
         solve(problem, &layout, SlidingStart { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) })
             .ok()
     };
-    let material = |a: &SupportNode| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
+    let material = |a: &SupportNode| a.material_point.or(Some(answer.supports.get(a.support)?.arc_length_m));
     let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;
     let mut found = vec![shown];
     for start in starts(problem, &layout, &found[0].sigma) {

@@ -220,7 +220,7 @@ fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[
             let force = after.unwrap_or(zero) - before.unwrap_or(zero) + own;
             (r.x_m, r.y_m, r.arc_length_m) = (a.at.x, a.at.y, 0.5 * (from + to));
             (r.reaction_x_n, r.reaction_y_n) = (force.x, force.y);
-            if a.held.is_none() {
+            if a.material_point.is_none() {
                 r.tension_before_n = before.map(|f| f.norm());
                 r.tension_after_n = after.map(|f| f.norm());
             }

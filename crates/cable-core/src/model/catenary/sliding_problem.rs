@@ -154,7 +154,7 @@ impl SlidingProblem<'_> {
                 Some(self.dangling(from, to, CableEnd::End))
             } else {
                 let (a, b) = (self.touches(i - 1).1, self.touches(i).0);
-                Some(self.held(from, to, a, b, near)?)
+                Some(self.stretch(from, to, a, b, near)?)
             };
             if let Some(s) = &stretch {
                 if !(s.start.iter().chain(s.end.iter()).all(|v| v.is_finite())) {
@@ -169,7 +169,7 @@ impl SlidingProblem<'_> {
     }
 
     /// A stretch between two anchors.
-    fn held(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<SpanSolution> {
+    fn stretch(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<SpanSolution> {
         let chain = self.chain(from, to);
         let f: ChainForce = match chain.solve(b - a, near) {
             Ok(f) => f,

@@ -18,7 +18,7 @@ pub(super) struct SupportNode {
     /// Position (of a wheel, its centre), m.
     pub at: Vec2,
     /// Material point held, m; None = slides.
-    pub held: Option<f64>,
+    pub material_point: Option<f64>,
     /// Radius of the centre line round the wheel, m; 0 = a point.
     pub radius: f64,
     /// Friction coefficient.
@@ -75,7 +75,7 @@ impl SupportLayout {
                 (SupportKind::Pulley, Some(at)) => anchors.push(SupportNode {
                     support: k,
                     at,
-                    held: None,
+                    material_point: None,
                     radius: s.wheel_radius,
                     friction: s.friction,
                     facing: 0.0,
@@ -83,7 +83,7 @@ impl SupportLayout {
                 (_, Some(at)) => anchors.push(SupportNode {
                     support: k,
                     at,
-                    held: s.arc_length,
+                    material_point: s.arc_length,
                     radius: 0.0,
                     friction: 0.0,
                     facing: 0.0,
@@ -91,8 +91,8 @@ impl SupportLayout {
             }
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let first_held = anchors.first().is_some_and(|a| a.held == Some(0.0));
-        let last_held = anchors.last().is_some_and(|a| a.held == Some(p.length));
+        let first_held = anchors.first().is_some_and(|a| a.material_point == Some(0.0));
+        let last_held = anchors.last().is_some_and(|a| a.material_point == Some(p.length));
         let mut layout = Self {
             anchors,
             weight: p.body_force(time_s),

@@ -747,7 +747,7 @@ impl LeavableWheels {
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.
-    fn told(&self, mut report: StepReport) -> StepReport {
+    fn with_wheel_warnings(&self, mut report: StepReport) -> StepReport {
         if let Some(left) = &self.left {
             let name = &self.problem.cable.name;
             let wheels = self
@@ -879,10 +879,10 @@ impl Layer for LeavableWheels {
             let start = if self.inner.time_s() > 0.0 { Start::Motion(&state) } else { Start::Route };
             let run = |inner: &mut dyn Mechanics| inner.settle();
             if let Some(report) = self.run_without(&refusal, &start, Inertia::QuasiStatic, run) {
-                return Ok(self.told(report));
+                return Ok(self.with_wheel_warnings(report));
             }
         }
-        found.map(|report| self.told(report))
+        found.map(|report| self.with_wheel_warnings(report))
     }
 
     fn advance_gauged(
@@ -911,7 +911,7 @@ impl Layer for LeavableWheels {
                 false => self.advance_to(end_s, inertia, gauge)?,
             });
         }
-        let told = self.told(report);
+        let told = self.with_wheel_warnings(report);
         self.come_back(inertia)?;
         Ok(told)
     }

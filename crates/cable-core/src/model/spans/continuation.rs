@@ -226,7 +226,7 @@ impl CableEquilibrium {
             if c.is_load() {
                 c.ends.place[1] = c.ends.place[0];
             }
-            c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
+            c.history.commit(&contact_path, &c.ends, c.mode, c.stick_zone, &mut workspace.past);
             // Contacts that came down in this step have friction from now on.
             if c.smooth && route.is_none() {
                 c.smooth = false;
@@ -417,15 +417,15 @@ impl CableEquilibrium {
         if self.loose_lengths().is_none() || self.instant.places == to.places {
             return;
         }
-        let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
+        let has_both_ends = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
         let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(LooseSection::spreads);
         let all =
             |of: &dyn Fn(usize) -> bool| (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || of(k));
         let instant = self.instant.clone();
-        let taut = if all(&|k| spreads(k) && !held(k)) {
+        let taut = if all(&|k| spreads(k) && !has_both_ends(k)) {
             let mut taut = self.clone();
             taut.lay_in_tension(layout, &instant, workspace).ok().map(|_| taut)
-        } else if all(&|k| !spreads(k) && held(k)) {
+        } else if all(&|k| !spreads(k) && has_both_ends(k)) {
             Self::along_route(layout, &instant, workspace).ok().map(|(taut, _)| taut)
         } else {
             None

@@ -383,7 +383,7 @@ impl SpansModel {
         let loose =
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
         let seeks = start == SearchStart::Either && drawn.contains(&None);
-        let frictionless = if seeks { self.frictionless_held(workspace).map(|n| tensions(&n)) } else { None };
+        let frictionless = if seeks { self.frictionless_equilibrium(workspace).map(|n| tensions(&n)) } else { None };
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
         let greatest_n = laid[2];
@@ -440,7 +440,7 @@ impl SpansModel {
     }
 
     /// The equilibrium without friction, held by friction from then on.
-    fn frictionless_held(&self, workspace: &mut Workspace) -> Option<CableEquilibrium> {
+    fn frictionless_equilibrium(&self, workspace: &mut Workspace) -> Option<CableEquilibrium> {
         let instant = self.cable_equilibrium.as_ref()?.instant.clone();
         let found = CableEquilibrium::along_route_from(&self.layout, &instant, SearchStart::Frictionless, workspace);
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())

@@ -279,7 +279,7 @@ fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &
         normal: [unit.x, unit.y],
         normal_n,
         friction_n: t1 - t2 - along,
-        force_n: held_by(contact_path, c).into(),
+        force_n: obstacle_force(contact_path, c).into(),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
         turn_deg: turned.to_degrees(),
         tension_before_n: t1,
@@ -318,7 +318,7 @@ fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<
 
 /// The force of an obstacle on a contact, N: it balances the load there and the difference of the
 /// tensions at both ends.
-pub(in crate::model::spans) fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
+pub(in crate::model::spans) fn obstacle_force(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
     let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.place[side]).tangent * c.ends.tension[side]);
     before - after - contact_path.law.load * (c.ends.material[1] - c.ends.material[0])
 }
@@ -368,7 +368,7 @@ fn load(
     let load_balance = load_balance(section, context, j);
     let at = contact_path.place(c.ends.place[0]).at;
     // The obstacle balances all other forces on the point.
-    let held =
+    let force =
         load_balance.normal * load_balance.press() - load_balance.tangent * load_balance.sum.dot(&load_balance.tangent);
     let slips = contact_path.friction <= 0.0 || matches!(c.mode, Mode::Slip(_));
     ContactReport {
@@ -385,8 +385,8 @@ fn load(
         tension_after_n: c.ends.tension[1],
         begins_m: c.ends.material[0],
         ends_m: c.ends.material[0],
-        force_n: [held.x, held.y],
-        samples: vec![ContactSample::new(c.ends.material[0], held)],
+        force_n: [force.x, force.y],
+        samples: vec![ContactSample::new(c.ends.material[0], force)],
         ..ContactReport::default()
     }
 }

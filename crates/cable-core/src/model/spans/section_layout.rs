@@ -173,16 +173,16 @@ impl SectionLayout {
     /// counts arc length.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
-        let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
+        let supports_in_place: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
         let at = |k: usize| p.supports[k].at.unwrap_or_default();
         for pulley in self.sections.iter_mut().flat_map(|s| &mut s.pulleys) {
             let s = &p.supports[pulley.support];
             if s.wheel_radius == 0.0 {
                 continue;
             }
-            let i = held.iter().position(|&k| k == pulley.support).unwrap_or(0);
-            let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
-            let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
+            let i = supports_in_place.iter().position(|&k| k == pulley.support).unwrap_or(0);
+            let before = i.checked_sub(1).and_then(|j| supports_in_place.get(j)).map_or(at(pulley.support), |&k| at(k));
+            let after = supports_in_place.get(i + 1).map_or(at(pulley.support), |&k| at(k));
             let travel = if reversed { before - after } else { after - before };
             pulley.facing = facing(s.side, travel) * if reversed { -1.0 } else { 1.0 };
         }

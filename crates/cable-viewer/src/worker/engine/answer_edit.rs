@@ -98,7 +98,7 @@ impl Engine {
     pub(super) fn settle_edit(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
         let histories = edit.settings.histories && !self.refinement.histories_due();
         let settings = Settings { histories, ..edit.settings };
-        let of = |scene: &Scene| laid(scene, edit.model, settings);
+        let of = |scene: &Scene| simulation_at_rest(scene, edit.model, settings);
         let laid = of(&edit.scene);
         let Some(old) = old.filter(|o| edit.start == EditStart::PresentState && draft::same_cables(edit, o)) else {
             return laid;
@@ -161,7 +161,7 @@ impl Engine {
     /// is a function of the scene alone, so no figure changes.
     pub(super) fn seek_histories(&mut self) {
         self.refinement.drop_histories();
-        let sought = self.edit.as_ref().and_then(|e| laid(&e.scene, e.model, e.settings).ok());
+        let sought = self.edit.as_ref().and_then(|e| simulation_at_rest(&e.scene, e.model, e.settings).ok());
         if let (Some(sought), Some(run)) = (sought, &mut self.run) {
             run.replace(sought);
         }
@@ -171,7 +171,7 @@ impl Engine {
 }
 
 /// A scene laid at rest.
-pub(super) fn laid(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, Error> {
+pub(super) fn simulation_at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, Error> {
     let mut laid = Simulation::for_question(scene.clone(), model, settings, Question::Rest)?;
     laid.settle()?;
     Ok(laid)

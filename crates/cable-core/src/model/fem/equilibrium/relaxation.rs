@@ -224,7 +224,7 @@ impl Stepper {
         for (k, (a, b)) in unknowns.positions.iter().zip(&self.cable.motion.positions).enumerate() {
             let moved = (a - b).norm().max(unknowns.slides[k].abs());
             motion.moved = motion.moved.max(moved);
-            let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertial.stiffness[k] };
+            let free = if self.cable.mesh.fixity[k] { 0.0 } else { self.cable.input.inertial.stiffness[k] };
             drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
             let force = larger(moved * free, drift.norm() / self.cable.mesh.tuning.newton.stretch_residual);
             if force > motion.resists {

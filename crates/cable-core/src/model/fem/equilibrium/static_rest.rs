@@ -101,7 +101,7 @@ impl Stepper {
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         self.cable.refuse()?;
         self.time_control.sleep.wake();
-        self.cable.answers.held_back.clear();
+        self.cable.answers.lagging_supports.clear();
         self.rollback.save(&self.cable);
         self.cable.motion.followers.fill(None);
         self.cable.approach_edit(1.0);
@@ -236,7 +236,7 @@ impl Stepper {
         }
         let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.positions) else { return };
         let straight = std::mem::replace(&mut cable.motion.positions, arc);
-        for k in (0..straight.len()).filter(|&k| cable.mesh.held[k]) {
+        for k in (0..straight.len()).filter(|&k| cable.mesh.fixity[k]) {
             cable.motion.positions[k] = straight[k];
         }
         if IntersectionCheck::of(cable).cuts_nothing() {

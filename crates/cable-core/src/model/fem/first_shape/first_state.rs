@@ -43,7 +43,7 @@ pub(in crate::model::fem) fn cable_along_route(
     cable.forget_history();
     prepare_input(&mut cable, 0.0, None);
     for k in 0..cable.mesh.nodes() {
-        if cable.mesh.held[k] {
+        if cable.mesh.fixity[k] {
             cable.motion.positions[k] = cable.input.supports.target[k];
         }
     }
@@ -115,10 +115,10 @@ fn cable_at_rest(
         loss: Loss::default(),
         answers: StepAnswers {
             reaction: vec![Vec2::zeros(); n],
-            held_back: Vec::new(),
+            lagging_supports: Vec::new(),
             stepped: None,
             keeps: false,
-            kept: None,
+            stored_answer: None,
             gauged: NodeTensions::default(),
         },
         outline,

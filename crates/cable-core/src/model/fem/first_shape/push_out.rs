@@ -23,7 +23,7 @@ const DEPENETRATION_DEPTH: f64 = 0.5;
 /// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m)
 /// or the passes are spent.
 pub fn depenetrate(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
-    push_chain_out(problem, &mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
+    push_chain_out(problem, &mesh.fixity, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
 }
 
 /// Pushes out a chain whose nodes may be `held` and whose bars may lie on rounds.

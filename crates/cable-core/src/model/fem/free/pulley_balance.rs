@@ -78,7 +78,7 @@ pub struct PulleyNetwork {
     /// Largest unbalanced force, N.
     pub residual: f64,
     /// Arc length at each station before anything slid (friction remembers it), m.
-    held_at: Vec<f64>,
+    unslid_arc_length: Vec<f64>,
     warm: bool,
     /// The friction memory of every pulley, in order; empty until friction begins to remember
     /// (`pulley_state`).
@@ -101,7 +101,7 @@ impl PulleyNetwork {
         let mut network = Self {
             spans: vec![BarSpan::default(); ends.len()],
             forces: vec![[Vec2::zeros(); 2]; layout.stations.len()],
-            held_at: layout.stations.iter().map(|s| s.arc_length).collect(),
+            unslid_arc_length: layout.stations.iter().map(|s| s.arc_length).collect(),
             ends,
             layout,
             material,
@@ -221,7 +221,7 @@ impl PulleyNetwork {
     /// arc).
     fn slid(&self, station: usize) -> f64 {
         self.layout.stations[station].arc_length + 0.5 * self.layout.stations[station].material_on_wheel
-            - self.held_at[station]
+            - self.unslid_arc_length[station]
     }
 
     /// Imbalance at a pulley: 0 if it is balanced, positive if the arc length must shrink. `None`
@@ -479,7 +479,7 @@ impl PulleyNetwork {
         }
         let element_count = (self.layout.stations[station].element_count, self.layout.stations[other].element_count);
         self.layout.stations.swap(station, other);
-        self.held_at.swap(station, other);
+        self.unslid_arc_length.swap(station, other);
         (self.layout.stations[station].element_count, self.layout.stations[other].element_count) = element_count;
         let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if other > station { 1.0 } else { -1.0 };
         let load_at = self.layout.stations[station].arc_length;

@@ -23,7 +23,7 @@ impl BranchMoments {
     }
 
     /// The sum of the moments that a step in which each decays by a factor leaves of a bend, N·m.
-    pub(in crate::model::fem) fn kept(&self, slots: [usize; 2], decay: &[f64]) -> f64 {
+    pub(in crate::model::fem) fn remainder(&self, slots: [usize; 2], decay: &[f64]) -> f64 {
         let of = |slot: usize| self.of_slot(slot).iter().zip(decay).map(|(m, d)| m * d).sum::<f64>();
         0.5 * (of(slots[0]) + of(slots[1]))
     }
@@ -97,7 +97,7 @@ mod tests {
         two.insert_node(1, 0.25);
         assert_eq!(two, moments(&[0.0, 1.0, 2.0, 2.0, 5.0, 5.0]));
         assert_eq!((two.sum([2, 3]), two.sum([0, 1]), two.sum([1, 1])), (2.0, 0.5, 1.0));
-        assert_eq!(two.kept([2, 3], &[0.5]), 1.0);
+        assert_eq!(two.remainder([2, 3], &[0.5]), 1.0);
         two.break_at(1);
         assert_eq!(two, moments(&[0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 5.0, 5.0]));
         two.remove_node(1);

@@ -39,7 +39,7 @@ pub struct Mesh {
     /// break, where two nodes have the same place in the cable and no bar joins them.
     pub rest_length: Vec<f64>,
     /// True if each node is held in place.
-    pub held: Vec<bool>,
+    pub fixity: Vec<bool>,
     /// The prescribed directions.
     pub clamps: Vec<Clamp>,
     /// The corner, post or pulley of each sliding node; None: the node moves with the material.
@@ -80,7 +80,7 @@ impl Mesh {
         let rest_length = arc_length.windows(2).map(|p| problem.thermal_stretch * (p[1] - p[0])).collect();
         Self {
             tuning,
-            held: vec![false; arc_length.len()],
+            fixity: vec![false; arc_length.len()],
             sliding: vec![None; arc_length.len()],
             thermal_stretch: problem.thermal_stretch,
             excess: BarMemory::default(),
@@ -120,11 +120,11 @@ impl Mesh {
 
     /// As [`Self::copy_from`] where neither mesh can have sliding nodes.
     pub fn copy_material_nodes_from(&mut self, other: &Self) {
-        let Self { tuning, arc_length, rest_length, held, clamps, spread, branch_forces, branch_moments, .. } = other;
+        let Self { tuning, arc_length, rest_length, fixity, clamps, spread, branch_forces, branch_moments, .. } = other;
         self.tuning.clone_from(tuning);
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
-        self.held.clone_from(held);
+        self.fixity.clone_from(fixity);
         self.clamps.clone_from(clamps);
         self.spread.copy_from(spread);
         self.branch_forces.copy_from(branch_forces);
@@ -271,7 +271,7 @@ impl Mesh {
     #[inline]
     #[must_use]
     pub fn is_free(&self, k: usize) -> bool {
-        !self.held[k] && self.sliding[k].is_none()
+        !self.fixity[k] && self.sliding[k].is_none()
     }
 
     /// True if the cable is broken between nodes `e` and `e + 1`: there is no bar.
@@ -411,7 +411,7 @@ impl Mesh {
         self.rest_length.insert(k, 0.0);
         self.renew_rest_length(k - 1);
         self.renew_rest_length(k);
-        self.held.insert(k, false);
+        self.fixity.insert(k, false);
         self.sliding.insert(k, sliding);
     }
 
@@ -423,7 +423,7 @@ impl Mesh {
         self.remembered_impulses.insert_break(k);
         self.branch_moments.break_at(k);
         self.rest_length.insert(k, 0.0);
-        self.held.insert(k + 1, false);
+        self.fixity.insert(k + 1, false);
         self.sliding.insert(k + 1, None);
     }
 
@@ -438,7 +438,7 @@ impl Mesh {
         self.arc_length.remove(k);
         self.rest_length.remove(k);
         self.renew_rest_length(k - 1);
-        self.held.remove(k);
+        self.fixity.remove(k);
         self.sliding.remove(k);
     }
 }

@@ -71,7 +71,7 @@ impl PredictedContacts {
     }
 
     /// The stored right-hand side.
-    pub fn kept(&self) -> &[f64] {
+    pub fn right_hand_side(&self) -> &[f64] {
         &self.right
     }
 

@@ -29,7 +29,7 @@ pub struct GapConstraint {
     /// Stiffness of the spring that holds it, N/m.
     stiffness: f64,
     /// Change of the gap to which it is held, m; None while it is inactive.
-    held_to: Option<f64>,
+    gap_goal: Option<f64>,
 }
 
 impl GapConstraint {
@@ -46,7 +46,7 @@ impl GapConstraint {
             gap: gap.gap_m,
             least,
             bar: turns.then_some((touch.node, Pivot::Fixed(gap.point))),
-            held_to: None,
+            gap_goal: None,
         }
     }
 
@@ -61,7 +61,7 @@ impl GapConstraint {
             gap: pair.gap_m,
             least,
             bar: inside.then_some((pair.segment, Pivot::Node(pair.node))),
-            held_to: None,
+            gap_goal: None,
         }
     }
 
@@ -107,20 +107,20 @@ impl GapConstraint {
         step: &[f64],
     ) -> [bool; 2] {
         let bend = self.bend(x, step);
-        let new = self.held_to.is_none();
+        let new = self.gap_goal.is_none();
         if new && self.gap + self.opening(step) + bend >= self.least {
             return [false, false];
         }
         let mut way = self.least - self.gap - bend;
-        for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.held[s.0]) {
+        for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.fixity[s.0]) {
             // A held node moves to its target; a sliding node stays.
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
-        let change = way - self.held_to.unwrap_or(0.0);
+        let change = way - self.gap_goal.unwrap_or(0.0);
         if !new && change.abs() <= mesh.tuning.newton.constraint_tolerance * self.least {
             return [false, false];
         }
-        self.held_to = Some(way);
+        self.gap_goal = Some(way);
         let free = |&&(k, part): &&(usize, f64)| part != 0.0 && mesh.is_free(k);
         let n = self.normal;
         for (i, &(k, part)) in self.shares.iter().enumerate() {

@@ -68,7 +68,7 @@ impl Workspace {
         }
         let (rows, band) = (s.hessian.rows(), s.hessian.half_bandwidth());
         for node in 0..mesh.nodes() {
-            if mesh.held[node] {
+            if mesh.fixity[node] {
                 let go = self.goal[node] - x[node];
                 for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
                     for i in k.saturating_sub(band)..(k + band + 1).min(rows) {
@@ -83,7 +83,7 @@ impl Workspace {
             }
         }
         for node in 0..mesh.nodes() {
-            if mesh.held[node] {
+            if mesh.fixity[node] {
                 let go = self.goal[node] - x[node];
                 for (k, go) in [(2 * node, go.x), (2 * node + 1, go.y)] {
                     s.hessian.pin(k);
@@ -98,14 +98,14 @@ impl Workspace {
             }
         }
         if !self.self_contact.coupling.is_empty() {
-            self.self_contact.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
+            self.self_contact.coupling.retain(|&(i, j, _)| !mesh.fixity[i / 2] && !mesh.fixity[j / 2]);
             self.predicted_contacts.keep(&self.direction);
             return solve_coupled(&s.hessian, &self.self_contact.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
         self.predicted_contacts.keep(&self.direction);
         if self.factor.factor_and_solve(&s.hessian, &mut self.direction).is_err() {
-            self.direction.copy_from_slice(self.predicted_contacts.kept());
+            self.direction.copy_from_slice(self.predicted_contacts.right_hand_side());
             return false;
         }
         self.direction.iter().all(|d| d.is_finite())
@@ -179,7 +179,7 @@ impl Workspace {
     /// True if held nodes are still on their way to their targets. A support that squeezes the
     /// cable beyond round-off has come as far as it can: it stops here if it may lag.
     fn supports_move(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &Unknowns) -> bool {
-        let moves = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
+        let moves = (0..mesh.nodes()).any(|k| mesh.fixity[k] && self.goal[k] != unknowns.positions[k]);
         let squeezed = self.rounding.noise > input.stopping.tolerance;
         moves && !(squeezed && self.stop_supports(input, unknowns))
     }
@@ -267,7 +267,7 @@ impl Workspace {
                 trial.slides[k] = 0.0;
                 trial.positions[k] = unknowns.positions[k] + moves;
                 // A full step ends exactly on target.
-                if mesh.held[k] && fraction == 1.0 {
+                if mesh.fixity[k] && fraction == 1.0 {
                     trial.positions[k] = self.goal[k];
                 }
             }

@@ -127,7 +127,7 @@ impl Workspace {
         // The system stays assembled at the answer, because its gradient gives the reactions.
         let value = self.assemble(step, unknowns, Curvature::Exact);
         let noise = noise + ENERGY_NOISE * self.magnitude.abs();
-        let held = (0..step.mesh.nodes()).filter(|&k| step.mesh.held[k]);
+        let held = (0..step.mesh.nodes()).filter(|&k| step.mesh.fixity[k]);
         let work: f64 = held.map(|k| self.gradient_at(k).dot(&(unknowns.positions[k] - begun.positions[k]))).sum();
         self.mixed.begun = begun;
         value > at_start + larger(work, 0.0) + noise
@@ -158,7 +158,7 @@ impl Workspace {
             return;
         }
         for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {
-            let to = match (mesh.held[k], mesh.is_free(k)) {
+            let to = match (mesh.fixity[k], mesh.is_free(k)) {
                 (true, _) => self.goal[k],
                 (_, true) => input.inertial.predicted[k],
                 _ => unknowns.positions[k],
@@ -193,7 +193,7 @@ impl Workspace {
                 return None;
             }
             let residual = self.residual(mesh, input).force;
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.fixity[k] && self.goal[k] != unknowns.positions[k]);
             if iterations == 0 {
                 first = residual;
             }
@@ -250,7 +250,7 @@ impl Workspace {
                 }
                 let (t, less) = (d / p, input.scale[e] * (part - counted) * carried.pull / p);
                 let across = [less * (1.0 - t.x * t.x), -less * t.x * t.y, less * (1.0 - t.y * t.y)];
-                match [mesh.held[e], mesh.held[e + 1]] {
+                match [mesh.fixity[e], mesh.fixity[e + 1]] {
                     [false, false] => self.system.hessian.add_spring(2 * e, across),
                     [true, true] => {}
                     [first, _] => {
@@ -268,7 +268,7 @@ impl Workspace {
             if self.factor.factor_and_solve(&self.system.hessian, &mut self.direction).is_ok() {
                 return self.direction.iter().all(|d| d.is_finite());
             }
-            self.direction.copy_from_slice(self.predicted_contacts.kept());
+            self.direction.copy_from_slice(self.predicted_contacts.right_hand_side());
         }
         false
     }
@@ -306,7 +306,7 @@ impl Workspace {
             let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
             if mesh.sliding[k].is_some() {
                 unknowns.slides[k] += step.x;
-            } else if mesh.held[k] && part == 1.0 {
+            } else if mesh.fixity[k] && part == 1.0 {
                 unknowns.positions[k] = self.goal[k];
             } else {
                 unknowns.positions[k] += step;

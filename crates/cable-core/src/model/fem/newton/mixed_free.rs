@@ -103,7 +103,7 @@ impl MixedFreeSolver {
             }
             let balance = self.assemble(mesh, input, x, Curvature::Exact);
             let left =
-                mesh.held.iter().zip(x.iter().zip(&input.supports.target)).any(|(held, (x, to))| *held && x != to);
+                mesh.fixity.iter().zip(x.iter().zip(&input.supports.target)).any(|(held, (x, to))| *held && x != to);
             if !(balance.force.is_finite() && balance.pull.is_finite()) {
                 return None;
             }
@@ -172,7 +172,7 @@ impl MixedFreeSolver {
             self.hold[e] = (stiffness, t);
             self.present[e] = now;
         }
-        for (g, _) in self.gradient.iter().zip(&mesh.held).filter(|(_, held)| !**held) {
+        for (g, _) in self.gradient.iter().zip(&mesh.fixity).filter(|(_, held)| !**held) {
             balance.force = larger(balance.force, g.norm());
         }
         balance
@@ -183,7 +183,7 @@ impl MixedFreeSolver {
     fn factor_and_solve(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         let n = x.len();
         for k in 0..n {
-            if mesh.held[k] {
+            if mesh.fixity[k] {
                 let go = input.supports.target[k] - x[k];
                 if k > 0 {
                     self.step[k - 1] -= times(&self.between[k - 1], go);
@@ -244,7 +244,7 @@ impl MixedFreeSolver {
         }
         for (k, x) in x.iter_mut().enumerate() {
             *x += self.step[k] * part;
-            if mesh.held[k] && part == 1.0 {
+            if mesh.fixity[k] && part == 1.0 {
                 *x = input.supports.target[k];
             }
         }

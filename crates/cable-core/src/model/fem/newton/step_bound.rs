@@ -31,7 +31,7 @@ impl Workspace {
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
             if slides != [false, false] {
-                free = self.kept_cable_bound(mesh, unknowns, e, free);
+                free = self.remaining_cable_bound(mesh, unknowns, e, free);
             }
             if problem.world.is_empty() || slides == [true, true] || mesh.is_break(e) {
                 continue;
@@ -74,7 +74,7 @@ impl Workspace {
 
     /// The greatest part of the direction, at most `free`, that leaves some cable in bar e, which
     /// has a sliding node.
-    fn kept_cable_bound(&self, mesh: &Mesh, unknowns: &Unknowns, e: usize, free: f64) -> f64 {
+    fn remaining_cable_bound(&self, mesh: &Mesh, unknowns: &Unknowns, e: usize, free: f64) -> f64 {
         let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { self.direction[2 * k] } else { 0.0 });
         let change = go[1] - go[0];
         let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slides[e + 1] - unknowns.slides[e];
@@ -97,7 +97,7 @@ impl Workspace {
         let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
         let plain = || {
             !contacts.self_contacts.shape.is_on()
-                && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)))
+                && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.fixity[k] || still(k)))
         };
         let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
         let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });

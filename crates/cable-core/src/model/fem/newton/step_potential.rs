@@ -283,7 +283,7 @@ impl Workspace {
         let accepted = larger(input.stopping.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
-            if mesh.held[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
+            if mesh.fixity[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
                 drift = Vec2::zeros();
                 continue;
             }

@@ -26,7 +26,7 @@ impl SolverMemory {
         for (k, (x, v)) in unknowns.positions.iter_mut().zip(&cable.motion.velocities).enumerate() {
             if cable.mesh.is_free(k) {
                 *x += v * h;
-            } else if cable.mesh.held[k] {
+            } else if cable.mesh.fixity[k] {
                 // If a support stayed behind, short bars beside it would have to turn by large
                 // angles.
                 *x = cable.input.supports.target[k];

@@ -196,7 +196,7 @@ impl<'a> IntersectionCheck<'a> {
     pub(in crate::model::fem) fn clearance(&self, feature: usize) -> f64 {
         let reach = self.reach;
         let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };
-        let fixed = [0, self.mesh.nodes() - 1].into_iter().filter(|&k| self.mesh.held[k]);
+        let fixed = [0, self.mesh.nodes() - 1].into_iter().filter(|&k| self.mesh.fixity[k]);
         let gaps = fixed.map(|k| bounded((self.positions[k] - center).norm() - radius, 0.0, reach));
         gaps.fold(reach, smaller)
     }

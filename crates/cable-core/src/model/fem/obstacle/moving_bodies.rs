@@ -182,7 +182,7 @@ fn clear_way(cable: &mut CableState, motions: Vec<BodyMotion>, ends: &[[Vec2; 2]
 fn hitch(problem: &Problem, mesh: &Mesh, meshing: &Meshing) -> Option<usize> {
     let of_robot = |(s, node): (&SupportPoint, &Option<usize>)| node.filter(|_| s.kind == SupportKind::Robot);
     let node = problem.supports.iter().zip(&meshing.support_node).find_map(of_robot)?;
-    mesh.held[node].then_some(node)
+    mesh.fixity[node].then_some(node)
 }
 
 /// Moves the hitch to its place on the outline. Returns whether it can follow.

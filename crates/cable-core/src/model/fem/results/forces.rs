@@ -141,7 +141,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
         // The ground also carries the normal force of a point mass; the force on its node includes
         // it.
-        lying_ends[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| LyingEnd {
+        lying_ends[usize::from(sign < 0.0)] = d.mesh.fixity[node].then(|| LyingEnd {
             node,
             next,
             obstacle: ground.obstacle,
@@ -160,7 +160,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
 /// The load on a free end, N; None for other nodes, and for a moving point mass, whose inertia acts
 /// as well.
 fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
-    let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.fixity[node])?;
     if d.motion.hands[k].is_some() {
         return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
     }

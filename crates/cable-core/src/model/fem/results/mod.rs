@@ -59,8 +59,8 @@ fn solution_now(d: &CableState) -> CableSolution {
 
 /// Stores the answer of a step before the first change of its mesh.
 pub(in crate::model::fem) fn keep_answer(cable: &mut CableState) {
-    if cable.answers.keeps && cable.answers.kept.is_none() {
-        cable.answers.kept = Some(Box::new(solution_now(cable)));
+    if cable.answers.keeps && cable.answers.stored_answer.is_none() {
+        cable.answers.stored_answer = Some(Box::new(solution_now(cable)));
     }
 }
 

@@ -71,10 +71,10 @@ pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[
                 // At a dead load the reaction is minus the load; a moving point mass may pull by
                 // more. The ground carries a part of a load that lies on it, and that part is in
                 // the contact's report.
-                _ if !d.mesh.held[node] && on_ground => -problem.hung_on(k, d.time()),
-                0 if !d.mesh.held[node] => ends[0],
-                k if k == last && !d.mesh.held[node] => -ends[1],
-                _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
+                _ if !d.mesh.fixity[node] && on_ground => -problem.hung_on(k, d.time()),
+                0 if !d.mesh.fixity[node] => ends[0],
+                k if k == last && !d.mesh.fixity[node] => -ends[1],
+                _ if !d.mesh.fixity[node] => -problem.hung_on(k, d.time()),
                 // On the ground the end's own share of weight and friction acts on the ground, not
                 // on the support.
                 0 if on_ground => ends[0],

@@ -42,14 +42,14 @@ pub(in crate::model::fem) struct StepAnswers {
     /// Force of the cable on each node that is held, N.
     pub(in crate::model::fem) reaction: Vec<Vec2>,
     /// Supports that were stopped short of their target.
-    pub(in crate::model::fem) held_back: Vec<usize>,
+    pub(in crate::model::fem) lagging_supports: Vec<usize>,
     /// The answer of the last step of an `advance` on the mesh on which it was balanced; the mesh
     /// is changed after it, for the next step.
     pub(in crate::model::fem) stepped: Option<Box<CableSolution>>,
     /// True if the answer is to be stored before the mesh is changed.
     pub(in crate::model::fem) keeps: bool,
     /// The stored answer.
-    pub(in crate::model::fem) kept: Option<Box<CableSolution>>,
+    pub(in crate::model::fem) stored_answer: Option<Box<CableSolution>>,
     /// Tension after the last step, on the mesh that it balanced.
     pub(in crate::model::fem) gauged: NodeTensions,
 }

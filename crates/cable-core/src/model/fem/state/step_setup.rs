@@ -34,7 +34,7 @@ pub(in crate::model::fem) fn prepare_step(
     input.supports.target.clone_from(&cable.motion.positions);
     input.supports.cleared.clear();
     input.inertial.hands.clear();
-    mesh.held.fill(false);
+    mesh.fixity.fill(false);
     mesh.clamps.clear();
     let dragged_to = |support: usize| dragged.and_then(|d| d.get(support).copied().flatten());
     for support in 0..cable.problem.supports.len() {
@@ -91,10 +91,10 @@ fn set_support(cable: &mut CableState, support: usize, [from, to]: [f64; 2], dra
     let at = if to > from { no_farther_than(cable.motion.positions[node], at, most) } else { at };
     // A support that a hand holds by a spring is a free node.
     if cable.motion.hands[support].is_none() {
-        mesh.held[node] = true;
+        mesh.fixity[node] = true;
         input.supports.target[node] = stopped_by_obstacles(problem, mesh, cable.motion.positions[node], at);
-        if input.supports.target[node] != at && !cable.answers.held_back.contains(&support) {
-            cable.answers.held_back.push(support);
+        if input.supports.target[node] != at && !cable.answers.lagging_supports.contains(&support) {
+            cable.answers.lagging_supports.push(support);
         }
     }
     if let Some(angle) = s.angle

@@ -7,7 +7,7 @@ use crate::model::fem::mesh::SlideOver;
 use crate::model::fem::results;
 use crate::model::fem::state::{Energies, MovingMass, open_collinear_folds, stored_energy};
 use crate::model::fem::system::{Converged, WorkBudget};
-use crate::model::smoothed_target::held_warning;
+use crate::model::smoothed_target::lag_warning;
 use crate::model::tension_gauge::{TensionBefore, TensionGauge};
 use crate::model::{Inertia, StepReport};
 use crate::solution::{Cost, Warning, WarningCause};
@@ -86,7 +86,7 @@ impl Stepper {
 
     /// Begins an `advance` of `dt_s` (s); returns its end time, s.
     fn begin_advance(&mut self, dt_s: f64, inertia: Inertia) -> f64 {
-        self.cable.answers.held_back.clear();
+        self.cable.answers.lagging_supports.clear();
         let end = self.cable.motion.time + dt_s;
         self.time_control.due = end;
         if let (Some(outline), Some(at)) = (&mut self.cable.outline, self.cable.motion.placement) {
@@ -148,10 +148,10 @@ impl Stepper {
     /// The report of an `advance` or of a search for the equilibrium.
     pub(in crate::model::fem) fn report(&self, done: Converged, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
-        let blocked = self.cable.answers.held_back.iter().filter_map(|&support| self.blocked_warning(support));
+        let blocked = self.cable.answers.lagging_supports.iter().filter_map(|&support| self.blocked_warning(support));
         let drawn = self.cable.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, self.node_of_support(k)?);
-            Some(held_warning(&self.cable.problem, k, self.cable.mesh.arc_length[node], f, self.hand_drive.hand_speed))
+            Some(lag_warning(&self.cable.problem, k, self.cable.mesh.arc_length[node], f, self.hand_drive.hand_speed))
         });
         let warnings = blocked.chain(drawn).chain(self.hand_drive.warnings(&self.cable)).collect();
         StepReport { cost, warnings }

@@ -75,7 +75,7 @@ impl Stepper {
     /// Accepts the unknowns of a step of `h` (s) as the state of the cable, and accounts for
     /// momentum and energy.
     fn accept_step(&mut self, unknowns: Unknowns, weights: Weights, h: f64, start: AtStart) {
-        hands::report_held_back(&mut self.cable, &unknowns);
+        hands::report_lagging_supports(&mut self.cable, &unknowns);
         hands::keep_forces(&mut self.cable, &unknowns);
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
@@ -139,7 +139,7 @@ impl Stepper {
             self.cable.motion.energies.end_step();
         }
         self.cable.answers.keeps = false;
-        self.cable.answers.stepped = self.cable.answers.kept.take();
+        self.cable.answers.stepped = self.cable.answers.stored_answer.take();
         match IntersectionCheck::of(&self.cable).crossing() {
             Some(node) => Err(Failure { node, residual, cause: FailureCause::CornerCrossed }),
             None => Ok(()),

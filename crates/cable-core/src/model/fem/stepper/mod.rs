@@ -115,7 +115,7 @@ impl Stepper {
         set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
         self.cable.contacts.list_neighbours(&self.cable.problem, mesh, &m.positions, |k| {
-            if mesh.held[k] { (input.supports.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
+            if mesh.fixity[k] { (input.supports.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
         Ok(weights)
     }

@@ -1,7 +1,7 @@
 //! This module assembles the energies of a mesh into value, gradient and banded Hessian.
 //!
 //! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3),
-//! bending two (5). Held nodes keep their rows: `System::pin_held` turns these into rows of the
+//! bending two (5). Held nodes keep their rows: `System::pin_supports` turns these into rows of the
 //! identity, so the band and the numbering never change. Before that, minus the gradient at a held
 //! node is the force of the cable on its support.
 
@@ -224,8 +224,8 @@ impl System {
 
     /// Prescribes the held nodes: zero gradient, identity rows.
     #[cfg(test)]
-    pub fn pin_held(&mut self, mesh: &Mesh) {
-        for (node, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
+    pub fn pin_supports(&mut self, mesh: &Mesh) {
+        for (node, _) in mesh.fixity.iter().enumerate().filter(|(_, held)| **held) {
             for k in [2 * node, 2 * node + 1] {
                 self.gradient[k] = 0.0;
                 self.hessian.pin(k);
@@ -247,7 +247,7 @@ mod tests {
             tuning: Arc::default(),
             arc_length: (0..9).map(|k| 0.5 * f64::from(k)).collect(),
             rest_length: vec![0.5; 8],
-            held: (0..9).map(|k| k == 0 || k == 8).collect(),
+            fixity: (0..9).map(|k| k == 0 || k == 8).collect(),
             clamps: vec![
                 Clamp { node: 0, direction: Vec2::new(1.0, 0.0) },
                 Clamp { node: 5, direction: Vec2::new(0.8, -0.6) },
@@ -297,13 +297,13 @@ mod tests {
         let mut system = System::new(&mesh);
         let mut factor = BandFactor::new(18, mesh.half_bandwidth()).unwrap();
         system.assemble(&mesh, &x, &[Vec2::zeros(); 9], Curvature::Exact);
-        system.pin_held(&mesh);
+        system.pin_supports(&mesh);
         assert!(factor.factor(&system.hessian).is_err());
         system.assemble(&mesh, &x, &[Vec2::zeros(); 9], Curvature::Clipped);
         for node in 0..9 {
             system.add_block(node, node, &Mat2::identity());
         }
-        system.pin_held(&mesh);
+        system.pin_supports(&mesh);
         assert!(factor.factor(&system.hessian).is_ok());
     }
 

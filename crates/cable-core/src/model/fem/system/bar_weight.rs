@@ -246,7 +246,7 @@ mod tests {
         let mesh = Mesh {
             arc_length: vec![0.0, 1.7],
             rest_length: vec![1.7],
-            held: vec![false; 2],
+            fixity: vec![false; 2],
             sliding,
             thermal_stretch: 1.0,
             axial_stiffness: 1e3,

@@ -392,7 +392,7 @@ fn legs_that_land_on_each_other_go_on_together() {
     let rubs = d.cable.contacts.self_contacts.friction_contacts.clone();
     assert!(rubs.len() > 2, "{}", rubs.len());
     for k in 0..d.cable.mesh.nodes() {
-        let way = if d.cable.mesh.held[k] { 0.0 } else { 1.0 };
+        let way = if d.cable.mesh.fixity[k] { 0.0 } else { 1.0 };
         d.cable.motion.velocities[k] =
             Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }

@@ -93,11 +93,12 @@ impl HandDrive {
 
 /// Reports the supports that did not reach their targets; their hands restart from the supports'
 /// positions.
-pub(in crate::model::fem) fn report_held_back(cable: &mut CableState, unknowns: &Unknowns) {
+pub(in crate::model::fem) fn report_lagging_supports(cable: &mut CableState, unknowns: &Unknowns) {
     for (support, node) in cable.meshing.support_node.iter().enumerate() {
-        let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
-        if unknowns.positions[k] != cable.input.supports.target[k] && !cable.answers.held_back.contains(&support) {
-            cable.answers.held_back.push(support);
+        let Some(k) = node.filter(|&k| cable.mesh.fixity[k]) else { continue };
+        if unknowns.positions[k] != cable.input.supports.target[k] && !cable.answers.lagging_supports.contains(&support)
+        {
+            cable.answers.lagging_supports.push(support);
         }
         if let Some(f) = &mut cable.motion.followers[support]
             && f.position() != unknowns.positions[k]

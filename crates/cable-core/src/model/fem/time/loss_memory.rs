@@ -140,7 +140,7 @@ pub(in crate::model::fem) fn add_to_bends(cable: &mut CableState, h: f64, decay:
         turns.resize(2 * mesh.nodes(), 0.0);
     }
     visit_turns(mesh, &cable.motion.positions, |bend| {
-        let from = bend.turn - mesh.branch_moments.kept(bend.slots, decay) * bend.length / stiffness;
+        let from = bend.turn - mesh.branch_moments.remainder(bend.slots, decay) * bend.length / stiffness;
         for slot in bend.slots {
             (start[slot], unbent[slot]) = (bend.turn, from);
         }

@@ -46,7 +46,7 @@ pub(in crate::model::fem) struct Sleep {
     arc_length: Vec<f64>,
     force: Vec<Vec2>,
     target: Vec<Vec2>,
-    held: Vec<bool>,
+    fixity: Vec<bool>,
     asleep: bool,
 }
 
@@ -81,7 +81,7 @@ impl Sleep {
     fn note_input(&mut self, cable: &CableState) {
         self.force.clone_from(&cable.input.loads.force);
         self.target.clone_from(&cable.input.supports.target);
-        self.held.clone_from(&cable.mesh.held);
+        self.fixity.clone_from(&cable.mesh.fixity);
     }
 
     /// Notes them where the cable, that has just fallen asleep, has come to its balance: they
@@ -94,11 +94,11 @@ impl Sleep {
 
     /// True if the forces and targets of the cable are those of the last check.
     fn same_input(&self, cable: &CableState) -> bool {
-        let (held, target) = (&cable.mesh.held, &cable.input.supports.target);
+        let (fixity, target) = (&cable.mesh.fixity, &cable.input.supports.target);
         self.force == cable.input.loads.force
-            && self.held == *held
+            && self.fixity == *fixity
             && self.target.len() == target.len()
-            && (0..target.len()).filter(|k| held[*k]).all(|k| self.target[k] == target[k])
+            && (0..target.len()).filter(|k| fixity[*k]).all(|k| self.target[k] == target[k])
     }
 
     /// True if the cable stays asleep until the time `to` (s), with its supports dragged to

@@ -192,7 +192,7 @@ impl BalancedStep<'_> {
             let both = [(force + was) * 0.5, force].map(|f| f.dot(&self.ways[k]));
             note(&mut works.supports, &mut works.numerical, both);
         };
-        for k in (0..mesh.nodes()).filter(|&k| mesh.held[k]) {
+        for k in (0..mesh.nodes()).filter(|&k| mesh.fixity[k]) {
             support(k, -cable.answers.reaction[k]);
         }
         for &(k, stiffness, at) in &cable.input.inertial.hands {

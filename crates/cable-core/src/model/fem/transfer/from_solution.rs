@@ -242,7 +242,7 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
     }
     let before = (0..first).rev().find(|&k| k == 0 || !cable.meshing.removable(&cable.mesh, k)).unwrap_or(0);
     let give = |k: usize, length: f64| {
-        if cable.mesh.held[k] || cable.mesh.sliding[k].is_some() { length } else { f64::INFINITY }
+        if cable.mesh.fixity[k] || cable.mesh.sliding[k].is_some() { length } else { f64::INFINITY }
     };
     let [left, right] = [give(before, s[first] - s[before]), give(next, s[next] - s[last])];
     let share = match (left.is_finite(), right.is_finite()) {
@@ -293,7 +293,7 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
     let s = &cable.mesh.arc_length;
     let near = DIRECTION_DISTANCE_BARS * cable.even();
     for (k, limit) in
-        cable.input.loads.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !cable.mesh.held[*k])
+        cable.input.loads.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !cable.mesh.fixity[*k])
     {
         let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
         let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);

@@ -6,7 +6,7 @@ use crate::model::hand::Hand;
 use crate::model::mass_spring::dynamics::Clock;
 use crate::model::mass_spring::dynamics::momentum::MomentumSums;
 use crate::model::mass_spring::mesh::{Mesh, release_pulleys};
-use crate::model::smoothed_target::{SmoothedTarget, held_warning, is_led};
+use crate::model::smoothed_target::{SmoothedTarget, is_led, lag_warning};
 use crate::solution::Warning;
 
 part! {
@@ -127,16 +127,16 @@ impl SupportDrives {
         }
     }
 
-    /// Takes back the kick of the time `held_s` (s) in which nodes that were let go as the sub-step
-    /// began were still held: their supports carried their forces then.
+    /// Takes back the kick of the time `hold_time_s` (s) in which nodes that were let go as the
+    /// sub-step began were still held: their supports carried their forces then.
     pub(in crate::model::mass_spring) fn correct_released(
         &self,
         mesh: &mut Mesh,
         account: &mut MomentumSums,
-        held_s: f64,
+        hold_time_s: f64,
     ) {
         for &i in &self.released {
-            let impulse = mesh.force[i] * held_s;
+            let impulse = mesh.force[i] * hold_time_s;
             mesh.velocity[i] -= impulse / mesh.mass[i];
             account.supports -= impulse;
         }
@@ -173,6 +173,6 @@ impl SupportDrives {
         let behind = self.smoothed.iter().enumerate().filter_map(|(k, f)| Some((k, f.as_ref()?)));
         let behind = behind.filter(|(_, f)| f.behind_m() > 0.0);
         let s = |k: usize| mesh.arc_length[mesh.support_node[k]];
-        behind.map(|(k, f)| held_warning(&mesh.problem, k, s(k), f, max_speed_m_per_s)).collect()
+        behind.map(|(k, f)| lag_warning(&mesh.problem, k, s(k), f, max_speed_m_per_s)).collect()
     }
 }

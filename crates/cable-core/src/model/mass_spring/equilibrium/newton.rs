@@ -57,13 +57,13 @@ impl<'a> EquilibriumSolver<'a> {
         mesh: &'a mut Mesh,
         time_s: f64,
         anchors: &[Anchor],
-        kept: Anchors,
+        memory: Anchors,
     ) -> Result<Self, SolveError> {
         mesh.update_pulley_elements();
-        let contacts = Contacts::new(mesh, anchors, kept);
+        let contacts = Contacts::new(mesh, anchors, memory);
         for p in &mut mesh.wheels.pulleys {
             p.sliding_speed = 0.0;
-            if kept == Anchors::Forgotten {
+            if memory == Anchors::Forgotten {
                 p.anchor = mesh.arc_length[p.node];
             }
         }

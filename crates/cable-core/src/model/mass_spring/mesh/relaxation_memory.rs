@@ -48,7 +48,7 @@ part! {
         /// second.
         forces: Vec<f64>,
         /// Sum in each slot of what is left of them in the step.
-        kept: Vec<f64>,
+        remaining_force: Vec<f64>,
         /// Change of the strain of each slot in the step.
         change: Vec<f64>,
     }
@@ -93,7 +93,7 @@ impl RelaxationMemory {
             impact_stiffness: 0.0,
             strain: vec![f64::NAN; slots],
             forces: vec![0.0; branches * slots],
-            kept: vec![0.0; slots],
+            remaining_force: vec![0.0; slots],
             change: vec![0.0; slots],
         }
     }
@@ -118,10 +118,10 @@ impl RelaxationMemory {
         if h != self.step_s {
             self.set_step(h);
         }
-        self.kept.fill(0.0);
+        self.remaining_force.fill(0.0);
         self.change.fill(0.0);
         for (forces, decay) in self.forces.chunks_exact_mut(self.strain.len().max(1)).zip(&self.decay) {
-            for (force, kept) in forces.iter_mut().zip(&mut self.kept) {
+            for (force, kept) in forces.iter_mut().zip(&mut self.remaining_force) {
                 *force *= decay;
                 *kept += *force;
             }
@@ -154,7 +154,7 @@ impl RelaxationMemory {
         };
         let impact = if last > 0.0 || self.pushes { 0.0 } else { self.impact_stiffness };
         let damping = self.damping_stiffness + impact;
-        let pull = self.stiffness * strain + self.kept[slot] + damping * (strain - before);
+        let pull = self.stiffness * strain + self.remaining_force[slot] + damping * (strain - before);
         // NaN passes on, and is detected later.
         let (material, tension) =
             if pull < 0.0 && !self.pushes { (strain - pull / (self.stiffness + damping), 0.0) } else { (strain, pull) };
@@ -171,7 +171,7 @@ impl RelaxationMemory {
         let change = if known.is_nan() { 0.0 } else { curvature - known };
         self.change[slot] = change;
         self.strain[slot] = curvature;
-        self.stiffness * curvature + self.kept[slot] + self.damping_stiffness * change
+        self.stiffness * curvature + self.remaining_force[slot] + self.damping_stiffness * change
     }
 
     /// Ends the step: the branches take up the changes of strain in it.
@@ -184,7 +184,7 @@ impl RelaxationMemory {
     }
 
     /// The sum of the forces or moments in the branches of a slot, N or N·m.
-    pub(in crate::model::mass_spring) fn held(&self, slot: usize) -> f64 {
+    pub(in crate::model::mass_spring) fn branch_force(&self, slot: usize) -> f64 {
         let count = self.strain.len().max(1);
         self.forces.iter().skip(slot).step_by(count).sum()
     }
@@ -206,7 +206,7 @@ impl RelaxationMemory {
             let at = branch * count + slot;
             self.forces.insert(at + 1, self.forces[at]);
         }
-        for list in [&mut self.strain, &mut self.kept, &mut self.change] {
+        for list in [&mut self.strain, &mut self.remaining_force, &mut self.change] {
             list.insert(slot + 1, list[slot]);
         }
     }
@@ -221,7 +221,7 @@ impl RelaxationMemory {
             self.forces[at] = mean(&self.forces, at);
             self.forces.remove(at + 1);
         }
-        for list in [&mut self.strain, &mut self.kept, &mut self.change] {
+        for list in [&mut self.strain, &mut self.remaining_force, &mut self.change] {
             list[slot] = mean(list, slot);
             list.remove(slot + 1);
         }
@@ -239,7 +239,7 @@ impl RelaxationMemory {
             let between = 0.5 * (self.forces[at - 2] + self.forces[at]);
             self.forces.splice(at..at, [between; 2]);
         }
-        for list in [&mut self.strain, &mut self.kept, &mut self.change] {
+        for list in [&mut self.strain, &mut self.remaining_force, &mut self.change] {
             list.splice(2 * n..2 * n, [0.0; 2]);
         }
         self.begin_curvature(n - 1..n + 2);
@@ -255,7 +255,7 @@ impl RelaxationMemory {
             let at = branch * count + 2 * n;
             self.forces.drain(at..at + 2);
         }
-        for list in [&mut self.strain, &mut self.kept, &mut self.change] {
+        for list in [&mut self.strain, &mut self.remaining_force, &mut self.change] {
             list.drain(2 * n..2 * n + 2);
         }
         self.begin_curvature(n - 1..n + 1);
@@ -295,12 +295,12 @@ mod tests {
         let mut memory = springs(2);
         stretch(&mut memory, 0.0, &[1e-3, 1e-3]);
         stretch(&mut memory, 1e-4, &[1e-3, 3e-3]);
-        let [first, second] = [memory.held(0), memory.held(1)];
+        let [first, second] = [memory.branch_force(0), memory.branch_force(1)];
         assert!(first == 0.0 && second > 0.0, "{first} {second}");
         memory.divide(1);
-        assert_eq!([memory.held(0), memory.held(1), memory.held(2)], [first, second, second]);
+        assert_eq!([memory.branch_force(0), memory.branch_force(1), memory.branch_force(2)], [first, second, second]);
         memory.merge(0, 0.75);
-        assert!((memory.held(0) / second - 0.25).abs() < 1e-12 && memory.held(1) == second);
+        assert!((memory.branch_force(0) / second - 0.25).abs() < 1e-12 && memory.branch_force(1) == second);
         assert_eq!(memory.strain, [1.5e-3, 3e-3]);
     }
 
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(stretch(&mut memory, 1e3, &[1e-2]), [ea * 1e-2]);
         assert_eq!(stretch(&mut memory, 1e-6, &[0.0]), [0.0]);
         let left = memory.strain[0];
-        assert!(left > 1e-4 && (ea * left + memory.held(0)).abs() < 1e-9 * ea, "{left}");
+        assert!(left > 1e-4 && (ea * left + memory.branch_force(0)).abs() < 1e-9 * ea, "{left}");
         let mut last = left;
         for _ in 0..20 {
             stretch(&mut memory, 0.1, &[0.0]);

@@ -157,7 +157,7 @@ impl NodeReader<'_> {
     fn branch_tension(&self, i: usize) -> f64 {
         let beside = i.saturating_sub(1)..(i + 1).min(self.mesh.tension.len());
         let count = beside.len() as f64;
-        let of = |e: usize| if self.mesh.tension[e] > 0.0 { self.mesh.spring_memory.held(e) } else { 0.0 };
+        let of = |e: usize| if self.mesh.tension[e] > 0.0 { self.mesh.spring_memory.branch_force(e) } else { 0.0 };
         beside.map(of).sum::<f64>() / count
     }
 
@@ -203,7 +203,7 @@ impl NodeReader<'_> {
     fn branch_moment(&self, i: usize, e: usize) -> f64 {
         let clamped = bending::clamp_at(self.mesh, i).is_some();
         let slot = if clamped && e == i { 2 * i + 1 } else { 2 * i };
-        self.mesh.bend_memory.held(slot)
+        self.mesh.bend_memory.branch_force(slot)
     }
 
     fn node_curvature(&self, i: usize) -> f64 {

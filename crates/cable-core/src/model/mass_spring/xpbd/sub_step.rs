@@ -103,7 +103,7 @@ fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2]
     hands::follow(&mut chain.drives, mesh, hand_settings, h);
     nodal::set_loads(mesh, chain.clock.time_s);
     predict(mesh, chain.clock.time_s, h, solver);
-    let held_by_hands = predict_held(&chain.drives, mesh, h, solver);
+    let hand_nodes = predict_hands(&chain.drives, mesh, h, solver);
     let per_step = h.recip();
     solver.free.clone_from(&solver.position);
     impacts::carry_over(&mut chain.contacts, h, last);
@@ -121,7 +121,7 @@ fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2]
                 *v = (to - x) * per_step;
             }
         }
-        for HeldNode { node, velocity } in &held_by_hands {
+        for HeldNode { node, velocity } in &hand_nodes {
             let v = (solver.position[*node] - mesh.position[*node]) * per_step;
             mesh.support_acceleration[*node] = (v - velocity) * per_step;
             mesh.velocity[*node] = v;
@@ -201,7 +201,7 @@ struct HeldNode {
 
 /// Predicts nodes that hands hold without the springs of the cable in a preview's sub-step of `h`
 /// (s).
-fn predict_held(drives: &SupportDrives, mesh: &Mesh, h: f64, solver: &mut ConstraintSolver) -> Vec<HeldNode> {
+fn predict_hands(drives: &SupportDrives, mesh: &Mesh, h: f64, solver: &mut ConstraintSolver) -> Vec<HeldNode> {
     let mut found = Vec::new();
     for (hand, &node) in drives.hands.iter().zip(&mesh.support_node) {
         let Some(hand) = hand else { continue };

@@ -6,7 +6,7 @@ use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
 use crate::model::spans::boundary::{ContactPath, SlideResult};
 use crate::model::spans::contact::{load_balance, point_load, slack_pocket};
-use crate::model::spans::results::{end_force, held_by, loose, wheel_force};
+use crate::model::spans::results::{end_force, loose, obstacle_force, wheel_force};
 use crate::model::spans::section::{CableEquilibrium, CableSection, Contact, EndCondition, Failure, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
 
@@ -101,13 +101,13 @@ fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (
             }
         }
         if let Some(loose) = &section.loose {
-            add(loose.held(context));
+            add(loose.obstacle_force(context));
         }
         for (j, c) in section.contacts.iter().enumerate() {
             add(match (c.wheel, c.is_load()) {
                 (Some(_), _) => -wheel_force(context, section, j).0,
                 (None, true) => -load_balance(section, context, j).sum,
-                (None, false) => held_by(&context.contact_path(c), c),
+                (None, false) => obstacle_force(&context.contact_path(c), c),
             });
             if let (Some([from, to]), None) = (loose(section, j), c.wheel) {
                 add(-context.load_between(from, to));

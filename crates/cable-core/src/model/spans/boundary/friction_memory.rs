@@ -209,7 +209,7 @@ impl TensionProfile {
     /// A profile of material laid from `start` to p₁ and to p₂ with a tension as constant as
     /// friction allows on every slope. It does not depend on the end from which the cable is
     /// counted.
-    pub fn laid(contact_path: &ContactPath<'_>, start: Breakpoint, [first, last]: [f64; 2]) -> Self {
+    pub fn of_laying(contact_path: &ContactPath<'_>, start: Breakpoint, [first, last]: [f64; 2]) -> Self {
         let way = |to: f64| {
             let mut breakpoints = vec![Breakpoint { mobilised: 0.0, ..start }];
             let (mut p, mut tension, mut s) = (start.coordinate, start.tension, start.arc_length);
@@ -243,17 +243,17 @@ impl TensionProfile {
     /// A profile laid from the middle of its length with a tension there, N. Missing or surplus
     /// material is shared by both ends, and no end has less than that tension: weight that hangs
     /// down on both sides of a crest is held there.
-    pub fn laid_from_middle(contact_path: &ContactPath<'_>, e: &Ends, tension: f64) -> Self {
+    pub fn of_laying_from_middle(contact_path: &ContactPath<'_>, e: &Ends, tension: f64) -> Self {
         let middle = Breakpoint {
             coordinate: contact_path.middle(e.place),
             arc_length: 0.5 * (e.material[0] + e.material[1]),
             tension,
             mobilised: 0.0,
         };
-        let mut laid = Self::laid(contact_path, middle, e.place);
+        let mut laid = Self::of_laying(contact_path, middle, e.place);
         let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
         if missing > 0.0 {
-            laid = Self::laid(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.place);
+            laid = Self::of_laying(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.place);
         }
         let off = laid.ends().map_or(0.0, |[a, b]| middle.arc_length - 0.5 * (a.arc_length + b.arc_length));
         laid.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.arc_length += off);
@@ -494,7 +494,7 @@ impl TensionProfile {
         contact_path: &ContactPath<'_>,
         e: &Ends,
         mode: Mode,
-        held: Option<StickZone>,
+        stick_zone: Option<StickZone>,
         old: &mut Self,
     ) {
         let [first, last] = [0, 1].map(|k| Breakpoint {
@@ -510,7 +510,7 @@ impl TensionProfile {
         }
         match mode {
             Mode::Slip(m) => self.commit_slip(contact_path, e, [first, last], m),
-            Mode::Stick => match held.unwrap_or_else(|| self.hold(contact_path, e)) {
+            Mode::Stick => match stick_zone.unwrap_or_else(|| self.hold(contact_path, e)) {
                 StickZone::Between(fronts) => {
                     old.clone_from(self);
                     self.commit_stick(contact_path, [first, last], fronts, old);
@@ -560,7 +560,7 @@ impl TensionProfile {
         let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
         let bed = ContactPath { friction: contact_path.friction_of_loose, ..*contact_path };
         let begin = Breakpoint { tension: 0.0, ..if drawn == 1 { a } else { b } };
-        let laid = Self::laid(&bed, begin, [a.coordinate, b.coordinate]);
+        let laid = Self::of_laying(&bed, begin, [a.coordinate, b.coordinate]);
         if drawn == 0 {
             self.push(Breakpoint { mobilised: m, ..first });
         }

@@ -18,7 +18,7 @@ const CHANGES_BEFORE_STORING: usize = 4;
 #[derive(Debug, Default)]
 pub(super) struct CycleSearch {
     changes: usize,
-    kept: Vec<Contact>,
+    contacts: Vec<Contact>,
     repeats: usize,
 }
 
@@ -27,14 +27,14 @@ impl CycleSearch {
     pub fn returns(&mut self, section: &CableSection) -> bool {
         self.changes += 1;
         if self.changes >= CHANGES_BEFORE_STORING && self.changes.is_power_of_two() {
-            self.kept.clone_from(&section.contacts);
+            self.contacts.clone_from(&section.contacts);
             self.repeats = 0;
             return false;
         }
         let within = SAME_PLACE_FRACTION * (section.to - section.from);
         if self.changes > CHANGES_BEFORE_STORING
-            && self.kept.len() == section.contacts.len()
-            && self.kept.iter().zip(&section.contacts).all(|(a, b)| are_alike(a, b, within))
+            && self.contacts.len() == section.contacts.len()
+            && self.contacts.iter().zip(&section.contacts).all(|(a, b)| are_alike(a, b, within))
         {
             self.repeats += 1;
         }

@@ -50,8 +50,8 @@ pub(in crate::model::spans) fn rows(
         Mode::Slip(m) if contact_path.floored && !lifted => (drawn(contact_path, e, end_points, m), None),
         Mode::Slip(m) => (sliding(contact_path, history, e, end_points, m), None),
         Mode::Stick => {
-            let held = history.hold(contact_path, e);
-            let (mut out, fronts) = match held {
+            let stick_zone = history.hold(contact_path, e);
+            let (mut out, fronts) = match stick_zone {
                 // Beyond the friction cone the rows of sticking continue smoothly: the mode
                 // changes, not the rows.
                 StickZone::Between(fronts) | StickZone::Beyond(_, fronts) => {
@@ -68,7 +68,7 @@ pub(in crate::model::spans) fn rows(
                     pin(&mut out, contact_path, history, e, side, &fronts[side]);
                 }
             }
-            (out, Some(held))
+            (out, Some(stick_zone))
         }
     }
 }
@@ -147,14 +147,14 @@ fn sliding(
 ) -> ContactEquations {
     let way = contact_path.slide(e.place[0], e.place[1], e.tension[0], m);
     let slope = contact_path.law.slope(a, e.tension[0], m);
-    let (mut held, mut held_by) = (0.0, 0.0);
+    let (mut drag_force, mut drag_by_place) = (0.0, 0.0);
     if contact_path.drag > 0.0 {
         let (t, s) = history.at(contact_path, e.place[0]);
-        held = contact_path.drag * (s - e.material[0]);
-        held_by = contact_path.drag * a.stretch / contact_path.law.stretch(t);
+        drag_force = contact_path.drag * (s - e.material[0]);
+        drag_by_place = contact_path.drag * a.stretch / contact_path.law.stretch(t);
     }
     ContactEquations {
-        residual: [e.material[1] - e.material[0] - way.material, e.tension[1] - way.tension - held],
+        residual: [e.material[1] - e.material[0] - way.material, e.tension[1] - way.tension - drag_force],
         by: [
             [
                 a.stretch / contact_path.law.stretch(e.tension[0]) + way.material_by_tension * slope,
@@ -165,7 +165,7 @@ fn sliding(
                 0.0,
             ],
             [
-                way.by_tension * slope - held_by,
+                way.by_tension * slope - drag_by_place,
                 contact_path.drag,
                 -way.by_tension,
                 -contact_path.law.slope(b, way.tension, m),
@@ -260,7 +260,7 @@ pub(in crate::model::spans) fn next_mode(
     contact_path: &ContactPath<'_>,
     history: &TensionProfile,
     e: &Ends,
-    held: Option<StickZone>,
+    stick_zone: Option<StickZone>,
     mode: Mode,
     pinned: [bool; 2],
     patience: f64,
@@ -271,7 +271,7 @@ pub(in crate::model::spans) fn next_mode(
         return if friction <= 0.0 { Mode::Slip(0.0) } else { mode };
     }
     match mode {
-        Mode::Stick => match held.unwrap_or_else(|| history.hold(contact_path, e)) {
+        Mode::Stick => match stick_zone.unwrap_or_else(|| history.hold(contact_path, e)) {
             StickZone::Beyond(m, _) => {
                 // Round-off at the edge of the friction cone is not sliding.
                 let reached = contact_path.slide(e.place[0], e.place[1], e.tension[0], m).tension;

@@ -58,7 +58,7 @@ pub(in crate::model::spans) fn next_mode(
             if beyond { Mode::Slip(friction * along.signum()) } else { Mode::Stick }
         }
         Mode::Slip(m) => {
-            let moved = c.ends.place[0] - held_at(c);
+            let moved = c.ends.place[0] - place_before(c);
             let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.place[0].abs();
             if m == 0.0 || back { Mode::Stick } else { c.mode }
         }
@@ -85,7 +85,7 @@ pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, con
 }
 
 /// The place p of a load in the previous state.
-pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
+pub(in crate::model::spans) fn place_before(c: &Contact) -> f64 {
     c.history.breakpoints().first().map_or(c.ends.place[0], |k| k.coordinate)
 }
 
@@ -373,7 +373,7 @@ fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) ->
     Contact {
         ends,
         mode: if fresh { Mode::Slip(0.0) } else { Mode::Stick },
-        held: None,
+        stick_zone: None,
         history: TensionProfile::of_ends(&ends),
         mode_changes: 0,
         next: Connection::Span,

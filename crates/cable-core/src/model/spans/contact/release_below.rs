@@ -99,7 +99,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
     let mode = if context.friction(c) > 0.0 { Mode::Stick } else { c.mode };
     let history = c.history.clone();
     let c = &mut section.contacts[j];
-    (c.mode, c.held) = (mode, None);
+    (c.mode, c.stick_zone) = (mode, None);
     match touches {
         [true, true] => {
             let mut other = c.clone();
@@ -128,7 +128,7 @@ pub(in crate::model::spans) fn part(section: &mut CableSection, context: &SolveC
 /// The friction memory of the contact after the present state.
 fn after(contact_path: &ContactPath<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
-    past.commit(contact_path, &c.ends, c.mode, c.held, &mut TensionProfile::default());
+    past.commit(contact_path, &c.ends, c.mode, c.stick_zone, &mut TensionProfile::default());
     past
 }
 

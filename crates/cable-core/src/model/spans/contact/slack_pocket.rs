@@ -99,17 +99,17 @@ pub(in crate::model::spans) fn heap(
     if b.ends.material[0] <= a.ends.material[1] {
         return Some(borne);
     }
-    let held = -context.load_between(a.ends.material[1], b.ends.material[0]);
+    let load = -context.load_between(a.ends.material[1], b.ends.material[0]);
     let both = cross(borne[0].normal, borne[1].normal);
-    let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];
+    let press = [cross(load, borne[1].normal) / both, cross(borne[0].normal, load) / both];
     if press.iter().all(|n| *n >= 0.0) {
         (borne[0].press, borne[1].press) = (press[0], press[1]);
         return Some(borne);
     }
     let side = usize::from(!(press[1] < 0.0));
     let edge = &mut borne[side];
-    (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
-    let most = context.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * held.norm();
+    (edge.press, edge.friction) = (load.dot(&edge.normal), load.dot(&edge.tangent));
+    let most = context.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * load.norm();
     (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 

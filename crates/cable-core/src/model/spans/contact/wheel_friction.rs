@@ -50,7 +50,7 @@ pub(in crate::model) struct WheelFriction {
     curve: Curve,
     history: TensionProfile,
     mode: Mode,
-    held: Option<StickZone>,
+    stick_zone: Option<StickZone>,
 }
 
 impl From<&WheelEnds> for Ends {
@@ -64,7 +64,12 @@ impl WheelFriction {
     /// the other way (−1).
     pub fn new(radius: f64, friction: f64, facing: f64) -> Self {
         let mode = if friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) };
-        Self { curve: Curve::wheel(radius, friction, facing), history: TensionProfile::default(), mode, held: None }
+        Self {
+            curve: Curve::wheel(radius, friction, facing),
+            history: TensionProfile::default(),
+            mode,
+            stick_zone: None,
+        }
     }
 
     fn contact_path(&self, on: &CableProperties) -> ContactPath<'_> {
@@ -100,7 +105,7 @@ impl WheelFriction {
             points.iter().map(|&[p, s, tension]| Breakpoint::frictionless(p, s, tension)).collect();
         let friction = self.curve.friction;
         self.history = TensionProfile::through(&self.contact_path(on), &breakpoints, 1.0);
-        self.held = None;
+        self.stick_zone = None;
         if let (Some(a), Some(b), true) = (breakpoints.first(), breakpoints.last(), friction > 0.0)
             && b.coordinate > a.coordinate
         {
@@ -116,8 +121,8 @@ impl WheelFriction {
     pub fn rows(&mut self, on: &CableProperties, ends: &WheelEnds) -> WheelEquations {
         let (e, contact_path) = (Ends::from(ends), self.contact_path(on));
         let end_points = e.place.map(|p| contact_path.place(p));
-        let (rows, held) = equations::rows(&contact_path, &self.history, &e, &end_points, self.mode, [false; 2]);
-        self.held = held;
+        let (rows, stick_zone) = equations::rows(&contact_path, &self.history, &e, &end_points, self.mode, [false; 2]);
+        self.stick_zone = stick_zone;
         WheelEquations { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
 

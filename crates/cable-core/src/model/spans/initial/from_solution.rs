@@ -55,7 +55,7 @@ pub(in crate::model::spans) fn sections_of(
         }
         pulleys(part, context, instant, &mut stations);
         place_on_boundaries(layout, context, &mut stations);
-        laid(layout, part, context, instant, &stations, within)
+        section_of(layout, part, context, instant, &stations, within)
     };
     layout.sections.iter().map(section).collect()
 }
@@ -129,7 +129,7 @@ fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations:
 }
 
 /// A section with contacts where its stations lie.
-fn laid(
+fn section_of(
     layout: &SectionLayout,
     part: &SectionBounds,
     context: &SolveContext,

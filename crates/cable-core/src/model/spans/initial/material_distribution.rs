@@ -69,13 +69,13 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
     for (j, c) in section.contacts.iter_mut().enumerate() {
         let contact_path = context.contact_path(c);
         let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
-        let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
+        let supported = [tied[0] && j == 0, tied[1] && j + 1 == n];
         for side in 0..2 {
             if let EndCondition::Loose(force) = section.end_conditions[side] {
                 c.ends.tension[side] = if free[side] { context.pull(c, side, force) } else { c.ends.tension[side] };
             }
         }
-        c.history = lay_down(&contact_path, &c.ends, [free, held]);
+        c.history = lay_down(&contact_path, &c.ends, [free, supported]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..END_FIT_ROUNDS {
@@ -84,7 +84,7 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
                 let (tension, s) = c.history.at(&contact_path, c.ends.place[other]);
                 let off = (s - c.ends.material[other]) * context.law.stretch(tension);
                 c.ends.place[side] += if other == side { -off } else { off };
-                c.history = lay_down(&contact_path, &c.ends, [free, held]);
+                c.history = lay_down(&contact_path, &c.ends, [free, supported]);
             }
         }
     }
@@ -93,16 +93,16 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
 /// The profile of a newly laid contact: from its free end, where its tension is known, or its held
 /// end, where its material is known; else from its middle. With two free ends it has the tension of
 /// the one that draws less.
-fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
-    let start = match (free, held) {
+fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, supported]: [[bool; 2]; 2]) -> TensionProfile {
+    let start = match (free, supported) {
         ([true, false], _) | ([false, false], [true, false]) => e.breakpoint(0),
         ([false, true], _) | ([false, false], [false, true]) => e.breakpoint(1),
         ([true, true], _) => {
-            return TensionProfile::laid_from_middle(contact_path, e, smaller(e.tension[0], e.tension[1]));
+            return TensionProfile::of_laying_from_middle(contact_path, e, smaller(e.tension[0], e.tension[1]));
         }
         ([false, false], _) => {
-            return TensionProfile::laid_from_middle(contact_path, e, 0.5 * (e.tension[0] + e.tension[1]));
+            return TensionProfile::of_laying_from_middle(contact_path, e, 0.5 * (e.tension[0] + e.tension[1]));
         }
     };
-    TensionProfile::laid(contact_path, start, e.place)
+    TensionProfile::of_laying(contact_path, start, e.place)
 }

@@ -39,6 +39,6 @@ pub(in crate::model::spans) fn equalise_tensions(section: &mut CableSection, con
     tighten(section, context);
     for c in &mut section.contacts {
         let even = 0.5 * (c.ends.tension[0] + c.ends.tension[1]);
-        c.history = TensionProfile::laid_from_middle(&context.contact_path(c), &c.ends, even);
+        c.history = TensionProfile::of_laying_from_middle(&context.contact_path(c), &c.ends, even);
     }
 }

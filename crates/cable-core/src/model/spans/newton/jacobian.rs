@@ -188,9 +188,9 @@ fn chord_rows(section: &CableSection, context: &SolveContext, k: usize, system: 
     let (r, band) = (&mut system.residual, &mut system.band);
     let before = k.checked_sub(1).map(|j| &system.end_points[j].0[1]);
     let after = system.end_points.get(k).map(|s| &s.0[0]);
-    let held = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
-    let start_at = before.map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.at));
-    let end_at = after.map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.at));
+    let support_place = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
+    let start_at = before.map_or_else(|| support_place(&section.end_conditions[0]), |s| Some(s.at));
+    let end_at = after.map_or_else(|| support_place(&section.end_conditions[1]), |s| Some(s.at));
     let (Some(a), Some(b)) = (start_at, end_at) else { return };
     let (from, to) = section.material(k);
     let (start, end) = (section.force(context, k, from), section.force(context, k, to));
@@ -230,7 +230,7 @@ fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &
     b.add(row + 2, row + 2, scale);
     b.add(row + 2, row, -scale);
     let Mode::Slip(m) = c.mode else {
-        r[row + 1] = (p - point_load::held_at(c)) * scale;
+        r[row + 1] = (p - point_load::place_before(c)) * scale;
         b.add(row + 1, row, scale);
         return;
     };
@@ -358,8 +358,9 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
     let (end_points, cached_piece) = &system.end_points[j];
     let c = &section.contacts[j];
     let contact_path = ContactPath { cached_piece: Some(*cached_piece), ..context.contact_path(c) };
-    let (rows, held) = equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
-    section.contacts[j].held = held;
+    let (rows, stick_zone) =
+        equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
+    section.contacts[j].stick_zone = stick_zone;
     let [t1, t2] = section.contacts[j].ends.tension.map(f64::abs);
     let tension = larger(larger(t1, t2), MIN_FORCE_LENGTH_M * context.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale(section) });

@@ -336,13 +336,13 @@ fn required_mode(
         return point_load::next_mode(section, context, j, patience);
     }
     // A contact that sticks within its friction cone stays so, and a frictionless one slides.
-    if matches!((c.mode, c.held), (Mode::Stick, Some(StickZone::Between(_) | StickZone::Meet(_))))
+    if matches!((c.mode, c.stick_zone), (Mode::Stick, Some(StickZone::Between(_) | StickZone::Meet(_))))
         && context.friction(c) > 0.0
     {
         return c.mode;
     }
     let contact_path = ContactPath { cached_piece: system.end_points.get(j).map(|s| s.1), ..context.contact_path(c) };
-    equations::next_mode(&contact_path, &c.history, &c.ends, c.held, c.mode, pinned(section, j), patience)
+    equations::next_mode(&contact_path, &c.history, &c.ends, c.stick_zone, c.mode, pinned(section, j), patience)
 }
 
 /// True if every contact is in the mode that its state requires; `system` is assembled at that

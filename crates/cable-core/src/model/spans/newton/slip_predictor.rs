@@ -121,12 +121,12 @@ fn span(section: &CableSection, context: &SolveContext, end_points: &[ContactPla
     }
     let (from, to) = section.material(k);
     let forces = [section.force(context, k, from), section.force(context, k, to)];
-    let held = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
+    let support_place = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
     let before = k
         .checked_sub(1)
         .and_then(|j| end_points.get(j))
-        .map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.0[1].at));
-    let after = end_points.get(k).map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.0[0].at));
+        .map_or_else(|| support_place(&section.end_conditions[0]), |s| Some(s.0[1].at));
+    let after = end_points.get(k).map_or_else(|| support_place(&section.end_conditions[1]), |s| Some(s.0[0].at));
     // A hanging span keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());

@@ -31,7 +31,7 @@ pub(in crate::model::spans) fn stable(
     let mut stuck = section.clone();
     for c in &mut stuck.contacts {
         let contact_path = context.contact_path(c);
-        c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
+        c.history.commit(&contact_path, &c.ends, c.mode, c.stick_zone, &mut workspace.past);
         c.mode = Mode::Stick;
     }
     let mut is_negative = |section: &mut CableSection| {

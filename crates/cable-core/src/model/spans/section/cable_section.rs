@@ -66,7 +66,7 @@ pub(in crate::model::spans) struct Contact {
     pub ends: Ends,
     pub mode: Mode,
     /// The stick zone at its present tensions, if it was computed.
-    pub held: Option<StickZone>,
+    pub stick_zone: Option<StickZone>,
     pub history: TensionProfile,
     /// Index of the pulley's support, if it is a wheel.
     pub wheel: Option<usize>,
@@ -150,7 +150,7 @@ impl Contact {
             chain_range,
             ends,
             mode,
-            held: None,
+            stick_zone: None,
             history: TensionProfile::default(),
             wheel: None,
             mode_changes: 0,

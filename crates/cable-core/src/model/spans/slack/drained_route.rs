@@ -93,12 +93,12 @@ impl DrainedRoute {
 
     /// Lays the ends that nothing holds on what is below them: of a route that ends above it no
     /// cable stays in the air.
-    pub fn lay_free_ends(&mut self, held: [bool; 2]) {
+    pub fn lay_free_ends(&mut self, has_support: [bool; 2]) {
         let hangs = |leg: Option<&RouteLeg>| matches!(leg, Some(RouteLeg::Hangs { .. }));
-        if !held[0] && hangs(self.legs.first()) {
+        if !has_support[0] && hangs(self.legs.first()) {
             self.legs.remove(0);
         }
-        if !held[1] && hangs(self.legs.last()) {
+        if !has_support[1] && hangs(self.legs.last()) {
             self.legs.pop();
         }
     }

@@ -40,25 +40,25 @@ pub(super) fn heap(
     best.map(|(_, k, found)| (k, found))
 }
 
-fn carried(context: &SolveContext, sides: [Option<(LyingStretch, BoundaryPoint)>; 2], held: Vec2) -> Option<Heap> {
+fn carried(context: &SolveContext, sides: [Option<(LyingStretch, BoundaryPoint)>; 2], load: Vec2) -> Option<Heap> {
     let at = sides.iter().flatten().next()?.1.at;
     let borne = |(s, place): (LyingStretch, BoundaryPoint)| BearingEdge {
         curve: s.curve,
         normal: place.normal,
         tangent: place.tangent,
-        press: held.dot(&place.normal),
-        friction: held.dot(&place.tangent),
+        press: load.dot(&place.normal),
+        friction: load.dot(&place.tangent),
     };
     let holds = |side: &(LyingStretch, BoundaryPoint)| {
         let b = borne(*side);
-        b.press >= 0.0 && b.friction.abs() <= side.0.friction(context) * b.press + CREST_CONE_ROUNDING * held.norm()
+        b.press >= 0.0 && b.friction.abs() <= side.0.friction(context) * b.press + CREST_CONE_ROUNDING * load.norm()
     };
     if let Some(one) = sides.iter().flatten().find(|s| holds(s)) {
         return Some(Heap { at, edges: [Some(borne(*one)), None] });
     }
     let [Some(a), Some(b)] = sides else { return None };
     let both = cross(a.1.normal, b.1.normal);
-    let press = [cross(held, b.1.normal) / both, cross(a.1.normal, held) / both];
+    let press = [cross(load, b.1.normal) / both, cross(a.1.normal, load) / both];
     let pressed =
         |side: (LyingStretch, BoundaryPoint), press: f64| Some(BearingEdge { press, friction: 0.0, ..borne(side) });
     press.iter().all(|n| *n >= 0.0).then(|| Heap { at, edges: [pressed(a, press[0]), pressed(b, press[1])] })

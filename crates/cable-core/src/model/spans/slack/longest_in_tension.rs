@@ -45,8 +45,8 @@ fn drained_length(
     let part = layout.sections.get(index)?;
     let [from, to] = part.material;
     let loaded = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
-    let held = part.supports.iter().all(Option::is_some) && part.pulleys.is_empty() && !loaded;
-    let frame = LoadFrame::of(context.law.load).filter(|_| held)?;
+    let between_supports = part.supports.iter().all(Option::is_some) && part.pulleys.is_empty() && !loaded;
+    let frame = LoadFrame::of(context.law.load).filter(|_| between_supports)?;
     let route = section_route(layout, part, instant).points;
     let bodies = layout.problem.world.geometry().bodies();
     let surfaces = UpperSurfaces::new(context, bodies.len(), frame);

@@ -14,7 +14,7 @@ impl LooseSection {
     }
 
     /// Force with which obstacles carry it, N.
-    pub fn held(&self, context: &SolveContext) -> Vec2 {
+    pub fn obstacle_force(&self, context: &SolveContext) -> Vec2 {
         let ends = [0, 1].map(|side| self.end_force(context, side));
         let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.arc_lengths[1] - a.arc_lengths[0]);
         ends[0] - ends[1] - context.law.load * s - self.drawn
@@ -22,7 +22,7 @@ impl LooseSection {
 
     /// Greatest friction force on the lying cable, N.
     pub fn friction(&self, context: &SolveContext) -> f64 {
-        let press = |p: &SlackPart| p.held(context).norm() * p.form.friction(context);
+        let press = |p: &SlackPart| p.obstacle_force(context).norm() * p.form.friction(context);
         self.parts.iter().map(press).sum()
     }
 

@@ -74,8 +74,8 @@ pub(in crate::model::spans) fn loose_section(
     let frame = LoadFrame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
     let bodies = layout.problem.world.geometry().bodies();
     let surfaces = UpperSurfaces::new(context, bodies.len(), frame);
-    let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
-    let ends = held.map(|h| h.is_some());
+    let support_places = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
+    let ends = support_places.map(|h| h.is_some());
     let drawn = [0, 1].map(|side| match part.supports[side] {
         None => layout.end_force(instant, part.material[side]),
         Some(_) => Vec2::zeros(),
@@ -87,12 +87,12 @@ pub(in crate::model::spans) fn loose_section(
         let lines = drape.lines(&surfaces, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
         let parts = pay_out(parts, &drape, part.material, drawn, ends)?;
-        let end_conditions = [0, 1].map(|k| held[k].map_or(EndCondition::Loose(drawn), EndCondition::Fixed));
+        let end_conditions = [0, 1].map(|k| support_places[k].map_or(EndCondition::Loose(drawn), EndCondition::Fixed));
         let loose = Some(LooseSection { parts, drawn });
         Some(CableSection { from, to, end_conditions, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
     };
     let along_route = || DrainedRoute::new(&surfaces, bodies, frame, &section_route(layout, part, instant).points);
-    match held {
+    match support_places {
         [Some(_), Some(_)] => section(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
             // The cable is laid out on the ground along its route, if it has one; else it comes
@@ -107,7 +107,7 @@ pub(in crate::model::spans) fn loose_section(
             })
             .or_else(|| {
                 let down = DrainedRoute::plumb_down(&surfaces, bodies, frame, at)?;
-                section(if held[0].is_some() { down } else { down.back() })
+                section(if support_places[0].is_some() { down } else { down.back() })
             })
         }
         [None, None] => None,

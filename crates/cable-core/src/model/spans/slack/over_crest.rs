@@ -68,22 +68,22 @@ impl SlackSolver<'_> {
     pub(super) fn chain(
         &self,
         lines: &[SlackForm],
-        held: [bool; 2],
+        has_support: [bool; 2],
         near: [Option<Vec2>; 2],
         out: &mut Vec<SlackPart>,
     ) -> Result<bool, Option<usize>> {
         let (first, last) = (self.hanging_length(lines.first()), self.hanging_length(lines.last()));
         if let ([_], Some(alone)) = (lines, first) {
             // The cable goes down from a support, or up to one.
-            let begins = held[0] && self.rise(alone.0) < 0.0;
-            let ends = held[1] && self.rise(alone.0) > 0.0;
+            let begins = has_support[0] && self.rise(alone.0) < 0.0;
+            let ends = has_support[1] && self.rise(alone.0) > 0.0;
             out.push(self.hanging_part(alone.0, alone.1));
             return if begins || ends { Ok(false) } else { Err(None) };
         }
-        if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
+        if (has_support[0] && first.is_some()) || (has_support[1] && last.is_some()) {
             return Err(None);
         }
-        let crest = self.crest_tensions(lines, held, near, [first, last])?;
+        let crest = self.crest_tensions(lines, has_support, near, [first, last])?;
         if let Some(found) = crest.bridge.as_ref().filter(|_| crest.tight == Some(0)) {
             // This replaces the plumb leg.
             out.pop();
@@ -119,7 +119,7 @@ impl SlackSolver<'_> {
     fn crest_tensions(
         &self,
         lines: &[SlackForm],
-        held: [bool; 2],
+        has_support: [bool; 2],
         near: [Option<Vec2>; 2],
         hung: [Option<([Vec2; 2], f64)>; 2],
     ) -> Result<CrestTensions, Option<usize>> {
@@ -139,8 +139,8 @@ impl SlackSolver<'_> {
         }
         let forth = self.profile(&stretches, &walls, 0, ends[0]).ok_or(None)?;
         let back = self.profile(&stretches, &walls, 1, ends[1]).ok_or(None)?;
-        let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
-        let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
+        let begins_tight = !has_support[0] && back.leaves > ends[0] + self.most;
+        let ends_tight = !has_support[1] && forth.leaves > ends[1] + self.most;
         let (tight, bridge) = match (begins_tight, ends_tight) {
             (true, false) => (Some(0), near[0].and_then(|at| self.bridge(&back, at, 0))),
             (false, true) => (Some(1), near[1].and_then(|at| self.bridge(&forth, at, 1))),

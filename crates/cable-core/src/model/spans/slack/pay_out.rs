@@ -25,12 +25,12 @@ pub(super) fn pay_out(
     drape: &SlackSolver<'_>,
     [from, to]: [f64; 2],
     drawn: Vec2,
-    held: [bool; 2],
+    has_support: [bool; 2],
 ) -> Option<Vec<SlackPart>> {
     let own = |p: &SlackPart| p.arc_lengths[1] - p.arc_lengths[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
     if !(over > EXCESS_CABLE_FRACTION * (to - from)) {
-        cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
+        cut(&mut parts, has_support.iter().position(|h| !h)?, -over)?;
         over = 0.0;
     }
     let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();

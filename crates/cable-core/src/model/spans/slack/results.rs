@@ -102,7 +102,7 @@ impl SlackPart {
     }
 
     /// The force of the obstacles that carry it, N.
-    pub(super) fn held(&self, context: &SolveContext) -> Vec2 {
+    pub(super) fn obstacle_force(&self, context: &SolveContext) -> Vec2 {
         match &self.form {
             SlackForm::Hangs(_) | SlackForm::Spans { .. } => Vec2::zeros(),
             SlackForm::Lies(_) => {
@@ -189,15 +189,15 @@ impl LooseRun {
             nodes.push(ShapePoint { arc_length, at: place.at, force: place.tangent * tension, curvature });
             if k > 0 {
                 let own = law.load * (arc_length - before.1);
-                let held = before.0.tangent * before.2 - place.tangent * tension - own;
+                let force = before.0.tangent * before.2 - place.tangent * tension - own;
                 let f = (k as f64 - 0.5) / count as f64;
                 let middle = s.place(context, p0 + (p1 - p0) * f);
-                let press = held.dot(&middle.normal);
+                let press = force.dot(&middle.normal);
                 self.normal += press;
                 self.push += middle.normal * press;
-                self.along += held.dot(&middle.tangent);
+                self.along += force.dot(&middle.tangent);
                 let s = 0.5 * (before.1 + arc_length);
-                self.samples.push(ContactSample::new(s, held));
+                self.samples.push(ContactSample::new(s, force));
                 self.at.push((s, middle.at));
             }
             before = here;

@@ -70,7 +70,7 @@ impl SlackSolver<'_> {
 
     /// All parts with their tensions and their material; None if a crest does not hold. A cable
     /// that is drawn tight in a kink continues through it.
-    pub fn parts(&self, lines: &[SlackForm], held: [bool; 2]) -> Option<Vec<SlackPart>> {
+    pub fn parts(&self, lines: &[SlackForm], has_support: [bool; 2]) -> Option<Vec<SlackPart>> {
         let mut stops = vec![0];
         for k in 1..lines.len() {
             if self.rests(&lines[k - 1], &lines[k])? {
@@ -79,12 +79,12 @@ impl SlackSolver<'_> {
         }
         stops.push(lines.len());
         loop {
-            let tight = match self.chains(lines, &stops, held) {
+            let tight = match self.chains(lines, &stops, has_support) {
                 Ok(parts) => return Some(parts),
                 Err(stop) => stop?,
             };
             // The plumb leg of a support itself is not merged.
-            let inner = |k: usize| (k > 0 || !held[0]) && (k + 1 < lines.len() || !held[1]);
+            let inner = |k: usize| (k > 0 || !has_support[0]) && (k + 1 < lines.len() || !has_support[1]);
             match lines.get(tight.checked_sub(1)?..=tight)? {
                 [SlackForm::Lies(a), SlackForm::Lies(b)] if self.bends_in(a, b) => {}
                 [SlackForm::Lies(_), SlackForm::Hangs(h)] if self.rise(*h) > 0.0 && inner(tight) => {}
@@ -97,7 +97,12 @@ impl SlackSolver<'_> {
 
     /// The parts between the points without tension; or the one of these points at which there is
     /// tension, if that is the cause of failure.
-    fn chains(&self, lines: &[SlackForm], stops: &[usize], held: [bool; 2]) -> Result<Vec<SlackPart>, Option<usize>> {
+    fn chains(
+        &self,
+        lines: &[SlackForm],
+        stops: &[usize],
+        has_support: [bool; 2],
+    ) -> Result<Vec<SlackPart>, Option<usize>> {
         let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &SlackForm, end: usize| match line {
             SlackForm::Hangs(ends) => Some(ends[end]),
@@ -106,11 +111,11 @@ impl SlackSolver<'_> {
         for pair in stops.windows(2) {
             let (begin, end) = (pair[0], pair[1]);
             let near = [
-                if held[0] && begin == 1 { support(&lines[0], 0) } else { None },
-                if held[1] && end + 1 == lines.len() { support(&lines[end], 1) } else { None },
+                if has_support[0] && begin == 1 { support(&lines[0], 0) } else { None },
+                if has_support[1] && end + 1 == lines.len() { support(&lines[end], 1) } else { None },
             ];
             if end < lines.len() || !bridged {
-                let ends = [begin == 0 && held[0], end == lines.len() && held[1]];
+                let ends = [begin == 0 && has_support[0], end == lines.len() && has_support[1]];
                 let tight = |side: Option<usize>| side.map(|side| pair[side]);
                 bridged = self.chain(&lines[begin..end], ends, near, &mut out).map_err(tight)?;
             }

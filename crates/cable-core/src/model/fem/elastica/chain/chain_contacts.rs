@@ -50,7 +50,7 @@ impl BarChain<'_> {
     fn for_each_pair(&self, x: &[Vec2], reach: f64, mut out: impl FnMut(usize, Pair)) {
         let geometry = self.chain_input.problem.world.geometry();
         for k in 0..x.len() {
-            if !self.held[k] {
+            if !self.fixity[k] {
                 let before = k.checked_sub(1).and_then(|k| x.get(k)).copied();
                 geometry.node_pairs(before, x[k], x.get(k + 1).copied(), reach, &mut |p| {
                     let at_end = k + 1 == x.len();
@@ -73,7 +73,7 @@ impl BarChain<'_> {
                 deepest = larger(deepest, -g.gap_m);
             }
         };
-        x.iter().zip(&self.held).filter(|(_, held)| !**held).for_each(|(p, _)| measure(*p));
+        x.iter().zip(&self.fixity).filter(|(_, held)| !**held).for_each(|(p, _)| measure(*p));
         for (a, b) in x.iter().zip(x.iter().skip(1)) {
             // A bar may cut off the corner nearest to it.
             world.geometry().segment_pairs(*a, *b, self.bar, &mut |p| measure(a + (b - a) * p.gap.fraction));

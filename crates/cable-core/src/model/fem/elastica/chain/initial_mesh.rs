@@ -106,7 +106,7 @@ impl<'a> BarChain<'a> {
             rest: Vec::new(),
             unstretched: Vec::new(),
             tension: Vec::new(),
-            held: Vec::new(),
+            fixity: Vec::new(),
             clamps: Vec::new(),
             load: Vec::new(),
             contacts: Vec::new(),
@@ -120,7 +120,7 @@ impl<'a> BarChain<'a> {
         chain.add_bars(curve);
         push_chain_out(
             problem,
-            &chain.held,
+            &chain.fixity,
             &|_, _| false,
             &mut chain.positions,
             FIRST_CLEARANCE_FRACTION * problem.radius,
@@ -139,7 +139,7 @@ impl<'a> BarChain<'a> {
         }
         let n = self.arc.len();
         self.positions = self.arc.iter().map(|&s| curve.position_at(s)).collect();
-        self.held = vec![false; n];
+        self.fixity = vec![false; n];
         self.load = vec![Vec2::zeros(); n];
     }
 
@@ -150,7 +150,7 @@ impl<'a> BarChain<'a> {
             let k = self.arc.partition_point(|a| *a < station.arc - same).min(n - 1);
             if let Some(at) = station.position {
                 self.positions[k] = at;
-                self.held[k] = true;
+                self.fixity[k] = true;
             }
             if let Some(angle) = station.angle {
                 let direction = Vec2::new(angle.cos(), angle.sin());

@@ -106,7 +106,7 @@ pub(super) struct BarChain<'a> {
     /// Tension of each bar, N.
     tension: Vec<f64>,
     /// True for nodes that a support holds.
-    held: Vec<bool>,
+    fixity: Vec<bool>,
     clamps: Vec<ChainClamp>,
     /// Weight, wind and dead loads at each node, N.
     load: Vec<Vec2>,

@@ -149,7 +149,7 @@ impl BarChain<'_> {
         for t in self.contacts.iter().filter(|t| t.active) {
             self.add_contact(matrix, right, t, hessian);
         }
-        for (k, _) in self.held.iter().enumerate().filter(|(_, held)| **held) {
+        for (k, _) in self.fixity.iter().enumerate().filter(|(_, held)| **held) {
             for i in [2 * k, 2 * k + 1] {
                 matrix.pin(i);
                 right[i] = 0.0;
@@ -282,7 +282,7 @@ impl BarChain<'_> {
         }
         for t in self.contacts.iter().filter(|t| t.rubs()) {
             let k = self.direction(t.node) * t.gap.normal.transpose() * (t.mobilised * self.contact_stiffness());
-            let free = |(i, _): &(usize, f64)| !self.held[*i];
+            let free = |(i, _): &(usize, f64)| !self.fixity[*i];
             for (i, a) in t.shares().into_iter().filter(free) {
                 for (j, b) in t.shares().into_iter().filter(free) {
                     for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {

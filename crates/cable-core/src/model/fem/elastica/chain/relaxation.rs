@@ -230,7 +230,7 @@ impl BarChain<'_> {
     fn perturb(&mut self, waves: usize) {
         let n = self.positions.len();
         let from = self.positions.clone();
-        for k in (1..n - 1).filter(|&k| !self.held[k]) {
+        for k in (1..n - 1).filter(|&k| !self.fixity[k]) {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
             let size = PERTURBATION_FRACTION * self.chain_input.problem.radius * phase.sin();
@@ -276,7 +276,7 @@ impl BarChain<'_> {
             across * (if across.dot(&up) < 0.0 { -1.0 } else { 1.0 } / larger(chord.norm(), f64::MIN_POSITIVE));
         let height = 2.0 * length / std::f64::consts::PI * (push / self.chain_input.problem.axial_stiffness).sqrt();
         let mut moves = vec![Vec2::zeros(); self.positions.len()];
-        for k in (from + 1..to).filter(|&k| !self.held[k]) {
+        for k in (from + 1..to).filter(|&k| !self.fixity[k]) {
             let part = (self.arc[k] - self.arc[from]) / (self.arc[to] - self.arc[from]);
             moves[k] = across * (height * (std::f64::consts::PI * part).sin());
         }

@@ -134,12 +134,12 @@ impl SegmentCursor<'_> {
             (law.theta(u) - law.theta(t)) / (law.edge_rate(&self.from, m) - law.edge_rate(&self.from, n))
         } else {
             // This estimate takes the load at the start for the whole piece.
-            let held = |t: f64, m: f64| {
+            let friction_load = |t: f64, m: f64| {
                 let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
                 let [bt, bn] = self.from.load;
                 t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
             };
-            (held(u, n) / held(t, m)).ln() / (m - n)
+            (friction_load(u, n) / friction_load(t, m)).ln() / (m - n)
         };
         // Parallel tensions meet nowhere; NaN counts as outside, too.
         let part = about / whole;
