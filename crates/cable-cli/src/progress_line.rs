@@ -26,7 +26,7 @@ impl WaitingNotice {
                 eprintln!("cable: no resting place yet after {:.0} s (Ctrl+C ends)", began.elapsed().as_secs_f64());
             }
         };
-        let told = std::thread::Builder::new().name("waiting".to_owned()).spawn(tell);
-        Self { _end: told.is_ok().then_some(end) }
+        let thread = std::thread::Builder::new().name("waiting".to_owned()).spawn(tell);
+        Self { _end: thread.is_ok().then_some(end) }
     }
 }

@@ -258,7 +258,7 @@ impl CheckedCable<'_> {
 
 /// Supports and loads on a cable at a time, s.
 fn point_forces(scene: &Scene, cable: &Cable, holds: &[SupportHold<'_>], time_s: f64) -> Vec<AppliedForce> {
-    let held = holds.iter().filter_map(|hold| {
+    let places = holds.iter().filter_map(|hold| {
         let force = match hold.role {
             Role::Load => hold.dead_load(scene, time_s),
             Role::Held | Role::Pulley => hold.force(),
@@ -270,5 +270,5 @@ fn point_forces(scene: &Scene, cable: &Cable, holds: &[SupportHold<'_>], time_s:
         let force = series(l.force_n, &l.times_s, &l.forces_n, time_s);
         AppliedForce { arc_length: l.arc_length_m, force }
     });
-    held.chain(loads).collect()
+    places.chain(loads).collect()
 }

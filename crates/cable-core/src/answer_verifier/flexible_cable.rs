@@ -226,9 +226,9 @@ fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbo
     let touches = |bar: usize| !near.of(bar).is_empty();
     let last = bar.index + 2 == checked.answer.nodes.len();
     // Cable that hangs free beside the bar would give way.
-    let held = (bar.index == 0 || touches(bar.index - 1)) && (last || touches(bar.index + 1));
+    let is_supported = (bar.index == 0 || touches(bar.index - 1)) && (last || touches(bar.index + 1));
     let on_itself = || checked.self_contact_forces().next().is_some();
-    if !held || checked.floor_rubs() || touches(bar.index) || checked.is_at_wheel(bar.index) || on_itself() {
+    if !is_supported || checked.floor_rubs() || touches(bar.index) || checked.is_at_wheel(bar.index) || on_itself() {
         return false;
     }
     let depth = (0.375 * bar.way.norm() * missing).sqrt();

@@ -13,7 +13,7 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
     let allowed = (DEPTH_DIAMETERS * checked.cable.diameter_m).min(to_scale);
     let nodes = &checked.answer.nodes;
     // If the scene itself holds the axis on a surface, the cable is as deep there as its radius.
-    let held = checked.support_places();
+    let support_places = checked.support_places();
     let on_surface = MATERIAL_TOLERANCE * checked.cable.length_m;
     for (k, n) in nodes.iter().enumerate() {
         // After a bar without near obstacles the depth is that of the node before.
@@ -21,7 +21,7 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
             continue;
         }
         if let Some((body, depth)) = checked.surroundings.inside(n.at()) {
-            if depth <= on_surface && held.contains(&n.at()) {
+            if depth <= on_surface && support_places.contains(&n.at()) {
                 continue;
             }
             let mut finding = checked.finding(Law::Penetration, k, depth + radius, allowed);
@@ -40,7 +40,7 @@ pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verifica
         for n in near.of(k) {
             let value = radius - n.distance;
             let end = n.at == pair[0].at() || n.at == pair[1].at();
-            let given = if held.contains(&n.at) { radius } else { 0.0 };
+            let given = if support_places.contains(&n.at) { radius } else { 0.0 };
             let limit = allowed + given + if end { 0.0 } else { sagitta };
             if !(value <= limit) {
                 let mut finding = checked.finding(Law::Penetration, k, value, limit);

@@ -53,13 +53,13 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
         // its weight.
         let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
         let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
-        for (told, force, beside) in [
+        for (reported_n, force, beside) in [
             (led.reaction.tension_before_n, before, [first - 1, touches[0]]),
             (led.reaction.tension_after_n, after, [touches[1], last + 1]),
         ] {
             let [a, b] = beside.map(|k| nodes[k].arc_length_m);
             let limit = REPORTED_BALANCE * checked.scale + checked.body.norm() * (b - a);
-            tell(Law::Tension, told.map_or(0.0, |t| (t - force.norm()).abs()), limit);
+            tell(Law::Tension, reported_n.map_or(0.0, |t| (t - force.norm()).abs()), limit);
         }
     }
 }

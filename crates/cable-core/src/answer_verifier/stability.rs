@@ -28,8 +28,8 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     let mut holds = vec![None; nodes.len()];
     for hold in checked.holds.iter().filter(|h| !matches!(h.role, Role::Clear { .. } | Role::Load | Role::Released)) {
         let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
-        if let Some(held) = holds.get_mut(node) {
-            *held = Some(hold.support.kind == SupportKind::Clamped);
+        if let Some(of_node) = holds.get_mut(node) {
+            *of_node = Some(hold.support.kind == SupportKind::Clamped);
         }
     }
     let mut bars = Vec::with_capacity(nodes.len());

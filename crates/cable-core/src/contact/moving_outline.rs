@@ -43,24 +43,24 @@ impl Outline {
     /// enclose no area.
     #[must_use]
     pub fn new(corners: &[Vec2], hitch: Vec2, placement: RigidPose, friction: f64, name: String) -> Option<Self> {
-        let mut kept: Vec<Vec2> = Vec::with_capacity(corners.len());
+        let mut outline: Vec<Vec2> = Vec::with_capacity(corners.len());
         for c in corners.iter().filter(|c| c.iter().all(|v| v.is_finite())) {
-            if kept.last() != Some(c) {
-                kept.push(*c);
+            if outline.last() != Some(c) {
+                outline.push(*c);
             }
         }
-        while kept.len() > 1 && kept.first() == kept.last() {
-            kept.pop();
+        while outline.len() > 1 && outline.first() == outline.last() {
+            outline.pop();
         }
-        let origin = kept.first().copied()?;
-        let area: f64 = kept.windows(2).map(|w| cross(w[0] - origin, w[1] - origin)).sum();
+        let origin = outline.first().copied()?;
+        let area: f64 = outline.windows(2).map(|w| cross(w[0] - origin, w[1] - origin)).sum();
         if !(area.abs() > 0.0) {
             return None;
         }
         if area > 0.0 {
-            kept.reverse();
+            outline.reverse();
         }
-        Some(Self { corners: kept, placement, friction, hitch, name })
+        Some(Self { corners: outline, placement, friction, hitch, name })
     }
 
     /// The edges at a placement, clockwise, m.

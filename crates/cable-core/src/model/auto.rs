@@ -18,8 +18,8 @@ pub enum Question {
 
 /// Returns whether pulleys alone hold the cable.
 fn runs_free(problem: &Problem) -> bool {
-    let held = |s: &SupportPoint| s.at.is_some() && s.kind != SupportKind::Pulley;
-    problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(held)
+    let is_in_place = |s: &SupportPoint| s.at.is_some() && s.kind != SupportKind::Pulley;
+    problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(is_in_place)
 }
 
 /// The model for a question, and the reason.

@@ -105,15 +105,15 @@ impl Hand {
     ) -> Option<Warning> {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
         let (slow, behind) = (self.end.behind_m(), (self.end.position() - at).norm());
-        let held = behind > HAND_GIVE_FRACTION * problem.length;
+        let lags = behind > HAND_GIVE_FRACTION * problem.length;
         let cause = WarningCause::HandLags {
             support: name.to_owned(),
-            behind_m: held.then_some(behind),
+            behind_m: lags.then_some(behind),
             hand_behind_m: slow,
             pull_n: force.norm(),
             stiffness_n_per_m: self.stiffness,
         };
         let speeds = [self.end.velocity().norm(), fastest];
-        (held || slow > 0.0).then(|| Warning::new(cause, &problem.cable.name, arc_length_m, speeds))
+        (lags || slow > 0.0).then(|| Warning::new(cause, &problem.cable.name, arc_length_m, speeds))
     }
 }

@@ -272,7 +272,7 @@ mod tests {
         let mut step = warns(0.0, 2.0);
         step.add(warns(0.0, 2.000_000_1));
         step.add(warns(3.0, 2.0));
-        let told: Vec<_> = step.warnings.iter().map(|w| (w.arc_length_m, w.value)).collect();
-        assert_eq!(told, [(0.0, 2.000_000_1), (3.0, 2.0)]);
+        let warnings: Vec<_> = step.warnings.iter().map(|w| (w.arc_length_m, w.value)).collect();
+        assert_eq!(warnings, [(0.0, 2.000_000_1), (3.0, 2.0)]);
     }
 }

@@ -63,11 +63,11 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
         };
         let by = out - at;
         // Rounding is put right without a word.
-        let told = by.norm() > SURFACE_DEPTH_RADIUS_FRACTION * problem.radius + SILENT_MOVE_FRACTION * at.amax();
+        let is_notable = by.norm() > SURFACE_DEPTH_RADIUS_FRACTION * problem.radius + SILENT_MOVE_FRACTION * at.amax();
         let cause = WarningCause::SupportOnSurface { support: support.name.clone(), obstacle: obstacle.to_owned() };
         let s = support.arc_length.unwrap_or(0.0);
         let note = Warning::new(cause, &problem.cable.name, s, [by.norm(), problem.radius]).at(out.into());
-        problem.notes.extend(told.then_some(note));
+        problem.notes.extend(is_notable.then_some(note));
         if let Some(support) = problem.supports.get_mut(k) {
             support.at = Some(out);
             if let Some(motion) = &mut support.motion {

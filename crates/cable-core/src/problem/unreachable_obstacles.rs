@@ -97,12 +97,14 @@ fn ellipses(problem: &Problem) -> Vec<ReachEllipse<'_>> {
     let strain = TENSION_MARGIN * problem.cable.breaking_tension_n / problem.axial_stiffness;
     let stretched = |length: f64| length * problem.thermal_stretch * (1.0 + strain);
     let is_held = |s: &&SupportPoint| matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped) && s.at.is_some();
-    let held: Vec<(&SupportPoint, f64)> =
+    let supports_in_place: Vec<(&SupportPoint, f64)> =
         problem.supports.iter().filter(is_held).filter_map(|s| Some((s, s.arc_length?))).collect();
-    let (Some(&(first, from)), Some(&(last, to))) = (held.first(), held.last()) else { return Vec::new() };
+    let (Some(&(first, from)), Some(&(last, to))) = (supports_in_place.first(), supports_in_place.last()) else {
+        return Vec::new();
+    };
     // There and back.
     let circle = |s, length: f64| ReachEllipse { supports: [s, s], way: 2.0 * stretched(length) };
-    let between = held
+    let between = supports_in_place
         .windows(2)
         .map(|pair| ReachEllipse { supports: [pair[0].0, pair[1].0], way: stretched(pair[1].1 - pair[0].1) });
     between.chain([circle(first, from), circle(last, problem.length - to)]).collect()

@@ -96,13 +96,13 @@ impl SimulatedCable {
 
     /// Returns what the cable does to a support of the scene: nothing, if it is off it.
     pub(super) fn reaction(&self, k: usize) -> SupportReaction {
-        let held = self.pieces.iter().find_map(|p| {
+        let reaction = self.pieces.iter().find_map(|p| {
             let own = p.part.supports.iter().position(|s| *s == Some(k))?;
             let mut r = p.answer.supports.get(own)?.clone();
             r.arc_length_m += p.part.from;
             Some(r)
         });
-        held.unwrap_or_else(|| {
+        reaction.unwrap_or_else(|| {
             self.problem.supports.get(k).map_or_else(SupportReaction::default, |s| self.unloaded_reaction(s))
         })
     }

@@ -146,9 +146,9 @@ impl SimulatedCable {
         // another length; one that moves keeps its motion on other bars.
         let fastest = state.velocity_m_per_s.iter().map(|v| v.norm()).fold(0.0, larger);
         if fastest < STILL_M_PER_S || !same_bodies || self.problem.length != old.length {
-            let laid = self.pieces.clone();
+            let pieces_before = self.pieces.clone();
             if self.settle().is_err() {
-                self.pieces = laid;
+                self.pieces = pieces_before;
             }
         }
         Ok(())

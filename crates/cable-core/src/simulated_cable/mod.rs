@@ -236,12 +236,12 @@ impl SimulatedCable {
     }
 
     /// Becomes what it was when `kept` was copied from it.
-    pub(crate) fn restore(&mut self, kept: &Self) {
+    pub(crate) fn restore(&mut self, copy: &Self) {
         let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
-        own.resize_with(kept.pieces.len(), || None);
+        own.resize_with(copy.pieces.len(), || None);
         // Pieces of a break since then have nothing of the whole.
-        let same = self.breaks.len() == kept.breaks.len() && Arc::ptr_eq(&self.problem, &kept.problem);
-        *self = kept.checkpoint();
+        let same = self.breaks.len() == copy.breaks.len() && Arc::ptr_eq(&self.problem, &copy.problem);
+        *self = copy.checkpoint();
         for (piece, own) in self.pieces.iter_mut().zip(own) {
             piece.mechanics.borrow(own.filter(|_| same));
         }

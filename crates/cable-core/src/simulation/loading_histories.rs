@@ -65,8 +65,8 @@ pub(super) fn refused_by_spans(cable: &SimulatedCable) -> bool {
 /// were the answer.
 pub(super) fn other_histories(cable: &SimulatedCable, sound: impl Fn(&CableSolution) -> bool) -> Histories {
     let answer = cable.answer();
-    let laid = tensions(&answer);
-    let (mut moves, mut left) = (Vec::new(), vec![laid]);
+    let tensions_here = tensions(&answer);
+    let (mut moves, mut left) = (Vec::new(), vec![tensions_here]);
     let supports: Vec<_> = cable.problem().supports.iter().zip(&answer.supports).enumerate().collect();
     for &(k, (support, reaction)) in supports.first().into_iter().chain(supports.last()) {
         let pull = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
@@ -82,9 +82,9 @@ pub(super) fn other_histories(cable: &SimulatedCable, sound: impl Fn(&CableSolut
             }));
         }
     }
-    let range = |k: usize| left.iter().fold([laid[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
+    let range = |k: usize| left.iter().fold([tensions_here[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
     let (start_n, end_n, range_n) = (range(0), range(1), range(2));
-    let greatest_n = laid[2];
+    let greatest_n = tensions_here[2];
     if moves.is_empty() {
         return Histories::NotFound { greatest_n };
     }
@@ -100,7 +100,7 @@ fn move_and_return(
     direction: Vec2,
     sound: impl Fn(&CableSolution) -> bool,
 ) -> Vec<ResidualTensions> {
-    let laid = tensions(&cable.answer());
+    let tensions_here = tensions(&cable.answer());
     let mut moved = cable.clone();
     moved.limit_work(MAX_WORK);
     let (mut found, mut work): (Vec<ResidualTensions>, usize) = (Vec::new(), 0);
@@ -113,7 +113,7 @@ fn move_and_return(
             break;
         }
         let now = tensions(&answer);
-        if found.last().is_some_and(|before| same(before.tensions, now) && !same(laid, now)) {
+        if found.last().is_some_and(|before| same(before.tensions, now) && !same(tensions_here, now)) {
             break;
         }
         found.push(ResidualTensions { displacement_m, tensions: now });

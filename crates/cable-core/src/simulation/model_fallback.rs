@@ -43,9 +43,9 @@ impl Simulation {
         // The answer of a model that is a second opinion, asked for by name, is reported with the
         // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
         // broke.
-        let told =
+        let reports_findings =
             self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
-        match self.verification.worst().filter(|_| !told) {
+        match self.verification.worst().filter(|_| !reports_findings) {
             None => Ok(()),
             Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
         }

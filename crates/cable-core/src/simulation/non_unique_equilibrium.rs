@@ -30,14 +30,14 @@ impl Simulation {
                 }
                 continue;
             }
-            let laid = |problem: &Arc<Problem>| {
-                let laid = initial_equilibrium(problem, Settings::default(), &[], None).ok()??;
-                laid.warnings.into_iter().find(of_cable)
+            let rest = |problem: &Arc<Problem>| {
+                let rest = initial_equilibrium(problem, Settings::default(), &[], None).ok()??;
+                rest.warnings.into_iter().find(of_cable)
             };
             // A cable that leaves a wheel is laid over posts in their place.
-            let posts = || laid(&problem.wheels.as_ref()?.all_as_posts()?.problem);
+            let posts = || rest(&problem.wheels.as_ref()?.all_as_posts()?.problem);
             let refused = loading_histories::refused_by_spans(cable);
-            let whole = || if refused { None } else { laid(&Arc::new(problem.clone())) };
+            let whole = || if refused { None } else { rest(&Arc::new(problem.clone())) };
             let seek = || whole().or_else(posts);
             let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
             if known.is_none() && self.warnings.iter().any(of_cable) {

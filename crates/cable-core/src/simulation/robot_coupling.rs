@@ -94,7 +94,7 @@ impl Simulation {
         let Some(vehicle) = &mut self.vehicle else { return Ok(0) };
         let drive = vehicle.begin(step.step_s, begun);
         let start = vehicle.clone();
-        let kept: Vec<SimulatedCable> = self.cables.iter().map(SimulatedCable::checkpoint).collect();
+        let before: Vec<SimulatedCable> = self.cables.iter().map(SimulatedCable::checkpoint).collect();
         let (mut speed, mut search, mut iterations) = (start.foreseen(drive), SpeedSearch::new(), 0);
         loop {
             self.cost = Cost::default();
@@ -108,11 +108,11 @@ impl Simulation {
                     return Ok(iterations);
                 }
                 TrialOutcome::Again(next) => {
-                    self.go_back(&kept);
+                    self.go_back(&before);
                     speed = next;
                 }
                 TrialOutcome::Stuck(going) => {
-                    self.go_back(&kept);
+                    self.go_back(&before);
                     let mut vehicle = start;
                     vehicle.stop(drive, begun, going);
                     self.lead(vehicle.hitch(), vehicle.pose().placement(), step.hitches);

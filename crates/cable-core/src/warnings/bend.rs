@@ -201,10 +201,10 @@ impl SharpestBends {
             _ => own,
         };
         let bend = |radius_m: f64| Bend { radius_m, arc_length_m: n.arc_length_m, x_m: n.x_m, y_m: n.y_m };
-        let keep = |kept: &mut Option<Bend>, radius_m: f64| {
+        let keep = |sharpest: &mut Option<Bend>, radius_m: f64| {
             let bends = radius_m > 0.0 && radius_m < STRAIGHT_LENGTHS * problem.length;
-            if bends && kept.is_none_or(|b| radius_m < b.radius_m) {
-                *kept = Some(bend(radius_m));
+            if bends && sharpest.is_none_or(|b| radius_m < b.radius_m) {
+                *sharpest = Some(bend(radius_m));
             }
         };
         if guide_at_node == Guide::Free {

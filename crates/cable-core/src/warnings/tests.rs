@@ -662,10 +662,10 @@ fn explicit(dt_s: f64, integrator: Euler) -> Option<(Warning, f64)> {
 fn energy_of_an_unstable_integrator_is_told_and_of_a_stable_one_is_not() {
     assert_eq!(explicit(1e-4, Euler::Symplectic), None);
     for dt_s in [3e-3, 6e-3] {
-        let (told, when) = explicit(dt_s, Euler::Forward).expect("forward Euler gains energy");
-        println!("{dt_s} s: {when} s: {told:?}");
-        assert!(told.value > told.limit && told.since_s.is_some() && when > 0.0, "{told:?}");
-        assert!(told.to_string().contains("from nowhere") && told.value.is_finite(), "{told:?}");
+        let (warning, when) = explicit(dt_s, Euler::Forward).expect("forward Euler gains energy");
+        println!("{dt_s} s: {when} s: {warning:?}");
+        assert!(warning.value > warning.limit && warning.since_s.is_some() && when > 0.0, "{warning:?}");
+        assert!(warning.to_string().contains("from nowhere") && warning.value.is_finite(), "{warning:?}");
     }
     // Beyond its limit the stable one is not.
     assert!(explicit(2e-2, Euler::Symplectic).is_some());

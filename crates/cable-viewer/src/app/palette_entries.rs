@@ -247,19 +247,19 @@ fn places(state: &AppState) -> Vec<PaletteEntry> {
     let answer = state.live.snapshot.solution.as_deref();
     let (Some(cable), Some(answer)) = (solved.cables.get(index), answer) else { return all };
     let Some(found) = answer.cables.get(index) else { return all };
-    let told = summary(solved, cable, found, answer.time_s);
+    let summary_of_cable = summary(solved, cable, found, answer.time_s);
     for (name, at) in [
-        ("lowest", Some(told.lowest)),
-        ("highest", Some(told.highest)),
-        ("sag", told.sag.map(|s| s.at)),
-        ("least tension", Some(told.least_tension.at)),
-        ("touchdowns", told.touchdowns.first().map(|t| t.at)),
+        ("lowest", Some(summary_of_cable.lowest)),
+        ("highest", Some(summary_of_cable.highest)),
+        ("sag", summary_of_cable.sag.map(|s| s.at)),
+        ("least tension", Some(summary_of_cable.least_tension.at)),
+        ("touchdowns", summary_of_cable.touchdowns.first().map(|t| t.at)),
     ] {
         all.extend(at.map(|at| to(name, [at.x_m, at.y_m])));
     }
     for (name, bend) in [
-        ("tightest bend", told.tightest_bend),
-        ("bend with its stiffness", told.judged_bend.map(|j| j.bend)),
+        ("tightest bend", summary_of_cable.tightest_bend),
+        ("bend with its stiffness", summary_of_cable.judged_bend.map(|j| j.bend)),
         ("bend that is free", found.free_bend),
     ] {
         all.extend(bend.map(|b| to(name, [b.x_m, b.y_m])));
@@ -273,7 +273,7 @@ fn places(state: &AppState) -> Vec<PaletteEntry> {
     ] {
         all.extend(node.map(|(_, n)| to(name, [n.x_m, n.y_m])));
     }
-    all.extend(told.sidewall_pressure.map(|p| to("sidewall pressure", [p.x_m, p.y_m])));
+    all.extend(summary_of_cable.sidewall_pressure.map(|p| to("sidewall pressure", [p.x_m, p.y_m])));
     for (support, s) in cable.supports.iter().enumerate() {
         let at = support_position(state, index, support);
         all.extend(at.map(|at| view(format!("Show support {}", s.name), ViewCommand::CentreOn(at))));

@@ -65,10 +65,10 @@ fn rows(ui: &mut Ui, path: &mut String, listing: &Listing, purpose: PathPurpose)
     ui.spacing_mut().item_spacing.y = 1.0;
     let mut chosen = false;
     let typed = Path::new(path.trim());
-    let kept =
+    let folder_part =
         typed.file_name().filter(|_| purpose == PathPurpose::Save && !typed.is_dir()).unwrap_or_default().to_owned();
     // Joined with nothing, a folder ends in a separator: the name is typed behind it.
-    let enter = |folder: &Path| folder.join(&kept).display().to_string();
+    let enter = |folder: &Path| folder.join(&folder_part).display().to_string();
     if let Some(above) = listing.folder.parent()
         && ui.selectable_label(false, "..").on_hover_text("The folder above").clicked()
     {

@@ -238,8 +238,8 @@ pub fn is_refused_pull(state: &AppState) -> bool {
 /// reach, and the user wants that to pull instead of being refused. Of a broken cable the pieces go
 /// where the hand leads them.
 fn pulls_past_length(state: &AppState, before: &Scene, cable: usize, support: usize) -> bool {
-    let held = Item::Support { cable, support };
-    let by_spring = state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
+    let item = Item::Support { cable, support };
+    let by_spring = state.selection.grab.is_some_and(|g| g.item == item) && !is_quasi_static(state.solver.model);
     let pulls = state.solver.pulls_past_length || is_broken(state, cable);
     let wanted = pulls && by_spring && !state.live.playback.paused;
     wanted && state.document.scene.validate().is_err() && before.validate().is_ok()
@@ -278,9 +278,9 @@ fn submit_edited_scene(state: &mut AppState, dragged: Option<SupportMove>, effec
         Some(SupportMove { cable, support, to_m }) if !state.live.playback.paused && state.document.fault.is_none() => {
             state.live.show_time(None);
             // A pointer holds the support by a spring; a key or a robot prescribes its place.
-            let held = Item::Support { cable, support };
+            let item = Item::Support { cable, support };
             let by_spring =
-                state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
+                state.selection.grab.is_some_and(|g| g.item == item) && !is_quasi_static(state.solver.model);
             state.selection.spring_support = by_spring.then_some((cable, support));
             drag_support(state, cable, support, to_m, effects);
         }
@@ -299,13 +299,14 @@ pub fn resume_after_drag(state: &mut AppState, effects: &mut Effects) {
     if let Item::Support { cable, support } = item {
         let answer = state.live.latest.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
         let at = answer.map(|s| [s.x_m, s.y_m]);
-        let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
-        if let (Some(at), Some(held)) = (at, held) {
-            let to = held.at_m.replace(at);
+        let support_of_scene = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
+        if let (Some(at), Some(support_of_scene)) = (at, support_of_scene) {
+            let to = support_of_scene.at_m.replace(at);
             if state.document.scene.validate().is_err()
-                && let Some(held) = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+                && let Some(support_of_scene) =
+                    state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
             {
-                held.at_m = to;
+                support_of_scene.at_m = to;
             }
         }
     }
@@ -330,14 +331,15 @@ pub(super) fn release_spring_support(state: &mut AppState, effects: &mut Effects
     }
     let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
     let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
-    let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
-    if let (Some(at), Some(held)) = (at, held) {
-        let before = held.at_m.replace(at);
+    let support_of_scene = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
+    if let (Some(at), Some(support_of_scene)) = (at, support_of_scene) {
+        let before = support_of_scene.at_m.replace(at);
         // A piece that tore off may have been led farther than the whole cable reaches.
         if state.document.scene.validate().is_err()
-            && let Some(held) = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+            && let Some(support_of_scene) =
+                state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
         {
-            held.at_m = before;
+            support_of_scene.at_m = before;
         }
         drag_support(state, cable, support, at, effects);
     }

@@ -44,12 +44,12 @@ const FIRST_LOAD_N: Point = [0.0, -10.0];
 #[must_use]
 pub fn of_kind(support: &Support, kind: SupportKind, at_m: Point, arc_length_m: f64, place: SupportPlace) -> Support {
     let mut new = Support::new(support.name.clone(), kind);
-    let held = matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
-    if held {
+    let has_place = matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
+    if has_place {
         new.at_m = support.at_m.or(Some(at_m));
         new.motion.clone_from(&support.motion);
     }
-    if held || kind == SupportKind::Robot {
+    if has_place || kind == SupportKind::Robot {
         new.release_s = support.release_s;
     }
     // A support between the ends states its arc length; those at the ends have none.

@@ -64,12 +64,12 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
     if is_broken(state, cable) {
         return None;
     }
-    let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
+    let has_place = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
     let solution = state.live.snapshot.solution.as_ref()?;
     let solved = solution.cables.get(cable)?;
     // Moved by the scene it is drawn to where its motion has it now.
     let moved = s.motion.as_ref().map(|m| m.at(solution.time_s).0).map(|p| [p.x, p.y]);
-    let to = moved.or(s.at_m).filter(|_| held && s.release_s.is_none())?;
+    let to = moved.or(s.at_m).filter(|_| has_place && s.release_s.is_none())?;
     let at = solved.supports.get(support).map(|r| [r.x_m, r.y_m])?;
     let far = (at[0] - to[0]).hypot(at[1] - to[1]) > COINCIDENCE_M;
     (far && solved.assumptions.inertia && !state.live.playback.paused).then_some([at, to])

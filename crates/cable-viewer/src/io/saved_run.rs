@@ -179,11 +179,11 @@ fn reactions(scene: &Scene, history: &HistoryTable, k: usize, cables: &mut [Cabl
                 (_, None) => cable.nodes.iter().find(|n| s.arc_length_m.is_some_and(|at| n.arc_length_m >= at)),
             };
             let node = near.copied().unwrap_or_default();
-            let held = s.at_m.filter(|_| s.motion.is_none() && i != 0 && i != last).unwrap_or([node.x_m, node.y_m]);
+            let place = s.at_m.filter(|_| s.motion.is_none() && i != 0 && i != last).unwrap_or([node.x_m, node.y_m]);
             cable.supports.push(SupportReaction {
                 name: s.name.clone(),
-                x_m: held[0],
-                y_m: held[1],
+                x_m: place[0],
+                y_m: place[1],
                 reaction_x_n: force(column.map(|c| &c.reaction_x_n)),
                 reaction_y_n: force(column.map(|c| &c.reaction_y_n)),
                 arc_length_m: node.arc_length_m,

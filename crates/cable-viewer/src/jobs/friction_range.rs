@@ -77,10 +77,10 @@ const MIN_MOVE_M: f64 = 1e-9;
 #[must_use]
 pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
-        let held = |s: &cable_core::Support| {
+        let has_friction = |s: &cable_core::Support| {
             s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)
         };
-        c.supports.iter().enumerate().filter(move |(_, s)| held(s)).map(move |(support, _)| (cable, support))
+        c.supports.iter().enumerate().filter(move |(_, s)| has_friction(s)).map(move |(support, _)| (cable, support))
     });
     let by_hand: Vec<(usize, usize)> = by_hand.collect();
     let at = |a: &Solution, (cable, support): (usize, usize)| {
@@ -93,7 +93,7 @@ pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
             hands.push(Action { time_s: 0.0, what: ActionKind::Support { cable, support, to_m } });
         }
     }
-    let mut told = None;
+    let mut last_order = None;
     for pair in answers.windows(2) {
         let [before, now] = [&pair[0], &pair[1]];
         for &(cable, support) in &by_hand {
@@ -105,9 +105,9 @@ pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
             }
         }
         let order = now.robot.map(|r| r.leg.is_none().then_some(r.commanded_m_per_s));
-        if let Some(order) = order.filter(|o| told != Some(*o)) {
+        if let Some(order) = order.filter(|o| last_order != Some(*o)) {
             hands.push(Action { time_s: now.time_s, what: ActionKind::Robot(order) });
-            told = Some(order);
+            last_order = Some(order);
         }
     }
     hands

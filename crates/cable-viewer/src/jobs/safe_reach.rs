@@ -164,19 +164,19 @@ pub fn start(query: SafeReachQuery, shown: impl Fn() + Send + 'static) -> Job {
 
 fn find(query: SafeReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
     let scene = Arc::new(query.scene);
-    let mut told = -MIN_PROGRESS_STEP;
+    let mut progress = -MIN_PROGRESS_STEP;
     let mut tell = |share: f64, maps: &dyn Fn() -> ReachMaps| {
-        if share < told + MIN_PROGRESS_STEP {
+        if share < progress + MIN_PROGRESS_STEP {
             return ControlFlow::Continue(());
         }
-        told = share;
+        progress = share;
         listen(share, Some((maps(), Arc::clone(&scene))))
     };
     let maps = match query.moved {
         ReachSubject::Robot => {
             let ends_m = query.corners_m.map(|p| p[0]);
-            let told = |map: &ReachMap, _: f64| tell(known_share(map), &|| ReachMaps::Line(Arc::new(map.clone())));
-            let map = line::robot_reach(&scene, query.now.as_deref(), query.settings, ends_m, ROBOT_PLACES, told)
+            let progress = |map: &ReachMap, _: f64| tell(known_share(map), &|| ReachMaps::Line(Arc::new(map.clone())));
+            let map = line::robot_reach(&scene, query.now.as_deref(), query.settings, ends_m, ROBOT_PLACES, progress)
                 .map_err(|e| sentence(&e))?;
             ReachMaps::Line(Arc::new(map))
         }
@@ -195,13 +195,14 @@ fn find(query: SafeReachQuery, listen: background::Listener<'_, Outcome>) -> Res
                 spacing_m,
                 back: false,
             };
-            let told = |area: &Area, share: f64| tell(0.5 * share, &|| ReachMaps::Area(Arc::new(area.clone()), None));
-            let there = Arc::new(area::area(&ask, told).map_err(|e| sentence(&e))?);
+            let progress =
+                |area: &Area, share: f64| tell(0.5 * share, &|| ReachMaps::Area(Arc::new(area.clone()), None));
+            let there = Arc::new(area::area(&ask, progress).map_err(|e| sentence(&e))?);
             let ask = area::ReachQuery { spacing_m: RETURN_COARSENING * spacing_m, back: true, ..ask };
-            let told = |area: &Area, share: f64| {
+            let progress = |area: &Area, share: f64| {
                 tell(0.5 + 0.5 * share, &|| ReachMaps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };
-            let back = area::area(&ask, told).map_err(|e| sentence(&e))?;
+            let back = area::area(&ask, progress).map_err(|e| sentence(&e))?;
             ReachMaps::Area(there, Some(Arc::new(back)))
         }
     };

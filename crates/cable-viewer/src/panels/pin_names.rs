@@ -36,9 +36,9 @@ pub fn pin_names(state: &AppState) -> Vec<PinName> {
 
 fn name(pin: &Reference, pins: &[Reference]) -> PinName {
     let scene = if pin.scene.name.is_empty() { "Untitled scene" } else { &pin.scene.name };
-    let told = pin.changes.iter().filter(|c| c.key != "name");
-    let mut parts: Vec<String> = told.clone().take(MAX_DIFFERENCES).map(display_names::present_value).collect();
-    let more = told.count().saturating_sub(MAX_DIFFERENCES);
+    let changes = pin.changes.iter().filter(|c| c.key != "name");
+    let mut parts: Vec<String> = changes.clone().take(MAX_DIFFERENCES).map(display_names::present_value).collect();
+    let more = changes.count().saturating_sub(MAX_DIFFERENCES);
     if more > 0 {
         parts.push(format!("{more} more"));
     }

@@ -98,8 +98,9 @@ fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn pull_n(state: &AppState) -> f64 {
     let Some(answer) = &state.live.snapshot.solution else { return 0.0 };
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    let held = scene.cables.iter().zip(&answer.cables).flat_map(|(c, solved)| c.supports.iter().zip(&solved.supports));
-    let on_it = held.filter(|(s, _)| s.kind == SupportKind::Robot);
+    let supports =
+        scene.cables.iter().zip(&answer.cables).flat_map(|(c, solved)| c.supports.iter().zip(&solved.supports));
+    let on_it = supports.filter(|(s, _)| s.kind == SupportKind::Robot);
     let [x, y] = on_it.fold([0.0; 2], |[x, y], (_, r)| [x + r.reaction_x_n, y + r.reaction_y_n]);
     x.hypot(y)
 }

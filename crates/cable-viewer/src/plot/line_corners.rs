@@ -56,7 +56,7 @@ fn cut_at_corners(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2, wid
 /// The points of a line without those that lie on the straight stretch between others, as seen on
 /// the screen; `to_screen` is where a point stands there.
 pub(super) fn without_straight_points(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2) -> Vec<[f64; 2]> {
-    let mut kept: Vec<[f64; 2]> = Vec::with_capacity(points.len());
+    let mut corners: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     // The last kept point, the one before this, and the slopes of lines from the one that pass by
     // all points since within the tolerance.
     let mut stretch: Option<(Pos2, [f64; 2], [f32; 2])> = None;
@@ -65,8 +65,8 @@ pub(super) fn without_straight_points(points: &[[f64; 2]], to_screen: impl Fn([f
         let slopes_by =
             |from: Pos2| [-STRAIGHT_TOLERANCE, STRAIGHT_TOLERANCE].map(|off| (at.y + off - from.y) / (at.x - from.x));
         let Some((from, before, slopes @ [least, most])) = stretch.filter(|_| at.is_finite()) else {
-            kept.extend(stretch.map(|(_, before, _)| before));
-            kept.push(point);
+            corners.extend(stretch.map(|(_, before, _)| before));
+            corners.push(point);
             stretch = at.is_finite().then_some((at, point, [f32::NEG_INFINITY, f32::INFINITY]));
             continue;
         };
@@ -75,15 +75,15 @@ pub(super) fn without_straight_points(points: &[[f64; 2]], to_screen: impl Fn([f
             let [low, high] = slopes_by(from);
             Some((from, point, [slopes[0].max(low), slopes[1].min(high)]))
         } else {
-            kept.push(before);
+            corners.push(before);
             let from = to_screen(before);
             let slopes = if at.x > from.x { slopes_by(from) } else { [f32::INFINITY, f32::NEG_INFINITY] };
             Some((from, point, slopes))
         };
     }
-    kept.extend(stretch.map(|(_, before, _)| before));
-    kept.dedup();
-    kept
+    corners.extend(stretch.map(|(_, before, _)| before));
+    corners.dedup();
+    corners
 }
 
 #[cfg(test)]
@@ -127,11 +127,13 @@ mod tests {
                 .map(f64::from)
                 .map(|x| [0.5 * x, 20.0 * (0.5 * waves * x).sin() + 5.0 * (0.01 * x).cos()])
                 .collect();
-            let kept = thin(&wave);
-            assert!((kept[0], kept[kept.len() - 1]) == (wave[0], wave[399]) && kept.len() < 400 || waves > 1.0);
+            let corners = thin(&wave);
+            assert!(
+                (corners[0], corners[corners.len() - 1]) == (wave[0], wave[399]) && corners.len() < 400 || waves > 1.0
+            );
             for p in &wave {
-                let k = kept.partition_point(|q| q[0] < p[0]).clamp(1, kept.len() - 1);
-                let ([a, b], [c, d]) = (kept[k - 1], kept[k]);
+                let k = corners.partition_point(|q| q[0] < p[0]).clamp(1, corners.len() - 1);
+                let ([a, b], [c, d]) = (corners[k - 1], corners[k]);
                 let there = b + (d - b) * (p[0] - a) / (c - a);
                 assert!((there - p[1]).abs() < 1.05 * f64::from(STRAIGHT_TOLERANCE), "{waves}: {p:?} beside {there}");
             }

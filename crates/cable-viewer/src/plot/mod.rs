@@ -598,12 +598,12 @@ mod tests {
 
     #[test]
     fn only_held_lines_that_do_not_tremble_are_dashed() {
-        let held = |values: &[f64]| Series { reference: Some(0), ..line(values) };
+        let reference_line = |values: &[f64]| Series { reference: Some(0), ..line(values) };
         let wave: Vec<f64> = (0..1200).map(|k| (0.02 * f64::from(k)).sin()).collect();
         let noise: Vec<f64> = (0..1200).map(|k| f64::from(k % 2)).collect();
-        assert!(matches!(line_appearance(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
-        assert!(matches!(line_appearance(&held(&noise), 0), (_, LineStyle::Solid, _)));
-        assert!(matches!(line_appearance(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_appearance(&reference_line(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_appearance(&reference_line(&noise), 0), (_, LineStyle::Solid, _)));
+        assert!(matches!(line_appearance(&reference_line(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
         assert!(matches!(line_appearance(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
     }
 }

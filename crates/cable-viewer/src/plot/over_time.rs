@@ -106,9 +106,9 @@ fn lines(
     columns: Option<usize>,
 ) -> Vec<Series> {
     let mut lines = recorded_lines(state, scene, measure, seen, columns);
-    for (k, held) in state.analysis.references.iter().enumerate() {
-        let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
-        let scale = match (measure, held.scene.cables.first()) {
+    for (k, reference) in state.analysis.references.iter().enumerate() {
+        let Some(line) = reference.run.as_ref().and_then(|r| r.line(measure)) else { continue };
+        let scale = match (measure, reference.scene.cables.first()) {
             (Measure::Cable(quantity), Some(cable)) => per_newton(quantity, cable),
             _ => 1.0,
         };

@@ -56,8 +56,8 @@ impl KeptRun {
         let lines: Vec<Pyramid> = Measure::PRIMARY_LINES.iter().map(|(_, of)| line(*of)).collect();
         let peaks = lines.iter().map(|l| Peak::of(l.points().iter().copied())).collect();
         let every = answers.len().div_ceil(MAX_ANSWERS).max(1);
-        let kept = answers.iter().step_by(every).chain(answers.last());
-        Some(Self { lines, peaks, answers: kept.map(|a| Arc::new(a.clone())).collect(), events })
+        let chosen = answers.iter().step_by(every).chain(answers.last());
+        Some(Self { lines, peaks, answers: chosen.map(|a| Arc::new(a.clone())).collect(), events })
     }
 
     /// The leading line of a measure over time; None where it has none.

@@ -110,7 +110,7 @@ pub fn value_at(points: &[[f64; 2]], x: f64) -> Option<f64> {
 /// Colour and style of the `k`-th line of a graph.
 pub fn line_style(line: &Series, k: usize) -> (Color32, LineStyle) {
     match line.reference {
-        Some(held) => (LINES[held % LINES.len()], LineStyle::dashed_loose()),
+        Some(reference) => (LINES[reference % LINES.len()], LineStyle::dashed_loose()),
         None => (LINES[k % LINES.len()], LineStyle::Solid),
     }
 }

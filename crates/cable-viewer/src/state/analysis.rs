@@ -87,15 +87,15 @@ pub fn hold(analysis: &mut Analysis, found: &ModelComparison, saved: &Scene) {
         let Ok((solution, wall_s)) = &answer.result else { continue };
         let (scene, changes) = (Arc::clone(&found.scene), analysis.changes_to(&found.scene, saved));
         let (solution, folder) = (Arc::clone(solution), None);
-        let held = Reference { scene, changes, folder, solution, wall_s: *wall_s, run: None };
+        let reference = Reference { scene, changes, folder, solution, wall_s: *wall_s, run: None };
         let is_same = |h: &Reference| {
-            let at_rest = h.run.is_none() && h.folder.is_none() && h.solution.time_s == held.solution.time_s;
-            at_rest && h.solution.model == held.solution.model && h.scene == held.scene
+            let at_rest = h.run.is_none() && h.folder.is_none() && h.solution.time_s == reference.solution.time_s;
+            at_rest && h.solution.model == reference.solution.model && h.scene == reference.scene
         };
         if let Some(before) = analysis.references.iter_mut().find(|h| is_same(h)) {
-            *before = held;
+            *before = reference;
         } else if analysis.references.len() < Reference::MAX_COUNT {
-            analysis.references.push(held);
+            analysis.references.push(reference);
         }
     }
 }

@@ -116,8 +116,8 @@ mod tests {
             let largest_gap_s = answers.windows(2).map(|w| w[1].time_s - w[0].time_s).fold(0.0, f64::max);
             assert!(largest_gap_s < 0.3, "{largest_gap_s} s between two");
             let greatest = answers.iter().map(Solution::peaks).reduce(TensionPeaks::with).unwrap();
-            let told = TensionPeak { tension_n: 900.0, arc_length_m: 1.0, time_s: f64::from(spike) / 60.0 };
-            assert_eq!((greatest.greatest, greatest.held), (told, told), "spike {spike}");
+            let peak = TensionPeak { tension_n: 900.0, arc_length_m: 1.0, time_s: f64::from(spike) / 60.0 };
+            assert_eq!((greatest.greatest, greatest.held), (peak, peak), "spike {spike}");
         }
     }
 }

@@ -13,15 +13,15 @@ use cable_core::scene::{Obstacle, Shape};
 #[must_use]
 pub fn tunnelled_cables(old: &Simulation, new: &Simulation) -> Vec<usize> {
     let stays = |o: &&Obstacle| new.scene().obstacles.iter().any(|n| n.shape == o.shape);
-    let kept: Vec<Vec2> = old.scene().obstacles.iter().filter(stays).filter_map(|o| inner_point(&o.shape)).collect();
-    if kept.is_empty() {
+    let points: Vec<Vec2> = old.scene().obstacles.iter().filter(stays).filter_map(|o| inner_point(&o.shape)).collect();
+    if points.is_empty() {
         return Vec::new();
     }
     let shapes = old.states().into_iter().zip(new.states());
     let jumps = shapes.map(|(before, after)| {
         let mut loop_m = before.position_m;
         loop_m.extend(after.position_m.into_iter().rev());
-        kept.iter().any(|p| winding(&loop_m, *p) != 0)
+        points.iter().any(|p| winding(&loop_m, *p) != 0)
     });
     jumps.enumerate().filter(|(_, jumps)| *jumps).map(|(k, _)| k).collect()
 }

@@ -48,9 +48,9 @@ const REACH_FACTOR: f64 = 1.1;
 /// # Errors An error if the scene is invalid, the support has no position, or the start has no
 /// answer.
 pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlFlow<()>) -> Result<Area, Error> {
-    let (mut exploration, laid) = begin(query)?;
+    let (mut exploration, simulation) = begin(query)?;
     // If it is ended early, the map so far is the answer.
-    exploration.spread(laid, &mut progress);
+    exploration.spread(simulation, &mut progress);
     Ok(exploration.found)
 }
 
@@ -99,9 +99,9 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     let bars = still.cables.iter().map(|c| (c.length_m / SLACK_ELEMENT_M).ceil()).fold(1.0, larger);
     let segments = Some(query.settings.segments.unwrap_or(bars as usize));
     let settings = Settings { segments, breaks: false, ..query.settings };
-    let mut laid = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
-    lay(&mut laid, query.now.as_deref())?;
-    Ok((exploration, laid))
+    let mut simulation = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
+    lay(&mut simulation, query.now.as_deref())?;
+    Ok((exploration, simulation))
 }
 
 /// The scene without its robot: the end that hangs on the robot is held instead.

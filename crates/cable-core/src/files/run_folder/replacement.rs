@@ -74,7 +74,7 @@ pub(super) fn remove_unfinished(folder: &Path) {
             && fs::symlink_metadata(&place).is_ok_and(|about| about.is_dir());
         // One without a manifest is empty but for its lock.
         let Some(Ok(manifest)) = ours.then(|| look(&place)) else { continue };
-        let Ok(held) = lock(&place) else { continue };
+        let Ok(place_lock) = lock(&place) else { continue };
         if manifest.is_none_or(|manifest| check_own(&place, &manifest).is_ok()) {
             let cut_off = RUN_FILES.map(temporary);
             let _ = remove_files(&place, &RUN_FILES)
@@ -82,6 +82,6 @@ pub(super) fn remove_unfinished(folder: &Path) {
                 .and_then(|()| remove_files(&place, &[MANIFEST_NAME, &temporary(MANIFEST_NAME), LOCK_NAME]))
                 .map(|()| fs::remove_dir(&place));
         }
-        drop(held);
+        drop(place_lock);
     }
 }

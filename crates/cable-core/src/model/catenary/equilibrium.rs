@@ -45,7 +45,7 @@ pub(super) struct Equilibrium {
 /// Initial unknowns of a solve and the slip that friction remembers.
 pub(super) struct SlidingStart<'a> {
     /// Material points that friction holds, m.
-    pub held: &'a [f64],
+    pub rest_points: &'a [f64],
     /// First guess of the material points, m.
     pub sigma: Vec<f64>,
     pub modes: Vec<PulleyMode>,
@@ -73,13 +73,13 @@ const CONE_TOLERANCE: f64 = 1e-10;
 
 /// Finds the balance.
 pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>) -> Result<Equilibrium, SolveError> {
-    let SlidingStart { held, mut sigma, mut modes, mut arcs } = start;
+    let SlidingStart { rest_points, mut sigma, mut modes, mut arcs } = start;
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
     let mut iterations = 0;
     let (mut lifted, mut near) = (None, None);
     for _ in 0..layout.settings.max_iterations {
         let slide = SlidingProblem { problem: p, layout, arcs: &arcs };
-        let found = contact(&slide, held, sigma, near, modes)?;
+        let found = contact(&slide, rest_points, sigma, near, modes)?;
         iterations += found.iterations;
         let m = |k: usize| required_friction(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
@@ -137,7 +137,7 @@ fn not_converged(p: &Problem, layout: &SupportLayout, anchor: usize, iterations:
 /// slip direction require.
 fn contact(
     slide: &SlidingProblem<'_>,
-    held: &[f64],
+    rest_points: &[f64],
     mut sigma: Vec<f64>,
     mut near: Option<SpanSolutions>,
     mut modes: Vec<PulleyMode>,
@@ -169,9 +169,9 @@ fn contact(
                 // Friction +μ acts against material that moves to the side after the pulley, so σ
                 // must have fallen.
                 PulleyMode::Slip(m)
-                    if m * (sigma[k] - held[k]) > REVERSAL_FRACTION * a.friction * slide.problem.length =>
+                    if m * (sigma[k] - rest_points[k]) > REVERSAL_FRACTION * a.friction * slide.problem.length =>
                 {
-                    sigma[k] = held[k];
+                    sigma[k] = rest_points[k];
                     PulleyMode::Stick
                 }
                 same => same,

@@ -167,8 +167,8 @@ impl CatenaryModel {
                 (sigma[i], arcs[i], modes[i]) = (old.sigma[j], old.arcs[j], old.modes[j]);
             }
         }
-        let held = sigma.clone();
-        let start = SlidingStart { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
+        let rest_points = sigma.clone();
+        let start = SlidingStart { rest_points: &rest_points, sigma, modes: modes.clone(), arcs: arcs.clone() };
         let found = solve(&self.problem, layout, start);
         if found.is_ok() || begin == InitialMaterial::EvenSpread {
             return found;
@@ -179,7 +179,11 @@ impl CatenaryModel {
                 *m = PulleyMode::Stick;
             }
         }
-        solve(&self.problem, layout, SlidingStart { held: &held, sigma: held.clone(), modes, arcs })
+        solve(
+            &self.problem,
+            layout,
+            SlidingStart { rest_points: &rest_points, sigma: rest_points.clone(), modes, arcs },
+        )
     }
 
     /// Accepts an equilibrium as the state at a time; on an error nothing has changed. Nodes cost
@@ -220,11 +224,11 @@ impl CatenaryModel {
             return Ok(());
         }
         let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
-        let laid = first_state(&self.problem, layout);
+        let first = first_state(&self.problem, layout);
         let reached = |s: f64| unsupported(Unsupported::Obstacle { arc_length_m: s });
         for w in nodes.windows(2) {
             let (s0, s1) = (w[0].arc_length_m, w[1].arc_length_m);
-            if let (Some(a), Some(b)) = (laid.position_at(s0), laid.position_at(s1)) {
+            if let (Some(a), Some(b)) = (first.position_at(s0), first.position_at(s1)) {
                 let inside = world.signed_gap(a, self.problem.length).is_some_and(|g| g.gap_m < 0.0);
                 if inside || world.free_fraction([a, b], [at(&w[0]), at(&w[1])], 0.0) < 1.0 {
                     return Err(reached(s0));

@@ -80,12 +80,17 @@ pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s
     }
     let model = CatenaryModel::new(Arc::new(problem.clone()), Settings::default()).ok()?;
     let layout = model.layout(time_s).ok()?;
-    let slides = |held: Option<f64>| if held.is_none() { PulleyMode::Slip(0.0) } else { PulleyMode::Stick };
+    let slides =
+        |material_point: Option<f64>| if material_point.is_none() { PulleyMode::Slip(0.0) } else { PulleyMode::Stick };
     let modes: Vec<PulleyMode> = layout.anchors.iter().map(|a| slides(a.material_point)).collect();
     let from = |sigma: Vec<f64>| -> Option<Equilibrium> {
-        let held = sigma.clone();
-        solve(problem, &layout, SlidingStart { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) })
-            .ok()
+        let rest_points = sigma.clone();
+        solve(
+            problem,
+            &layout,
+            SlidingStart { rest_points: &rest_points, sigma, modes: modes.clone(), arcs: first_arcs(&layout) },
+        )
+        .ok()
     };
     let material = |a: &SupportNode| a.material_point.or(Some(answer.supports.get(a.support)?.arc_length_m));
     let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;

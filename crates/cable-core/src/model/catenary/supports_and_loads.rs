@@ -91,13 +91,13 @@ impl SupportLayout {
             }
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
-        let first_held = anchors.first().is_some_and(|a| a.material_point == Some(0.0));
-        let last_held = anchors.last().is_some_and(|a| a.material_point == Some(p.length));
+        let has_first_place = anchors.first().is_some_and(|a| a.material_point == Some(0.0));
+        let has_last_place = anchors.last().is_some_and(|a| a.material_point == Some(p.length));
         let mut layout = Self {
             anchors,
             weight: p.body_force(time_s),
             hint: 0.0,
-            free: [!first_held, !last_held],
+            free: [!has_first_place, !has_last_place],
             end_force: [0.0, p.length]
                 .map(|end| loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)),
             loads,

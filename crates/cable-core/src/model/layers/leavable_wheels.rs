@@ -233,7 +233,7 @@ impl LeavableWheels {
             return false;
         }
         let places = before.centers.iter().zip(&self.led).map(|(center, led)| center.filter(|_| led.is_some()));
-        let kept = std::mem::replace(&mut self.places, places.collect());
+        let places_before = std::mem::replace(&mut self.places, places.collect());
         let as_moving_post = std::mem::replace(&mut self.as_moving_post, moving);
         let continued = self.without(&before.replaced, Inertia::Dynamic).and_then(|left| {
             let going_on = || left.going_on(&self.problem, &self.problem, &self.places, before.time_s);
@@ -249,7 +249,7 @@ impl LeavableWheels {
         });
         match continued {
             Some(next) => (self.inner, self.left, self.let_go) = (next.inner, next.left, next.let_go),
-            None => (self.places, self.as_moving_post) = (kept, as_moving_post),
+            None => (self.places, self.as_moving_post) = (places_before, as_moving_post),
         }
         self.left.is_some()
     }
@@ -658,7 +658,7 @@ impl LeavableWheels {
         if !may_return {
             return self.advance_to(end_s, inertia, gauge);
         }
-        let kept = (self.around(self.inner.boxed_clone()), gauge.clone());
+        let before_step = (self.around(self.inner.boxed_clone()), gauge.clone());
         // The times between which it comes back, with its depth in excess of the one asked for.
         let asked = 0.5 * (1.0 + DEEPEST_RETURN_FACTOR) * RETURN_DEPTH;
         let mut clear = (self.inner.time_s(), self.return_depth() - asked);
@@ -674,8 +674,8 @@ impl LeavableWheels {
             if !(time_s > clear.0 && time_s < within.0) {
                 break;
             }
-            *self = kept.0.around(kept.0.inner.boxed_clone());
-            *gauge = kept.1.clone();
+            *self = before_step.0.around(before_step.0.inner.boxed_clone());
+            *gauge = before_step.1.clone();
             report = self.advance_to(time_s, inertia, gauge)?;
             let there = (time_s, self.return_depth() - asked);
             if there.1 > 0.0 { within = there } else { clear = there }
@@ -911,9 +911,9 @@ impl Layer for LeavableWheels {
                 false => self.advance_to(end_s, inertia, gauge)?,
             });
         }
-        let told = self.with_wheel_warnings(report);
+        let report = self.with_wheel_warnings(report);
         self.come_back(inertia)?;
-        Ok(told)
+        Ok(report)
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {

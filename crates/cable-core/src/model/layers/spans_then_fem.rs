@@ -287,7 +287,7 @@ impl Mechanics for SwitchingModel {
             }
         }
         let first = self.fem.is_none();
-        let laid = self.fem(why.clone())?.state();
+        let first_state = self.fem(why.clone())?.state();
         self.refusal.clone_from(&refused);
         let mut found = match (self.fem(why)?.settle(), refused) {
             (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
@@ -298,7 +298,7 @@ impl Mechanics for SwitchingModel {
             let (problem, settings) = (&self.problem, self.settings);
             found = found
                 .ok()
-                .filter(|_| work(problem, &laid, &fem.solution(), fem.time_s()) > 0.0)
+                .filter(|_| work(problem, &first_state, &fem.solution(), fem.time_s()) > 0.0)
                 .filter(|_| !slides_on(problem, settings, &fem.solution()))
                 .map(|mut report| {
                     report.warnings.push(slid_first(problem, &slides));

@@ -117,7 +117,7 @@ impl ContactMemory {
         let sticks =
             |n: &usize| (mesh.position[*n] - self.anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
         let limit = |n: usize| mesh.problem.max_floor_friction(mesh.half_straight_length(n), mesh.point_mass[n]);
-        let held: f64 = (0..on_floor).filter(sticks).map(limit).sum();
-        held / top
+        let sticking_limit: f64 = (0..on_floor).filter(sticks).map(limit).sum();
+        sticking_limit / top
     }
 }

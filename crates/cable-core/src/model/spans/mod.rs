@@ -372,7 +372,7 @@ impl SpansModel {
         let Some(cable_equilibrium) = &self.cable_equilibrium else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
         let tensions = |cable_equilibrium: &CableEquilibrium| self.tensions(cable_equilibrium);
-        let laid = tensions(cable_equilibrium);
+        let tensions_here = tensions(cable_equilibrium);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversal::mobilised(drawn) } else { drawn };
             let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.way(), workspace);
@@ -384,9 +384,11 @@ impl SpansModel {
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
         let seeks = start == SearchStart::Either && drawn.contains(&None);
         let frictionless = if seeks { self.frictionless_equilibrium(workspace).map(|n| tensions(&n)) } else { None };
-        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
-        let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
-        let greatest_n = laid[2];
+        let all = || std::iter::once(tensions_here).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
+        let range = |k: usize| {
+            all().map(|t| t[k]).fold([tensions_here[k], tensions_here[k]], |[a, b], t| [smaller(a, t), larger(b, t)])
+        };
+        let greatest_n = tensions_here[2];
         // A range of a single history tells nothing about others.
         if loose.is_none() && frictionless.is_none() && drawn.iter().all(Option::is_none) {
             return Histories::NotFound { greatest_n };

@@ -72,8 +72,9 @@ fn text(state: &AppState, step: FirstStep) -> String {
                 return "Drag the robot".to_owned();
             }
             // One that is held at a place.
-            let held = state.document.scene.cables.first().and_then(|c| c.supports.iter().rfind(|s| s.at_m.is_some()));
-            held.map_or_else(|| "Drag an end of the cable".to_owned(), |s| format!("Drag “{}”", s.name))
+            let support =
+                state.document.scene.cables.first().and_then(|c| c.supports.iter().rfind(|s| s.at_m.is_some()));
+            support.map_or_else(|| "Drag an end of the cable".to_owned(), |s| format!("Drag “{}”", s.name))
         }
         FirstStep::Play => "Press Space to play".to_owned(),
         FirstStep::Zoom => "Scroll to zoom".to_owned(),

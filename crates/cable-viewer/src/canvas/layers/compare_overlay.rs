@@ -15,9 +15,9 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     {
         dashed(view, start, Stroke::new(1.8, view.palette.weak_text));
     }
-    for (k, held) in state.analysis.references.iter().enumerate() {
+    for (k, reference) in state.analysis.references.iter().enumerate() {
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
-        dashed(view, held.picture(time_s), Stroke::new(1.8, LINES[k % LINES.len()]));
+        dashed(view, reference.picture(time_s), Stroke::new(1.8, LINES[k % LINES.len()]));
     }
 }
 

@@ -12,13 +12,14 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
-            let told = scene_errors::summary(state).unwrap_or_else(|| display_names::capital(&sentence(why)));
-            ("No answer for this scene", told)
+            let reason = scene_errors::summary(state).unwrap_or_else(|| display_names::capital(&sentence(why)));
+            ("No answer for this scene", reason)
         }
         _ => return,
     };
-    let kept = if state.live.snapshot.solution.is_some() { "The last valid result is shown in grey." } else { "" };
-    let body = if kept.is_empty() { text } else { format!("{text}\n{kept}") };
+    let last_result =
+        if state.live.snapshot.solution.is_some() { "The last valid result is shown in grey." } else { "" };
+    let body = if last_result.is_empty() { text } else { format!("{text}\n{last_result}") };
     let width = (view.rect.width() - 200.0).clamp(140.0, 440.0);
     let at = view.rect.min + vec2(crate::canvas::layers::grid::STRIP[0] + 12.0, 12.0);
     let heading = view.painter.layout(title.to_owned(), FontId::proportional(14.0), view.palette.risk, width);

@@ -40,9 +40,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let names = pin_names(state);
     figures(ui, state, &names, commands);
     runs(ui, state, &names);
-    for (k, (held, name)) in state.analysis.references.iter().zip(&names).enumerate() {
+    for (k, (reference, name)) in state.analysis.references.iter().zip(&names).enumerate() {
         ui.weak(&name.full);
-        for line in remembered(ui, k, held, state).iter() {
+        for line in remembered(ui, k, reference, state).iter() {
             ui.label(RichText::new(line).small());
         }
     }
@@ -93,7 +93,7 @@ fn figures(ui: &mut Ui, state: &AppState, names: &[PinName], commands: &mut Vec<
                 });
                 ui.end_row();
             }
-            for (k, (held, name)) in state.analysis.references.iter().zip(names).enumerate() {
+            for (k, (reference, name)) in state.analysis.references.iter().zip(names).enumerate() {
                 name_above(ui, k, &name.full);
                 ui.end_row();
                 ui.horizontal(|ui| {
@@ -103,7 +103,7 @@ fn figures(ui: &mut Ui, state: &AppState, names: &[PinName], commands: &mut Vec<
                         commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
                     }
                 });
-                row(ui, &RunFigures::of(&held.solution, &held.scene, held.wall_s), compared);
+                row(ui, &RunFigures::of(&reference.solution, &reference.scene, reference.wall_s), compared);
                 ui.end_row();
             }
         });
@@ -195,12 +195,12 @@ fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
                     .on_hover_text(help);
             }
             ui.end_row();
-            let held = state.analysis.references.iter().enumerate();
-            let held = held.filter_map(|(k, h)| {
+            let reference = state.analysis.references.iter().enumerate();
+            let reference = reference.filter_map(|(k, h)| {
                 let run = h.run.as_deref()?;
                 Some((Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
             });
-            for (k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+            for (k, ([first, last], peaks, events)) in own.into_iter().chain(reference) {
                 match k.and_then(|k| Some((k, names.get(k)?))) {
                     Some((k, name)) => name_above(ui, k, &name.full),
                     None => dimmed_row_if_old(ui, state, |ui| {
@@ -295,7 +295,7 @@ fn change(ratio: f64) -> String {
 /// The differences between two scenes and models.
 #[derive(Clone)]
 struct SceneDifferences {
-    held: Arc<Scene>,
+    reference: Arc<Scene>,
     present: Arc<Scene>,
     models: [Option<Model>; 2],
     lines: Arc<Vec<String>>,
@@ -303,33 +303,33 @@ struct SceneDifferences {
 
 /// The differences of the last frame are reused if nothing has changed since, as writing and
 /// comparing two files takes milliseconds.
-fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<String>> {
+fn remembered(ui: &Ui, k: usize, reference: &Reference, state: &AppState) -> Arc<Vec<String>> {
     let id = Id::unique(("differences", k));
-    let models = [Some(held.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
+    let models = [Some(reference.solution.model), state.live.snapshot.solution.as_ref().map(|s| s.model)];
     let last = ui.data(|d| d.get_temp::<SceneDifferences>(id));
     let fits = |t: &SceneDifferences| {
-        Arc::ptr_eq(&t.held, &held.scene) && t.models == models && *t.present == state.document.scene
+        Arc::ptr_eq(&t.reference, &reference.scene) && t.models == models && *t.present == state.document.scene
     };
     if let Some(told) = last.filter(fits) {
         return told.lines;
     }
-    let lines = Arc::new(differences(held, state));
-    let (present, held) = (Arc::new(state.document.scene.clone()), Arc::clone(&held.scene));
-    ui.data_mut(|d| d.insert_temp(id, SceneDifferences { held, present, models, lines: Arc::clone(&lines) }));
+    let lines = Arc::new(differences(reference, state));
+    let (present, reference) = (Arc::new(state.document.scene.clone()), Arc::clone(&reference.scene));
+    ui.data_mut(|d| d.insert_temp(id, SceneDifferences { reference, present, models, lines: Arc::clone(&lines) }));
     lines
 }
 
 /// Returns what differs in the input of a held answer and the present one, key by key of their
 /// files; the models first.
 #[must_use]
-pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
+pub fn differences(reference: &Reference, state: &AppState) -> Vec<String> {
     let mut out = Vec::new();
     if let Some(present) = &state.live.snapshot.solution
-        && present.model != held.solution.model
+        && present.model != reference.solution.model
     {
-        out.push(format!("Model: {}, now {}", labels::model(held.solution.model), labels::model(present.model)));
+        out.push(format!("Model: {}, now {}", labels::model(reference.solution.model), labels::model(present.model)));
     }
-    out.extend(held.scene.changes_to(&state.document.scene).iter().map(display_names::change));
+    out.extend(reference.scene.changes_to(&state.document.scene).iter().map(display_names::change));
     if out.is_empty() {
         out.push("Same inputs".to_owned());
     }

@@ -278,12 +278,12 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Warning
     // The name only where there is a choice.
     let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
     let figures = figures(warning);
-    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words));
+    let words = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words));
     let along = along.replace(' ', "\u{a0}");
     // All of the cable has one shape of several: there is no place to it.
     let everywhere = warning.kind == WarningKind::NotUnique;
     let at = if everywhere { String::new() } else { format!(" at {along}") };
-    let whole = format!("{title}{at}{of}{told}{since}");
+    let whole = format!("{title}{at}{of}{words}{since}");
     WarningRow {
         severity,
         of_tension: matches!(

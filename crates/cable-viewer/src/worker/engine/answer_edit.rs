@@ -99,18 +99,18 @@ impl Engine {
         let histories = edit.settings.histories && !self.refinement.histories_due();
         let settings = Settings { histories, ..edit.settings };
         let of = |scene: &Scene| simulation_at_rest(scene, edit.model, settings);
-        let laid = of(&edit.scene);
+        let simulation = of(&edit.scene);
         let Some(old) = old.filter(|o| edit.start == EditStart::PresentState && draft::same_cables(edit, o)) else {
-            return laid;
+            return simulation;
         };
-        let tunnelled_cables = match &laid {
-            Ok(laid) => winding_number::tunnelled_cables(old, laid),
+        let tunnelled_cables = match &simulation {
+            Ok(simulation) => winding_number::tunnelled_cables(old, simulation),
             // Only a scene that could be solved from where the cable is gets a second look.
-            Err(_) if draft::penetrates_new_obstacle(edit, old) => return laid,
+            Err(_) if draft::penetrates_new_obstacle(edit, old) => return simulation,
             Err(_) => (0..edit.scene.cables.len()).collect(),
         };
         if tunnelled_cables.is_empty() {
-            return laid;
+            return simulation;
         }
         let mut scene = edit.scene.clone();
         let routes: Vec<(usize, Vec<Point>)> =
@@ -121,12 +121,15 @@ impl Engine {
             }
         }
         match of(&scene) {
-            Ok(led) if laid.is_err() || winding_number::tunnelled_cables(old, &led).len() < tunnelled_cables.len() => {
+            Ok(led)
+                if simulation.is_err()
+                    || winding_number::tunnelled_cables(old, &led).len() < tunnelled_cables.len() =>
+            {
                 self.outbox.routes = routes;
                 edit.scene = scene;
                 Ok(led)
             }
-            _ => laid,
+            _ => simulation,
         }
     }
 
@@ -172,7 +175,7 @@ impl Engine {
 
 /// A scene laid at rest.
 pub(super) fn simulation_at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, Error> {
-    let mut laid = Simulation::for_question(scene.clone(), model, settings, Question::Rest)?;
-    laid.settle()?;
-    Ok(laid)
+    let mut simulation = Simulation::for_question(scene.clone(), model, settings, Question::Rest)?;
+    simulation.settle()?;
+    Ok(simulation)
 }

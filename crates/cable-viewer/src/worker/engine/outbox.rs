@@ -32,7 +32,7 @@ pub fn thin(answers: &mut Vec<Solution>) {
     while answers.len() > MAX_ANSWERS {
         let last = answers.len() - 1;
         let mut left_out: Option<Solution> = None;
-        let mut kept = Vec::with_capacity(last / 2 + 2);
+        let mut thinned = Vec::with_capacity(last / 2 + 2);
         for (k, mut answer) in std::mem::take(answers).into_iter().enumerate() {
             if let Some(before) = left_out.take() {
                 tell_peaks_of(&before, &mut answer);
@@ -40,10 +40,10 @@ pub fn thin(answers: &mut Vec<Solution>) {
             if k % 2 == 1 && k < last {
                 left_out = Some(answer);
             } else {
-                kept.push(answer);
+                thinned.push(answer);
             }
         }
-        *answers = kept;
+        *answers = thinned;
     }
 }
 

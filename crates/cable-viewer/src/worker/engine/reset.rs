@@ -49,8 +49,8 @@ impl Engine {
         {
             let mut edit = edit;
             self.refinement.put_off(edit.settings.histories);
-            let laid = self.settle_edit(&mut edit, None)?;
-            self.run = Some(Run::new(laid, RunStart::Settled));
+            let simulation = self.settle_edit(&mut edit, None)?;
+            self.run = Some(Run::new(simulation, RunStart::Settled));
             self.phase = Phase::Answer;
         }
         self.sample();

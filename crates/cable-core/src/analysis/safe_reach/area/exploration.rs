@@ -105,12 +105,12 @@ type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 impl Exploration<'_> {
     /// Explores outwards from the start, grid after grid; at the end no place is only guessed from
     /// a coarser grid.
-    pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
+    pub fn spread(&mut self, start: Simulation, progress: AreaProgress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.is_candidate(k)).collect();
-        let most_n = self.tension_n(&laid);
+        let most_n = self.tension_n(&start);
         self.found.most_n[self.first] = most_n;
         self.known[self.first] = true;
-        let mut kept = vec![Rc::new(ReachedPlace { place: self.first, simulation: laid, cost: 0, most_n })];
+        let mut kept = vec![Rc::new(ReachedPlace { place: self.first, simulation: start, cost: 0, most_n })];
         let strides = self.strides();
         // A step takes as long on every grid: a coarse one has few places and many steps to each.
         let steps = |stride: usize| (self.found.spacing_m * stride as f64 / STEP_M).ceil();
@@ -292,8 +292,8 @@ impl Exploration<'_> {
     fn interpolate_places(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {
-            let told = |k: &usize| around.contains(k) && self.is_decided(*k);
-            if self.corners(low, stride).iter().all(told) && self.is_empty(low, stride) {
+            let is_known = |k: &usize| around.contains(k) && self.is_decided(*k);
+            if self.corners(low, stride).iter().all(is_known) && self.is_empty(low, stride) {
                 self.fill(low, stride);
             }
         }

@@ -46,10 +46,10 @@ fn without_anything_to_touch_each_place_is_what_a_cable_laid_there_pulls() {
         if far < 1.0 {
             let mut scene = free();
             scene.cables[0].supports.last_mut().unwrap().at_m = Some(at);
-            let laid = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
+            let pull_n = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
             // A guessed tension lies between four places that agree to 2 % of the service tension.
-            let allowed = if found.guessed[k] { 0.02 * found.service_n } else { 1e-6 * laid };
-            assert!((there_n - laid).abs() < allowed, "{at:?}: {there_n} for {laid} N");
+            let allowed = if found.guessed[k] { 0.02 * found.service_n } else { 1e-6 * pull_n };
+            assert!((there_n - pull_n).abs() < allowed, "{at:?}: {there_n} for {pull_n} N");
             compared += 1;
         } else if far > 1.02 {
             assert!(!there_n.is_finite(), "{at:?}: {there_n} N");

@@ -59,8 +59,8 @@ fn are_apart(problem: &Problem, some: &[Node], others: &[Node]) -> bool {
 /// The mirror image of each part of a cable about the chord between its supports; None if no part
 /// lies between two supports.
 fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
-    let held = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
-    let stops: Vec<(f64, Vec2)> = held.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
+    let supports_in_place = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
+    let stops: Vec<(f64, Vec2)> = supports_in_place.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
     let mut nodes = answer.nodes.to_vec();
     let mut any = false;
     for part in stops.windows(2) {

@@ -114,7 +114,7 @@ impl Stepper {
     /// lost in round-off, because a cable that is laid in contact begins like that. If no
     /// equilibrium is found, the limit on that force is lowered.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = self.rollback.with_saved();
+        let outer_rollback = self.rollback.with_saved();
         self.rollback.save(&self.cable);
         let squeezed = self.cable.mesh.tuning.equilibrium.squeezed_residual;
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
@@ -124,7 +124,7 @@ impl Stepper {
             self.rollback.restore(&mut self.cable);
             found = self.relax_within(squeezed, to, dragged);
         }
-        self.rollback = kept;
+        self.rollback = outer_rollback;
         found
     }
 

@@ -37,7 +37,7 @@ impl Stepper {
     /// round-off. It starts from the present shape, and changes nothing where it does not converge
     /// or friction would not be lawful.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = self.rollback.with_saved();
+        let outer_rollback = self.rollback.with_saved();
         let (exact, to) = (self.cable.input.stopping.tolerance, self.cable.motion.time);
         let rounding = rounding_of_bars(&self.cable);
         let mut all = found;
@@ -67,7 +67,7 @@ impl Stepper {
             self.accept_unknowns(&unknowns, to);
         }
         self.cable.input.stopping.tolerance = exact;
-        self.rollback = kept;
+        self.rollback = outer_rollback;
         all
     }
 
@@ -81,12 +81,12 @@ impl Stepper {
         }
         self.rollback.save(&self.cable);
         let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-        let laid = self.cable.motion.positions.clone();
+        let first_positions = self.cable.motion.positions.clone();
         let found = self.quasi_static_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
         let is_near = found
-            && laid.len() == self.cable.motion.positions.len()
-            && laid.iter().zip(&self.cable.motion.positions).all(near);
+            && first_positions.len() == self.cable.motion.positions.len()
+            && first_positions.iter().zip(&self.cable.motion.positions).all(near);
         if !is_near {
             self.rollback.restore(&mut self.cable);
         }

@@ -424,8 +424,8 @@ impl PulleyNetwork {
     fn bisect(&mut self, station: usize) -> Result<(), PulleyFailure> {
         let Some(wheel) = self.wheel(station) else { return Ok(()) };
         let start = self.layout.stations[station].arc_length;
-        let held = if wheel.friction > 0.0 { start - self.slid(station) } else { start };
-        self.try_at(station, held)?;
+        let resting_place = if wheel.friction > 0.0 { start - self.slid(station) } else { start };
+        self.try_at(station, resting_place)?;
         let Some(imbalance) = self.imbalance(station, &wheel) else { return Ok(()) };
         let least = END_CABLE_FRACTION * self.layout.length;
         let limit = if imbalance < 0.0 {
@@ -435,7 +435,7 @@ impl PulleyNetwork {
         };
         // The search goes from where friction held it towards the limit; the imbalance keeps its
         // sign up to the root.
-        let (mut near, mut far) = (held, limit);
+        let (mut near, mut far) = (resting_place, limit);
         self.try_at(station, limit)?;
         let at_limit = self.imbalance(station, &wheel);
         if at_limit.is_some_and(|f| f * imbalance > 0.0) {

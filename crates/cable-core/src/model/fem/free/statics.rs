@@ -270,9 +270,9 @@ impl Statics {
             && !self.adopted
             && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, dragged, None)
         {
-            let mut laid = network.clone();
-            if laid.remember_answer(&lay.answer) && laid.balance_with_friction().is_ok() {
-                *network = laid;
+            let mut candidate = network.clone();
+            if candidate.remember_answer(&lay.answer) && candidate.balance_with_friction().is_ok() {
+                *network = candidate;
                 return Ok(FrictionStart::Route);
             }
         }

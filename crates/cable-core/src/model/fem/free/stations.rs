@@ -105,7 +105,7 @@ impl StationLayout {
     pub fn new(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>], slid: &[Option<f64>]) -> Self {
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
-        let laid = arcs_along_route(problem, time_s, dragged);
+        let arcs_of_route = arcs_along_route(problem, time_s, dragged);
         let mut stations: Vec<Station> = Vec::with_capacity(problem.supports.len() + problem.loads.len());
         for (k, support) in problem.supports.iter().enumerate() {
             let at = place(problem, k, time_s, dragged);
@@ -127,7 +127,7 @@ impl StationLayout {
             let known = support.arc_length.or(slid.get(k).copied().flatten());
             let released = at.is_none() && !matches!(support.kind, SupportKind::Load | SupportKind::Free);
             stations.push(Station {
-                arc_length: known.unwrap_or(laid.get(k).copied().unwrap_or(0.0)),
+                arc_length: known.unwrap_or(arcs_of_route.get(k).copied().unwrap_or(0.0)),
                 material_on_wheel: 0.0,
                 restraint,
                 load: support.force.at(time_s) + gravity * support.mass,

@@ -127,8 +127,9 @@ impl Workspace {
         // The system stays assembled at the answer, because its gradient gives the reactions.
         let value = self.assemble(step, unknowns, Curvature::Exact);
         let noise = noise + ENERGY_NOISE * self.magnitude.abs();
-        let held = (0..step.mesh.nodes()).filter(|&k| step.mesh.fixity[k]);
-        let work: f64 = held.map(|k| self.gradient_at(k).dot(&(unknowns.positions[k] - begun.positions[k]))).sum();
+        let fixed_nodes = (0..step.mesh.nodes()).filter(|&k| step.mesh.fixity[k]);
+        let work: f64 =
+            fixed_nodes.map(|k| self.gradient_at(k).dot(&(unknowns.positions[k] - begun.positions[k]))).sum();
         self.mixed.begun = begun;
         value > at_start + larger(work, 0.0) + noise
     }
@@ -254,9 +255,9 @@ impl Workspace {
                     [false, false] => self.system.hessian.add_spring(2 * e, across),
                     [true, true] => {}
                     [first, _] => {
-                        let (free, held) = if first { (e + 1, e) } else { (e, e + 1) };
+                        let (free, fixed_node) = if first { (e + 1, e) } else { (e, e + 1) };
                         let block = Mat2::new(across[0], across[1], across[1], across[2]);
-                        let go = block * (self.goal[held] - x[held]);
+                        let go = block * (self.goal[fixed_node] - x[fixed_node]);
                         self.system.add_block(free, free, &block);
                         self.direction[2 * free] += go.x;
                         self.direction[2 * free + 1] += go.y;

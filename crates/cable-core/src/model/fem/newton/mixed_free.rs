@@ -102,8 +102,11 @@ impl MixedFreeSolver {
                 self.begin(mesh, input);
             }
             let balance = self.assemble(mesh, input, x, Curvature::Exact);
-            let left =
-                mesh.fixity.iter().zip(x.iter().zip(&input.supports.target)).any(|(held, (x, to))| *held && x != to);
+            let left = mesh
+                .fixity
+                .iter()
+                .zip(x.iter().zip(&input.supports.target))
+                .any(|(is_fixed, (x, to))| *is_fixed && x != to);
             if !(balance.force.is_finite() && balance.pull.is_finite()) {
                 return None;
             }
@@ -172,7 +175,7 @@ impl MixedFreeSolver {
             self.hold[e] = (stiffness, t);
             self.present[e] = now;
         }
-        for (g, _) in self.gradient.iter().zip(&mesh.fixity).filter(|(_, held)| !**held) {
+        for (g, _) in self.gradient.iter().zip(&mesh.fixity).filter(|(_, is_fixed)| !**is_fixed) {
             balance.force = larger(balance.force, g.norm());
         }
         balance

@@ -156,8 +156,8 @@ mod tests {
                     *way = gaps * least * (s - if k % 2 == 1 { down } else { 0.0 });
                 }
                 let looked = memory.ccd_step_bound(&step, &unknowns, 1.0);
-                let told = memory.step_bound_from_assembly(&step, &unknowns, 1.0);
-                prop_assert!(told == looked, "{} free where {} is", told, looked);
+                let by_assembly = memory.step_bound_from_assembly(&step, &unknowns, 1.0);
+                prop_assert!(by_assembly == looked, "{} free where {} is", by_assembly, looked);
             }
         }
     }

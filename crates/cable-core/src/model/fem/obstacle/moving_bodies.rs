@@ -292,21 +292,21 @@ impl<'a> BodiesStep<'a> {
     /// Restores the gaps that were lost, as the module describes.
     fn restore_gaps(&self, within: f64, x: &mut [Vec2]) {
         let (mesh, start) = (self.step.mesh, &self.step.input.supports.start);
-        let mut kept: Vec<(ContactPair, Vec2)> = Vec::new();
+        let mut gaps: Vec<(ContactPair, Vec2)> = Vec::new();
         let mut found: Vec<ContactPair> = Vec::new();
         for motion in self.motions {
             let gone: Vec<Vec2> = start.iter().map(|p| motion.carried(*p)).collect();
             self.step.contacts.find_within(self.step.problem, mesh, &gone, within, &mut found);
             let wanted = |t: &&ContactPair| t.pair.weight > 0.0 && t.pair.gap.obstacle == motion.obstacle;
-            kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(&gone))));
+            gaps.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(&gone))));
         }
         self.step.contacts.find_within(self.step.problem, mesh, start, within, &mut found);
         let is_fixed = |t: &ContactPair| self.motions.iter().all(|motion| motion.obstacle != t.pair.gap.obstacle);
         let wanted = |t: &&ContactPair| t.pair.weight > 0.0 && is_fixed(t);
-        kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(start))));
+        gaps.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(start))));
         for _ in 0..self.step.mesh.tuning.outline.max_rounds {
             let mut worst = 0.0;
-            for (touch, from) in &kept {
+            for (touch, from) in &gaps {
                 let gap = &touch.pair.gap;
                 let least = if gap.gap_m > 0.0 {
                     -(1.0 - self.step.mesh.tuning.outline.kept_gap_fraction) * gap.gap_m

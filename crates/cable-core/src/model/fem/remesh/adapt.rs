@@ -70,8 +70,8 @@ fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Reme
         // A new sliding node may lift its neighbour off. At rest it is not itself removed before
         // the next step: it took over weight of the nodes beside it, which under a corner pulls it
         // away until they have moved.
-        let kept: &[SlideOver] = if inertia == Inertia::QuasiStatic { &taken } else { &[] };
-        remove_sliding_nodes(cable, kept, inertia);
+        let new_nodes: &[SlideOver] = if inertia == Inertia::QuasiStatic { &taken } else { &[] };
+        remove_sliding_nodes(cable, new_nodes, inertia);
         changed = true;
     }
     let moved = move_marks(cable, inertia);
@@ -91,7 +91,7 @@ fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Reme
 /// were any.
 pub(in crate::model::fem) fn remove_sliding_nodes(
     cable: &mut CableState,
-    kept: &[SlideOver],
+    new_nodes: &[SlideOver],
     inertia: Inertia,
 ) -> bool {
     let rests = inertia == Inertia::QuasiStatic;
@@ -104,7 +104,7 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
             None => false,
             Some(SlideOver::Pulley(_)) => has_let_go,
             Some(slide_over @ SlideOver::Obstacle { .. }) => {
-                !kept.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
+                !new_nodes.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
             }
         };
         // Of the nodes on a wheel that has let go, one keeps the bend.

@@ -135,8 +135,8 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
         let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
         // The next node presses more by the force that the tilt lifts here and has more friction;
         // this half has less normal force and less friction.
-        let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
-        let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
+        let part_left = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
+        let rubbed = (grounded - ground.normal * pressed) * (1.0 - part_left);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
         // The ground also carries the normal force of a point mass; the force on its node includes

@@ -225,7 +225,7 @@ impl System {
     /// Prescribes the held nodes: zero gradient, identity rows.
     #[cfg(test)]
     pub fn pin_supports(&mut self, mesh: &Mesh) {
-        for (node, _) in mesh.fixity.iter().enumerate().filter(|(_, held)| **held) {
+        for (node, _) in mesh.fixity.iter().enumerate().filter(|(_, is_fixed)| **is_fixed) {
             for k in [2 * node, 2 * node + 1] {
                 self.gradient[k] = 0.0;
                 self.hessian.pin(k);

@@ -179,8 +179,8 @@ impl BarEnergy {
         }
         // Damping is measured from no less than the unstretched length. The energy at the length at
         // which the tension ends remains, per length.
-        let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
-        Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() }
+        let slope = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
+        Self { energy: slope * at[1], slope: [0.0, slope], ..Self::default() }
     }
 }
 
@@ -316,11 +316,15 @@ fn add_sliding(
     let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
     let change = unknowns.slides[e + 1] - unknowns.slides[e];
     // Half of the bar's first material is already among the forces on its nodes.
-    let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
+    let material = mesh.arc_length[e + 1] - mesh.arc_length[e];
     let half = (unknowns.positions[e] + unknowns.positions[e + 1]) * 0.5;
-    let shifted = input.loads.body.dot(&(hung.center - half)) * held;
+    let shifted = input.loads.body.dot(&(hung.center - half)) * material;
     let hang = [0, 1].map(|j| {
-        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - input.loads.body * 0.5) * held }
+        if slides[j] {
+            Vec2::zeros()
+        } else {
+            hung.slope[j] * change + (hung.slope[j] - input.loads.body * 0.5) * material
+        }
     });
     let across = Mat2::identity() - t * t.transpose();
     for j in 0..2 {
@@ -336,7 +340,7 @@ fn add_sliding(
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
                     block -= Weight::bend(mesh, e, j, &path, unknowns.positions[e + j], input.loads.body)
-                        * ((held + change) * scale);
+                        * ((material + change) * scale);
                 }
             }
             s.add_block(e + j, e + k, &block);

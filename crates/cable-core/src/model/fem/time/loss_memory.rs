@@ -36,8 +36,8 @@ fn relax_bars(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
         let before = cable.input.losses.material_strain[e];
         let length = bar_energy::rest_length(mesh, e, &unknowns.slides);
         let strain = mesh.path(e, &unknowns.positions).length / length - 1.0;
-        let kept: f64 = forces.iter().zip(branches).map(|(q, b)| q * b.in_step(h)[0]).sum();
-        let slack_strain = (stiffness * before - kept) / (ea + stiffness);
+        let remainder: f64 = forces.iter().zip(branches).map(|(q, b)| q * b.in_step(h)[0]).sum();
+        let slack_strain = (stiffness * before - remainder) / (ea + stiffness);
         let change = if mesh.is_flexible() { larger(strain, slack_strain) } else { strain } - before;
         for (q, b) in forces.iter_mut().zip(branches) {
             let [decay, part] = b.in_step(h);
@@ -113,10 +113,10 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
         let is_slack = mesh.is_flexible() && strain < slack_strain;
         let strain = if is_slack { slack_strain } else { strain };
         losses.material_strain.push(strain);
-        let kept: f64 = forces.iter().zip(&*decay).map(|(q, d)| q * d).sum();
+        let remainder: f64 = forces.iter().zip(&*decay).map(|(q, d)| q * d).sum();
         let material = length * (1.0 + strain);
         let late = if is_slack { material } else { losses.predicted_length[e] };
-        let from = part * late + (1.0 - part) * material - length * kept / stiffness;
+        let from = part * late + (1.0 - part) * material - length * remainder / stiffness;
         losses.damped_from[e] = if mesh.is_flexible() { larger(from, length) } else { from };
         losses.bars[e][0] = stiffness;
     }

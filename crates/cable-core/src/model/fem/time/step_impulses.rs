@@ -76,7 +76,7 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for load in &cable.meshing.loads {
         sum[LOADS] += load.force.at(to);
     }
-    for (k, _) in mesh.fixity.iter().enumerate().filter(|(_, held)| **held) {
+    for (k, _) in mesh.fixity.iter().enumerate().filter(|(_, is_fixed)| **is_fixed) {
         sum[SUPPORTS] -= cable.answers.reaction[k];
     }
     for &(k, stiffness, at) in &input.inertial.hands {

@@ -16,9 +16,9 @@ pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &m
         let limit = mesh.problem.max_floor_friction(ds, mesh.point_mass[i]);
         let loss = limit * h / mesh.mass[i];
         if !mesh.supported[i] {
-            let kept = if speed <= loss { 0.0 } else { 1.0 - loss / speed };
-            account.contacts -= mesh.velocity[i] * ((1.0 - kept) * mesh.mass[i]);
-            mesh.velocity[i] *= kept;
+            let part_left = if speed <= loss { 0.0 } else { 1.0 - loss / speed };
+            account.contacts -= mesh.velocity[i] * ((1.0 - part_left) * mesh.mass[i]);
+            mesh.velocity[i] *= part_left;
         }
     }
 }

@@ -36,7 +36,8 @@ impl MomentumSums {
         let lumps: f64 = p.supports.iter().map(|s| s.mass).sum();
         let arc_moment: Vec2 = p.supports.iter().map(|s| s.force.at(time_s)).sum();
         let loads: Vec2 = p.loads.iter().map(|l| l.force.at(time_s)).sum();
-        let pulled: Vec2 = mesh.force.iter().zip(&mesh.supported).filter(|(_, held)| **held).map(|(f, _)| *f).sum();
+        let pulled: Vec2 =
+            mesh.force.iter().zip(&mesh.supported).filter(|(_, is_supported)| **is_supported).map(|(f, _)| *f).sum();
         self.weight += (p.weight * p.length + gravity * lumps) * kick;
         self.loads += (p.wind.at(time_s) * p.length + arc_moment + loads) * kick;
         self.supports -= pulled * kick;

@@ -71,9 +71,9 @@ pub(in crate::model::mass_spring) struct Contacts {
 }
 
 impl Contacts {
-    pub(in crate::model::mass_spring) fn new(mesh: &Mesh, anchors: &[Anchor], kept: Anchors) -> Self {
+    pub(in crate::model::mass_spring) fn new(mesh: &Mesh, anchors: &[Anchor], memory: Anchors) -> Self {
         let tuning = mesh.tuning.contact;
-        let mut anchors = match kept {
+        let mut anchors = match memory {
             Anchors::Forgotten => Vec::new(),
             Anchors::Kept => anchors.to_vec(),
         };
@@ -84,10 +84,10 @@ impl Contacts {
         }
         let stiffness = mesh.problem.force_scale() / tuning.offset_m;
         let mut this = Self { tuning, stiffness, anchors, friction: Vec::new(), pairs: Vec::new() };
-        if kept == Anchors::Forgotten {
+        if memory == Anchors::Forgotten {
             this.find_pairs(mesh, tuning.first_contact_m);
-            let laid = this.pairs.iter().filter(|p| p.signed.weight > 0.0).map(|p| p.anchor(mesh));
-            this.anchors.extend(laid);
+            let new_anchors = this.pairs.iter().filter(|p| p.signed.weight > 0.0).map(|p| p.anchor(mesh));
+            this.anchors.extend(new_anchors);
         }
         this
     }
@@ -268,9 +268,9 @@ impl Contacts {
                     return Anchor { at, ..contact.anchor };
                 }
                 let pair = &self.pairs[contact.pair.min(self.pairs.len() - 1)];
-                let kept = friction_law::return_map(shift.dot(&contact.direction), self.tuning.slip_m);
+                let elastic_slip = friction_law::return_map(shift.dot(&contact.direction), self.tuning.slip_m);
                 let here = pair.anchor(mesh);
-                Anchor { at: here.at - contact.direction * kept, ..here }
+                Anchor { at: here.at - contact.direction * elastic_slip, ..here }
             })
             .collect()
     }

@@ -22,7 +22,7 @@ pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, d
     let mut steps = HalvedSteps::new(1.0, 1.0 / parts, MAX_HALVINGS, JOINED_FRACTION);
     let (mut done, mut iterations) = (0.0, 0);
     while let Some(next) = steps.next(done) {
-        let kept = chain.clone();
+        let before = chain.clone();
         chain.clock.time_s = begin + (end - begin) * next;
         for (k, target) in targets.iter().enumerate() {
             // A hand goes straight.
@@ -35,7 +35,7 @@ pub(in crate::model::mass_spring) fn quasi_static_step(chain: &mut ChainState, d
                 done = next;
             }
             Err(e) => {
-                *chain = kept;
+                *chain = before;
                 if !steps.halve() {
                     return Err(e);
                 }

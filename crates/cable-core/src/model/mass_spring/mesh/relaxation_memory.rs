@@ -121,9 +121,9 @@ impl RelaxationMemory {
         self.remaining_force.fill(0.0);
         self.change.fill(0.0);
         for (forces, decay) in self.forces.chunks_exact_mut(self.strain.len().max(1)).zip(&self.decay) {
-            for (force, kept) in forces.iter_mut().zip(&mut self.remaining_force) {
+            for (force, remaining) in forces.iter_mut().zip(&mut self.remaining_force) {
                 *force *= decay;
-                *kept += *force;
+                *remaining += *force;
             }
         }
     }

@@ -116,8 +116,8 @@ fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2]
         }
         solver.solve(mesh, h);
         let moved = mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported);
-        for (((v, x), to), held) in moved {
-            if !held {
+        for (((v, x), to), is_supported) in moved {
+            if !is_supported {
                 *v = (to - x) * per_step;
             }
         }
@@ -157,11 +157,11 @@ fn warn_of_preview(chain: &mut ChainState, settings: &Settings, h: f64) {
 /// T_a/l_a)/m at a node.
 fn max_transverse_frequency_squared(mesh: &Mesh) -> f64 {
     let (mut fastest, mut before) = (0.0, 0.0);
-    let held = mesh.supported.iter().zip(&mesh.mass);
+    let is_supported = mesh.supported.iter().zip(&mesh.mass);
     let after = mesh.tension.iter().zip(&mesh.rest_length).map(|(tension, rest)| tension / rest).chain([0.0]);
-    for ((held, mass), after) in held.zip(after) {
+    for ((is_supported, mass), after) in is_supported.zip(after) {
         let square = 2.0 * (before + after) / mass;
-        if square > fastest && !held {
+        if square > fastest && !is_supported {
             fastest = square;
         }
         before = after;
@@ -175,11 +175,11 @@ fn predict(mesh: &mut Mesh, time_s: f64, h: f64, solver: &mut ConstraintSolver) 
     solver.position.resize(count, Vec2::zeros());
     solver.inverse_mass.resize(count, 0.0);
     let nodes = mesh.position.iter().zip(&mut mesh.velocity).zip(&mesh.force).zip(&mesh.mass).zip(&mesh.supported);
-    for (((((x, v), f), mass), held), (to, inverse)) in
+    for (((((x, v), f), mass), is_supported), (to, inverse)) in
         nodes.zip(solver.position.iter_mut().zip(&mut solver.inverse_mass))
     {
-        *inverse = if *held { 0.0 } else { mass.recip() };
-        if !held {
+        *inverse = if *is_supported { 0.0 } else { mass.recip() };
+        if !is_supported {
             *v += f * (h * *inverse);
         }
         *to = x + *v * h;

@@ -241,7 +241,7 @@ const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = contact_path.friction_of_loose;
     let room = BALANCE_TOLERANCE * (greatest + FORCE_ROUNDING_N);
-    let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
+    let lost = |found: f64, expected: f64| !((found - expected).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (contact_path.drag, c.history.breakpoints())
         && (lost(first.arc_length, c.ends.material[0]) || lost(last.arc_length, c.ends.material[1]))
     {

@@ -250,14 +250,14 @@ impl TensionProfile {
             tension,
             mobilised: 0.0,
         };
-        let mut laid = Self::of_laying(contact_path, middle, e.place);
-        let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
+        let mut profile = Self::of_laying(contact_path, middle, e.place);
+        let missing = tension - profile.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
         if missing > 0.0 {
-            laid = Self::of_laying(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.place);
+            profile = Self::of_laying(contact_path, Breakpoint { tension: tension + missing, ..middle }, e.place);
         }
-        let off = laid.ends().map_or(0.0, |[a, b]| middle.arc_length - 0.5 * (a.arc_length + b.arc_length));
-        laid.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.arc_length += off);
-        laid
+        let off = profile.ends().map_or(0.0, |[a, b]| middle.arc_length - 0.5 * (a.arc_length + b.arc_length));
+        profile.breakpoints.iter_mut().for_each(|breakpoint| breakpoint.arc_length += off);
+        profile
     }
 
     /// Recomputes its material from the strain of its tensions, from its first breakpoint on or
@@ -560,11 +560,11 @@ impl TensionProfile {
         let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
         let bed = ContactPath { friction: contact_path.friction_of_loose, ..*contact_path };
         let begin = Breakpoint { tension: 0.0, ..if drawn == 1 { a } else { b } };
-        let laid = Self::of_laying(&bed, begin, [a.coordinate, b.coordinate]);
+        let profile = Self::of_laying(&bed, begin, [a.coordinate, b.coordinate]);
         if drawn == 0 {
             self.push(Breakpoint { mobilised: m, ..first });
         }
-        laid.breakpoints.iter().for_each(|breakpoint| self.push(*breakpoint));
+        profile.breakpoints.iter().for_each(|breakpoint| self.push(*breakpoint));
         if drawn == 1 {
             self.push(end);
             self.push(last);

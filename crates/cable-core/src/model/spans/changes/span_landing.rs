@@ -214,9 +214,9 @@ fn insert_contact(
             held_ends[side] = Some(end);
             (contact.ends.place[side], contact.ends.material[side]) = (end, s);
             // This is the length that is laid from the held end to the other.
-            let laid = contact_path.slide(end, p, force, 0.0).material;
+            let material = contact_path.slide(end, p, force, 0.0).material;
             if held_ends[1 - side].is_none() {
-                contact.ends.material[1 - side] = s + laid;
+                contact.ends.material[1 - side] = s + material;
             }
         }
     }

@@ -22,8 +22,8 @@ pub(in crate::model::spans) fn is_about_to_slide(
         }
         let [t1, t2] = c.ends.tension;
         let reached = context.contact_path(c).slide(c.ends.place[0], c.ends.place[1], t1, m).tension;
-        let laid = context.law.load.norm() * (c.ends.material[1] - c.ends.material[0]);
-        (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
+        let weight = context.law.load.norm() * (c.ends.material[1] - c.ends.material[0]);
+        (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), weight)
     };
     !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
 }

@@ -304,8 +304,8 @@ fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> boo
     let floor = TENSION_ROUNDING * (section.to - section.from);
     let q = crossing(p0, p1, floor, None, |p| {
         let place = contact_path.place(p);
-        let (tension, laid) = c.history.at(&contact_path, p);
-        (s - laid, -place.stretch / contact_path.law.stretch(tension))
+        let (tension, arc_length) = c.history.at(&contact_path, p);
+        (s - arc_length, -place.stretch / contact_path.law.stretch(tension))
     });
     let tension = c.history.at(&contact_path, q).0;
     let breakpoints = c.history.breakpoints();

@@ -99,16 +99,17 @@ pub(in crate::model::spans) fn loose_section(
             // down in a heap below the support. A cable that hangs higher than it is thick may rest
             // along its route in tension, which is sought first.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
-            let laid = if laid_out { along_route().and_then(&section) } else { None };
+            let section_along_route = if laid_out { along_route().and_then(&section) } else { None };
             let may_hang = sought == LooseShapes::AnyTension;
-            laid.filter(|s| {
-                let loose = s.loose.as_ref();
-                loose.is_some_and(|l| l.spreads() && (may_hang || l.hangs() <= layout.problem.cable.diameter_m))
-            })
-            .or_else(|| {
-                let down = DrainedRoute::plumb_down(&surfaces, bodies, frame, at)?;
-                section(if support_places[0].is_some() { down } else { down.back() })
-            })
+            section_along_route
+                .filter(|s| {
+                    let loose = s.loose.as_ref();
+                    loose.is_some_and(|l| l.spreads() && (may_hang || l.hangs() <= layout.problem.cable.diameter_m))
+                })
+                .or_else(|| {
+                    let down = DrainedRoute::plumb_down(&surfaces, bodies, frame, at)?;
+                    section(if support_places[0].is_some() { down } else { down.back() })
+                })
         }
         [None, None] => None,
     }
@@ -150,11 +151,11 @@ mod tests {
         for (name, layout, instant) in catalogue_with_lengths(&[0.9, 1.0, 1.1, 1.3, 2.0]) {
             let context = layout.context(layout.curves(), &instant);
             for k in 0..layout.sections.len() {
-                let laid = |sought| {
+                let loose = |sought| {
                     loose_section(&layout, k, &context, &instant, sought)
                         .filter(|s| s.loose.as_ref().is_some_and(LooseSection::spreads))
                 };
-                let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
+                let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(loose);
                 // Cable that hangs from a support and ends free on the ground may rest in tension.
                 let hangs = any.as_ref().and_then(|s| s.loose.as_ref()).map_or(0.0, LooseSection::hangs);
                 let ends_free = layout.sections[k].supports.iter().any(Option::is_none);

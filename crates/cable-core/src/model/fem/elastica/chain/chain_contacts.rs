@@ -73,7 +73,7 @@ impl BarChain<'_> {
                 deepest = larger(deepest, -g.gap_m);
             }
         };
-        x.iter().zip(&self.fixity).filter(|(_, held)| !**held).for_each(|(p, _)| measure(*p));
+        x.iter().zip(&self.fixity).filter(|(_, is_fixed)| !**is_fixed).for_each(|(p, _)| measure(*p));
         for (a, b) in x.iter().zip(x.iter().skip(1)) {
             // A bar may cut off the corner nearest to it.
             world.geometry().segment_pairs(*a, *b, self.bar, &mut |p| measure(a + (b - a) * p.gap.fraction));

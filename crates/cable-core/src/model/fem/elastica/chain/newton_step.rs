@@ -149,7 +149,7 @@ impl BarChain<'_> {
         for t in self.contacts.iter().filter(|t| t.active) {
             self.add_contact(matrix, right, t, hessian);
         }
-        for (k, _) in self.fixity.iter().enumerate().filter(|(_, held)| **held) {
+        for (k, _) in self.fixity.iter().enumerate().filter(|(_, is_fixed)| **is_fixed) {
             for i in [2 * k, 2 * k + 1] {
                 matrix.pin(i);
                 right[i] = 0.0;

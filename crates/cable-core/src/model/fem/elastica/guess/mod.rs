@@ -136,15 +136,15 @@ impl<'a> ElasticaGuess<'a> {
             let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free) || at.is_none();
             let force = s.force.at(self.time_s) + gravity * s.mass;
             let angle = s.angle.filter(|_| s.kind == SupportKind::Clamped);
-            let held = at.filter(|_| !loaded);
+            let place = at.filter(|_| !loaded);
             if k == 0 || k == last {
                 if s.kind == SupportKind::Pulley {
                     return None;
                 }
-                self.elastica.ends[usize::from(k > 0)] = held.map_or(End::Loaded(force), |p| End::Held(p, angle));
+                self.elastica.ends[usize::from(k > 0)] = place.map_or(End::Loaded(force), |p| End::Held(p, angle));
             } else if s.kind != SupportKind::Pulley {
                 let arc = s.arc_length?;
-                let joint = match held {
+                let joint = match place {
                     Some(at) => Joint::Held { support: k, arc, at, angle },
                     None => Joint::Load { support: Some(k), arc, force },
                 };

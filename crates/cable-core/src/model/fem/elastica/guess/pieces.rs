@@ -147,8 +147,8 @@ impl ElasticaGuess<'_> {
                 && elastica.body.norm() * l * l / (8.0 * pull)
                     < LIFTED_SAG_FRACTION * elastica.layer_thickness(pull) * (a + b)
         };
-        let kept: Vec<bool> = (0..attachments.len()).map(|i| !is_lifted(i)).collect();
-        let mut keep = kept.iter();
+        let stays: Vec<bool> = (0..attachments.len()).map(|i| !is_lifted(i)).collect();
+        let mut keep = stays.iter();
         self.attachments.retain(|_| keep.next().copied().unwrap_or(true));
     }
 
