@@ -331,8 +331,8 @@ fn friction_of_pulleys_beyond_the_capstan_is_seen() {
             let mut other = scene.clone();
             other.cables[0].supports[k].friction = Some(friction);
             let found = check(&other, &solution);
-            let told = found.findings.iter().any(|f| f.law == Law::Friction && (k == 1 || f.with == name));
-            assert_eq!(told, seen, "{name} {friction}: {:?}", found.findings);
+            let is_reported = found.findings.iter().any(|f| f.law == Law::Friction && (k == 1 || f.with == name));
+            assert_eq!(is_reported, seen, "{name} {friction}: {:?}", found.findings);
         }
     }
 }
@@ -363,8 +363,8 @@ fn a_cable_on_the_robot_is_asked_everything() {
         let mut other = solution.clone();
         change(&mut other);
         let found = check(&scene, &other);
-        let told = found.findings.iter().any(|f| f.law == law && (f.with == with || with.is_empty()));
-        assert!(told, "{law:?}: {:?}", found.findings);
+        let is_reported = found.findings.iter().any(|f| f.law == law && (f.with == with || with.is_empty()));
+        assert!(is_reported, "{law:?}: {:?}", found.findings);
     };
     // Drawn into it, and the robot moved into the cable.
     seen(&|s| s.cables[0].nodes.iter_mut().for_each(|n| n.y_m -= 0.01), Law::Penetration, "robot");

@@ -210,8 +210,8 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
         assert_eq!(run.events.len(), instants / 2, "cut at {cut}");
         assert!(run.history.time_s.iter().zip(&solutions).all(|(t, s)| *t == s.time_s));
         // Nothing is left out without a message.
-        let kept = write(&solutions[..instants]);
-        let all_kept = instants > 0 && [h, n, e].into_iter().zip(&kept).all(|(now, then)| now == then);
+        let whole_tables = write(&solutions[..instants]);
+        let all_kept = instants > 0 && [h, n, e].into_iter().zip(&whole_tables).all(|(now, then)| now == then);
         assert!(all_kept == run.left_out.is_empty() || instants == 0, "cut at {cut}: {:?}", run.left_out);
         reached.push(instants);
     }

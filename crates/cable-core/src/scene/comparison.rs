@@ -128,10 +128,10 @@ mod tests {
 
     #[test]
     fn a_value_is_told_with_what_it_was() {
-        let told = changes(|s| s.cables[0].length_m += 1.0);
+        let changes_found = changes(|s| s.cables[0].length_m += 1.0);
         let was = catalog::tank().cables[0].length_m;
         let [was, is] = [was, was + 1.0].map(|v| Some(FieldValue::Number(v)));
-        assert_eq!(told, [("length_m".to_owned(), was, is)]);
+        assert_eq!(changes_found, [("length_m".to_owned(), was, is)]);
     }
 
     /// A name with a bracket or an equals sign in it was taken apart as if it were a line of a
@@ -139,28 +139,28 @@ mod tests {
     #[test]
     fn a_text_is_told_as_it_is() {
         let name = "a = [1, 2]";
-        let told = changes(|s| name.clone_into(&mut s.cables[0].name));
-        assert_eq!(told.len(), 1);
-        assert_eq!(told[0].2, Some(FieldValue::Text(name.to_owned())));
+        let changes_found = changes(|s| name.clone_into(&mut s.cables[0].name));
+        assert_eq!(changes_found.len(), 1);
+        assert_eq!(changes_found[0].2, Some(FieldValue::Text(name.to_owned())));
     }
 
     /// Two supports changed places with one another while something was added, and nothing was
     /// said: each line was in both files.
     #[test]
     fn places_that_are_exchanged_are_changes() {
-        let told = changes(|s| {
+        let changes_found = changes(|s| {
             let [a, b] = [0, 1].map(|k| s.cables[0].supports[k].at_m);
             (s.cables[0].supports[0].at_m, s.cables[0].supports[1].at_m) = (b, a);
             s.cables[0].supports[0].release_s = Some(1.0);
         });
-        assert_eq!(told.iter().filter(|(key, ..)| key == "at_m").count(), 2, "{told:?}");
+        assert_eq!(changes_found.iter().filter(|(key, ..)| key == "at_m").count(), 2, "{changes_found:?}");
     }
 
     #[test]
     fn a_thing_that_was_added_is_told_key_by_key_and_no_other() {
-        let told = changes(|s| s.cables[0].supports.insert(1, Support::fixed("grip", [0.0, 3.0])));
-        assert!(told.iter().all(|(_, was, _)| was.is_none()), "{told:?}");
-        let of = |key: &str| told.iter().find(|t| t.0 == key).and_then(|t| t.2.clone());
+        let changes_found = changes(|s| s.cables[0].supports.insert(1, Support::fixed("grip", [0.0, 3.0])));
+        assert!(changes_found.iter().all(|(_, was, _)| was.is_none()), "{changes_found:?}");
+        let of = |key: &str| changes_found.iter().find(|t| t.0 == key).and_then(|t| t.2.clone());
         assert_eq!(of("name"), Some(FieldValue::Text("grip".to_owned())));
         assert_eq!(of("at_m"), Some(FieldValue::Pair([0.0, 3.0])));
         let gone = changes(|s| drop(s.obstacles.remove(1)));
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn a_schedule_is_told_as_so_many_numbers() {
         let motion = Motion { times_s: vec![0.0, 1.0, 2.0], points_m: vec![[0.0, 1.0]; 3] };
-        let told = changes(|s| s.cables[0].supports[0].motion = Some(motion));
-        assert_eq!(told.iter().filter(|t| t.2 == Some(FieldValue::List(3))).count(), 2, "{told:?}");
+        let changes_found = changes(|s| s.cables[0].supports[0].motion = Some(motion));
+        assert_eq!(changes_found.iter().filter(|t| t.2 == Some(FieldValue::List(3))).count(), 2, "{changes_found:?}");
     }
 }

@@ -441,9 +441,9 @@ proptest! {
         let cable = &sim.cables()[0];
         let whole: f64 = cable.pieces.iter().map(|p| p.part.length()).sum();
         prop_assert!((whole - 11.0).abs() < 1e-9);
-        let held: usize = cable.pieces.iter().map(|p| p.part.supports.iter().flatten().count()).sum();
+        let holding: usize = cable.pieces.iter().map(|p| p.part.supports.iter().flatten().count()).sum();
         let torn = cable.breaks().iter().filter(|b| b.detached_from.is_some()).count();
-        prop_assert_eq!(held + torn, cable.problem().supports.len());
+        prop_assert_eq!(holding + torn, cable.problem().supports.len());
         prop_assert_eq!(cable.pieces.len() + torn, cable.breaks().len() + 1);
         prop_assert_eq!(go().unwrap().solution(), sim.solution());
     }

@@ -62,8 +62,10 @@ impl Simulation {
             };
             let cause = &mut self.warnings[at].cause;
             let histories = found.or_else(|| cause.histories().cloned());
-            if let (Some(histories), WarningCause::ManyEquilibria { histories: told, .. }) = (histories, cause) {
-                *told = histories.beside(answer);
+            if let (Some(histories), WarningCause::ManyEquilibria { histories: shown_histories, .. }) =
+                (histories, cause)
+            {
+                *shown_histories = histories.beside(answer);
             }
         }
     }

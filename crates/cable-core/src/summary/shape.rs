@@ -24,9 +24,9 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
         (k == 0 && breaks(0)) || (k == last && breaks(answer.nodes.len()))
     };
     let holds = |k: usize| !hangs(k) && !torn_off(k);
-    let held: Vec<_> = answer.supports.iter().enumerate().filter(|(k, _)| holds(*k)).map(|(_, s)| s).collect();
+    let reactions: Vec<_> = answer.supports.iter().enumerate().filter(|(k, _)| holds(*k)).map(|(_, s)| s).collect();
     let mut best: Option<Sag> = None;
-    for pair in held.windows(2) {
+    for pair in reactions.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         let Some(piece) = answer.pieces().find(|piece| reaches(piece, a.arc_length_m, b.arc_length_m)) else {
             continue;

@@ -327,13 +327,13 @@ fn lying_length_is_that_of_the_union_of_all_contacts() {
 fn what_bending_would_change_is_told_where_it_was_left_out() {
     let scene = catalog::round_post();
     let flexible = answered(&scene, Model::Auto);
-    let [told] = &neglected_bending(&scene, &flexible, Settings::default())[..] else { panic!("one cable") };
+    let [without_bending] = &neglected_bending(&scene, &flexible, Settings::default())[..] else { panic!("one cable") };
     let mut stiff = scene.clone();
-    stiff.cables[0].bending_stiffness_n_m2 = told.bending_stiffness_n_m2;
+    stiff.cables[0].bending_stiffness_n_m2 = without_bending.bending_stiffness_n_m2;
     let with = answered(&stiff, Model::Auto);
-    assert_eq!(told.greatest_tension_n, Some(with.max_tension().tension_n));
+    assert_eq!(without_bending.greatest_tension_n, Some(with.max_tension().tension_n));
     let change = (with.max_tension().tension_n - flexible.max_tension().tension_n).abs();
-    let said = told.changes.max_tension_n.unwrap();
+    let said = without_bending.changes.max_tension_n.unwrap();
     assert!(said >= change && said < 1.02 * change, "{said} for {change}");
     // About a post of this size a cable of 1.4 N·m² is some per cent slacker.
     assert!(change > 0.01 * flexible.max_tension().tension_n);

@@ -238,12 +238,12 @@ impl CoarseRun {
         // A memory shorter than the time between comparisons of all runs would hold but the last
         // difference, which vanishes where two runs cross.
         self.common_s = step_s * COMMON_STEPS as f64 / self.times as f64;
-        let kept = DECAY_TIMES_S.map(|memory_s| (-step_s / larger(memory_s, self.common_s)).exp());
+        let remainder = DECAY_TIMES_S.map(|memory_s| (-step_s / larger(memory_s, self.common_s)).exp());
         let cables = fine.answers().iter().zip(self.simulation.answers());
         for (remembered, (a, b)) in self.differences.iter_mut().zip(cables) {
             let now = ErrorEstimates::between(b, a);
-            for (difference, kept) in remembered.iter_mut().zip(kept) {
-                *difference = now.componentwise_max(&difference.times(kept));
+            for (difference, remainder) in remembered.iter_mut().zip(remainder) {
+                *difference = now.componentwise_max(&difference.times(remainder));
             }
         }
         Some(())

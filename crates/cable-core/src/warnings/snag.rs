@@ -49,24 +49,24 @@ impl SnagDetector {
             let weight = observed.problem.body_force(time_s).norm() * (c.ends_m - c.begins_m);
             let (ratio, pull) = tension_ratio(c, weight);
             let same = |h: &&StickingContact| h.obstacle == c.obstacle && (h.arc_length - c.arc_length_m).abs() <= near;
-            let mut held = self.sticking.iter().find(same).cloned().unwrap_or_else(|| StickingContact {
+            let mut contact = self.sticking.iter().find(same).cloned().unwrap_or_else(|| StickingContact {
                 obstacle: c.obstacle.clone(),
                 arc_length: c.arc_length_m,
                 since_s: time_s,
                 ratio,
                 pull,
             });
-            held.arc_length = c.arc_length_m;
-            if ratio < held.ratio {
-                (held.ratio, held.pull) = (ratio, pull);
+            contact.arc_length = c.arc_length_m;
+            if ratio < contact.ratio {
+                (contact.ratio, contact.pull) = (ratio, pull);
             }
-            if ratio > RATIO_GROWTH * held.ratio
-                && pull > PULL_GROWTH * held.pull
-                && time_s - held.since_s >= MIN_STICKING_S
+            if ratio > RATIO_GROWTH * contact.ratio
+                && pull > PULL_GROWTH * contact.pull
+                && time_s - contact.since_s >= MIN_STICKING_S
             {
-                out.push(warning(observed, c, ratio, held.ratio));
+                out.push(warning(observed, c, ratio, contact.ratio));
             }
-            next.push(held);
+            next.push(contact);
         }
         self.sticking = next;
     }

@@ -675,7 +675,7 @@ fn energy_of_an_unstable_integrator_is_told_and_of_a_stable_one_is_not() {
 #[test]
 fn a_model_that_gains_speed_from_nowhere_is_told() {
     for model in [crate::Model::Fem, crate::Model::MassSpring] {
-        let told = |gain: f64| {
+        let growth_warning = |gain: f64| {
             let mut s = scene();
             s.cables[0].supports[1].release_s = Some(0.05);
             let mut sim = crate::Simulation::new(s, model).unwrap();
@@ -692,8 +692,8 @@ fn a_model_that_gains_speed_from_nowhere_is_told() {
             }
             None
         };
-        assert_eq!(told(1.0), None, "{model}");
-        let (step, warning) = told(1.05).expect("a twentieth of its speed more in every step");
+        assert_eq!(growth_warning(1.0), None, "{model}");
+        let (step, warning) = growth_warning(1.05).expect("a twentieth of its speed more in every step");
         println!("{model}: step {step}: {warning}");
         assert!(step < 30, "{model}: {step}");
     }
@@ -714,8 +714,8 @@ fn work_is_not_energy_from_nowhere() {
     for _ in 0..60 {
         sim.step(1.0 / 60.0).unwrap();
         most = f64::max(most, sim.solution().energy.kinetic_j);
-        let told: Vec<Warning> = sim.solution().warnings;
-        assert!(told.iter().all(|w| w.kind != WarningKind::EnergyGrows), "{told:?}");
+        let warnings: Vec<Warning> = sim.solution().warnings;
+        assert!(warnings.iter().all(|w| w.kind != WarningKind::EnergyGrows), "{warnings:?}");
     }
     assert!(most > 100.0, "it is thrown about: {most} J");
 }

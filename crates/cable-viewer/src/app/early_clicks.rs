@@ -10,7 +10,7 @@ use egui::{Context, Event, Plugin, RawInput, Ui};
 /// The events that wait for the next frame.
 #[derive(Default)]
 pub(super) struct HeldClicks {
-    held: Vec<Event>,
+    late_events: Vec<Event>,
     /// True once a frame has begun.
     begun: bool,
 }
@@ -21,7 +21,7 @@ impl Plugin for HeldClicks {
     }
 
     fn on_end_pass(&mut self, ui: &mut Ui) {
-        if !self.held.is_empty() {
+        if !self.late_events.is_empty() {
             ui.ctx().request_repaint();
         }
     }
@@ -29,12 +29,12 @@ impl Plugin for HeldClicks {
     fn input_hook(&mut self, _: &Context, input: &mut RawInput) {
         let is_click = |event: &Event| matches!(event, Event::PointerButton { .. });
         if self.begun {
-            input.events.splice(0..0, self.held.drain(..));
+            input.events.splice(0..0, self.late_events.drain(..));
             if let Some(released) = release_after_press(&input.events) {
-                self.held = input.events.split_off(released);
+                self.late_events = input.events.split_off(released);
             }
         } else {
-            self.held = input.events.extract_if(.., |event| is_click(event)).collect();
+            self.late_events = input.events.extract_if(.., |event| is_click(event)).collect();
             self.begun = true;
         }
     }

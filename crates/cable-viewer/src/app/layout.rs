@@ -191,13 +191,13 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         });
     }
     // Below outline and canvas, and so wider than the canvas.
-    if let Some(kept) = drawer {
+    if let Some(open_drawer) = drawer {
         let mut below = child(ui, "below", beside_inspector);
-        let height = match kept.name {
+        let height = match open_drawer.name {
             "plots" => graphs(&mut below, graphs_height, state, commands),
             _ => timeline(&mut below, state, commands),
         };
-        kept.keep(ui, height);
+        open_drawer.keep(ui, height);
     }
     let mut foot = child(ui, "foot", below_menu);
     let drawn = Panel::bottom("playback").show(&mut foot, |ui| panels::playback::ui(ui, state, commands));

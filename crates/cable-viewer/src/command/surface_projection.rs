@@ -20,8 +20,9 @@ pub fn clear_of_obstacles(scene: &Scene, cable: usize, support: usize, to_m: Poi
     let corners: usize = scene.obstacles.iter().map(|o| corner_count(&o.shape)).sum();
     let Some(of) = scene.cables.get(cable).filter(|_| (1..=MAX_CORNERS).contains(&corners)) else { return to_m };
     // A wheel may be mounted on the obstacle around it, and the hitch goes with the robot.
-    let held = of.supports.get(support).filter(|s| s.kind != SupportKind::Robot && s.radius_m.is_none_or(|r| r == 0.0));
-    if held.is_none() {
+    let point_support =
+        of.supports.get(support).filter(|s| s.kind != SupportKind::Robot && s.radius_m.is_none_or(|r| r == 0.0));
+    if point_support.is_none() {
         return to_m;
     }
     let world = World::new(&scene.obstacles, of.friction, 0.5 * of.diameter_m);

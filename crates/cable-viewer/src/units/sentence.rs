@@ -78,8 +78,8 @@ mod tests {
     fn no_sentence_has_a_key_a_short_name_of_a_model_or_a_number_of_many_digits() {
         let all = include_str!("../../../cable-core/tests/data/sentences.txt");
         let mut seen = 0;
-        for told in all.lines().filter(|l| !l.contains("line ") && !l.contains(".csv")) {
-            let shown = plain(told);
+        for line in all.lines().filter(|l| !l.contains("line ") && !l.contains(".csv")) {
+            let shown = plain(line);
             let outside: String = shown.split(['“', '”']).step_by(2).collect::<Vec<_>>().join(" ");
             let words = outside.split(|c: char| !c.is_ascii_alphanumeric() && !"_-.".contains(c));
             for word in words {

@@ -80,12 +80,12 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
         service_n: least(&query.scene, &[query.cable], |c| c.service_tension_n),
         breaking_n: least(&query.scene, &[query.cable], |c| c.breaking_tension_n),
     };
-    let held = cable.supports.iter().enumerate().filter(|(k, _)| *k != query.support);
+    let other_supports = cable.supports.iter().enumerate().filter(|(k, _)| *k != query.support);
     let radius_m = 0.5 * cable.diameter_m;
     let exploration = Exploration {
         query,
         world: World::new(&still.obstacles, cable.friction, radius_m),
-        holds: held.filter_map(|(_, s)| s.at_m.map(vec2)).collect(),
+        holds: other_supports.filter_map(|(_, s)| s.at_m.map(vec2)).collect(),
         far_m: cable.length_m * REACH_FACTOR,
         first: before[1] as usize * columns + before[0] as usize,
         free: Vec::new(),

@@ -310,14 +310,14 @@ fn leave_unstable(
 
 /// Greatest fraction of a step that keeps some material in every stretch.
 fn max_feasible_step(slide: &SlidingProblem<'_>, s: &SpanSolutions, p: &[f64]) -> f64 {
-    let (mut alpha, kept) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
+    let (mut alpha, least_fraction) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
     for (i, stretch) in s.all.iter().enumerate() {
         let Some(stretch) = stretch else { continue };
         let from = if i == 0 { 0.0 } else { p[i - 1] };
         let to = if i == slide.arcs.len() { 0.0 } else { p[i] };
         let (length, change) = (stretch.to - stretch.from, to - from);
-        if change < 0.0 && alpha * -change > (1.0 - kept) * length {
-            alpha = (1.0 - kept) * length / -change;
+        if change < 0.0 && alpha * -change > (1.0 - least_fraction) * length {
+            alpha = (1.0 - least_fraction) * length / -change;
         }
     }
     alpha

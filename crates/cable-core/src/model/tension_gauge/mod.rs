@@ -110,8 +110,8 @@ impl TensionGauge {
         let greatest = self.greatest?;
         // In a step between two looks the mean is what it was.
         let mean = self.mean.last();
-        let held = self.means.held.or_else(|| higher(None, &self.points, mean, greatest_of(mean), self.time_s));
-        Some(TensionPeaks { greatest, held: held.unwrap_or(greatest), over_s: self.mean.over_s })
+        let mean_peak = self.means.held.or_else(|| higher(None, &self.points, mean, greatest_of(mean), self.time_s));
+        Some(TensionPeaks { greatest, held: mean_peak.unwrap_or(greatest), over_s: self.mean.over_s })
     }
 
     /// Adds what was found in the parts of a step before.

@@ -5,7 +5,7 @@ use super::*;
 const OVER_S: f64 = 4e-3;
 
 /// A cable of one tension all along it, told after every step of `h` (s) up to an end (s).
-fn told(over_s: f64, limit: Limit, h: f64, end_s: f64, tension: impl Fn(f64) -> f64) -> TensionGauge {
+fn gauge_of(over_s: f64, limit: Limit, h: f64, end_s: f64, tension: impl Fn(f64) -> f64) -> TensionGauge {
     let mut gauge = TensionGauge::over(over_s);
     let arcs = [0.0, 0.5, 1.0];
     gauge.begin(0.0, TensionBefore::Same, &arcs, |_| tension(0.0));
@@ -26,7 +26,7 @@ fn breaks_at(tension_n: f64) -> Limit {
 #[test]
 fn a_slow_rise_breaks_half_the_time_later() {
     for h in [1.7e-5, 3e-4, 1e-3, 1.0 / 240.0, 0.02, 0.1] {
-        let gauge = told(OVER_S, breaks_at(100.0), h, 0.3, |t| 500.0 * t);
+        let gauge = gauge_of(OVER_S, breaks_at(100.0), h, 0.3, |t| 500.0 * t);
         let reached = gauge.reached().unwrap();
         assert!((reached.time_s - (0.2 + 0.5 * OVER_S)).abs() < 1e-9, "{h}: {}", reached.time_s);
         assert_eq!(reached.tension_n, 100.0);
@@ -34,7 +34,7 @@ fn a_slow_rise_breaks_half_the_time_later() {
         let peaks = gauge.peaks().unwrap();
         assert!((100.9..101.6).contains(&peaks.greatest.tension_n) && peaks.held.tension_n == 100.0, "{h}: {peaks:?}");
     }
-    let at_once = told(0.0, breaks_at(100.0), 1.0 / 240.0, 0.3, |t| 500.0 * t);
+    let at_once = gauge_of(0.0, breaks_at(100.0), 1.0 / 240.0, 0.3, |t| 500.0 * t);
     assert!((at_once.reached().unwrap().time_s - 0.2).abs() < 1e-9);
 }
 
@@ -43,14 +43,14 @@ fn a_slow_rise_breaks_half_the_time_later() {
 fn a_jerk_between_two_looks_is_seen_and_its_mean_with_it() {
     for begins in [0.0101, 0.01037, 0.0109] {
         let jerk = |t: f64| 1000.0 * (1.0 - ((t - begins) / (0.5 * OVER_S) - 1.0).abs()).max(0.0);
-        let gauge = told(OVER_S, breaks_at(501.0), 1e-5, 0.03, jerk);
+        let gauge = gauge_of(OVER_S, breaks_at(501.0), 1e-5, 0.03, jerk);
         let peaks = gauge.peaks().unwrap();
         assert!((peaks.greatest.tension_n - 1000.0).abs() < 5.0, "{peaks:?}");
         assert!((peaks.greatest.time_s - begins - 0.5 * OVER_S).abs() < 1.1e-5);
         assert!((480.0..500.1).contains(&peaks.held.tension_n), "{peaks:?}");
         assert_eq!((gauge.reached(), peaks.over_s), (None, OVER_S));
-        assert!(told(OVER_S, breaks_at(475.0), 1e-5, 0.03, jerk).reached().is_some());
-        assert!(told(0.0, breaks_at(900.0), 1e-5, 0.03, jerk).reached().is_some());
+        assert!(gauge_of(OVER_S, breaks_at(475.0), 1e-5, 0.03, jerk).reached().is_some());
+        assert!(gauge_of(0.0, breaks_at(900.0), 1e-5, 0.03, jerk).reached().is_some());
     }
 }
 
@@ -113,7 +113,7 @@ fn a_copy_is_gauged_in_the_lengths_and_times_of_the_cable() {
 #[test]
 fn a_limit_has_its_time_and_its_place() {
     let limit = Limit { tension_n: 10.0, from_s: 0.1, within_m: [0.2, 0.8] };
-    let reached = told(OVER_S, limit, 1e-3, 0.2, |_| 20.0).reached().unwrap();
+    let reached = gauge_of(OVER_S, limit, 1e-3, 0.2, |_| 20.0).reached().unwrap();
     assert!(reached.arc_length_m == 0.5 && (reached.tension_n - 20.0).abs() < 1e-9, "{reached:?}");
     assert!((reached.time_s - 0.1).abs() < 1.1e-3, "{reached:?}");
 }

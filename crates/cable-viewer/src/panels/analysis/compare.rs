@@ -310,8 +310,8 @@ fn remembered(ui: &Ui, k: usize, reference: &Reference, state: &AppState) -> Arc
     let fits = |t: &SceneDifferences| {
         Arc::ptr_eq(&t.reference, &reference.scene) && t.models == models && *t.present == state.document.scene
     };
-    if let Some(told) = last.filter(fits) {
-        return told.lines;
+    if let Some(memory) = last.filter(fits) {
+        return memory.lines;
     }
     let lines = Arc::new(differences(reference, state));
     let (present, reference) = (Arc::new(state.document.scene.clone()), Arc::clone(&reference.scene));

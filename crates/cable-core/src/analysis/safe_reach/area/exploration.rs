@@ -110,7 +110,7 @@ impl Exploration<'_> {
         let most_n = self.tension_n(&start);
         self.found.most_n[self.first] = most_n;
         self.known[self.first] = true;
-        let mut kept = vec![Rc::new(ReachedPlace { place: self.first, simulation: start, cost: 0, most_n })];
+        let mut reached_places = vec![Rc::new(ReachedPlace { place: self.first, simulation: start, cost: 0, most_n })];
         let strides = self.strides();
         // A step takes as long on every grid: a coarse one has few places and many steps to each.
         let steps = |stride: usize| (self.found.spacing_m * stride as f64 / STEP_M).ceil();
@@ -121,7 +121,7 @@ impl Exploration<'_> {
         let mut before = 0.0;
         for (stride, [new, one]) in strides.into_iter().zip(parts) {
             let mut progress = |area: &Area, count: usize| progress(area, (before + one * count as f64).min(1.0));
-            if self.grid(stride, &mut kept, &mut progress).is_break() {
+            if self.grid(stride, &mut reached_places, &mut progress).is_break() {
                 break;
             }
             before += one * new;
@@ -226,13 +226,13 @@ impl Exploration<'_> {
     fn grid(
         &mut self,
         stride: usize,
-        kept: &mut Vec<Rc<ReachedPlace>>,
+        reached_places: &mut Vec<Rc<ReachedPlace>>,
         progress: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         // The key is cost, place and origin: if one way has no answer, another one of the same
         // length may have one.
         let mut open = BTreeMap::new();
-        for from in kept.iter() {
+        for from in reached_places.iter() {
             self.open(from, stride, &mut open);
         }
         let mut count = 0;
@@ -264,7 +264,7 @@ impl Exploration<'_> {
                 let reached = Rc::new(ReachedPlace { place, simulation, cost, most_n });
                 self.open(&reached, stride, &mut open);
                 if stride > 1 {
-                    kept.push(reached);
+                    reached_places.push(reached);
                 }
             }
             if stride > 1 {

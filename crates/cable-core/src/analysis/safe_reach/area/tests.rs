@@ -131,8 +131,8 @@ fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     let mut shares = vec![0.0];
     let found = area(&query, |so_far, share| {
         shares.push(share);
-        let told = so_far.most_n.iter().filter(|n| n.is_finite()).count();
-        if first.is_none() && told > 150 {
+        let count = so_far.most_n.iter().filter(|n| n.is_finite()).count();
+        if first.is_none() && count > 150 {
             first = Some((so_far.clone(), share));
         }
         ControlFlow::Continue(())
@@ -186,11 +186,11 @@ fn it_begins_where_the_cable_lies_now() {
 #[ignore = "open: on the way over heaps of slack the normal forces that friction uses do not come to an end in 25 rounds"]
 fn ways_over_heaps_of_slack_pull_by_no_more_than_weight() {
     let query = query(catalog::tank(), [[-3.0, 0.0], [4.0, 6.0]], 1.0);
-    let (exploration, laid) = begin(&query).unwrap();
+    let (exploration, start) = begin(&query).unwrap();
     let cable = &query.scene.cables[0];
     let weight_n = cable.linear_density_kg_per_m * query.scene.environment.gravity_m_per_s2 * cable.length_m;
     for to in [[0.0, 5.0], [-2.0, 4.0]] {
-        let most_n = exploration.go(&mut laid.clone(), [vec2([3.2, 0.85]), vec2(to)]).unwrap();
+        let most_n = exploration.go(&mut start.clone(), [vec2([3.2, 0.85]), vec2(to)]).unwrap();
         assert!(most_n < weight_n, "to {to:?}: {most_n} N of {weight_n} N");
     }
 }

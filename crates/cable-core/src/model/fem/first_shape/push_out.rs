@@ -29,7 +29,7 @@ pub fn depenetrate(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
 /// Pushes out a chain whose nodes may be `held` and whose bars may lie on rounds.
 pub fn push_chain_out(
     problem: &Problem,
-    held: &[bool],
+    fixity: &[bool],
     lies_on: &dyn Fn(usize, usize) -> bool,
     x: &mut [Vec2],
     clear: f64,
@@ -37,7 +37,7 @@ pub fn push_chain_out(
     let mut gaps: Vec<Gap> = Vec::new();
     for _ in 0..MAX_PASSES {
         let mut moved = false;
-        for k in (0..x.len()).filter(|&k| !held[k]) {
+        for k in (0..x.len()).filter(|&k| !fixity[k]) {
             if let Some(g) = problem.world.signed_gap(x[k], DEPENETRATION_DEPTH)
                 && g.gap_m < 0.5 * clear
             {
@@ -57,7 +57,7 @@ pub fn push_chain_out(
                     if inside { (-g.normal, clear - g.gap_m + 2.0 * distance) } else { (g.normal, clear - g.gap_m) };
                 if lack > MIN_LACK_FRACTION * clear {
                     let shares = [1.0 - g.fraction, g.fraction];
-                    let free = [0, 1].map(|j| if held[e + j] { 0.0 } else { shares[j] });
+                    let free = [0, 1].map(|j| if fixity[e + j] { 0.0 } else { shares[j] });
                     let sum = free[0] * shares[0] + free[1] * shares[1];
                     if sum > LEAST_FREE_SHARE {
                         x[e] += way * (lack * free[0] / sum);

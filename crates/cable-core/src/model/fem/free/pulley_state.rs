@@ -21,7 +21,7 @@ pub(super) enum FrictionState {
     Wheel(WheelFriction),
     /// The state at a pulley without a radius: μ, stick or slip, and the arc length that it held
     /// last, m.
-    Point { friction: f64, mode: PointFriction, held: f64 },
+    Point { friction: f64, mode: PointFriction, resting_place: f64 },
 }
 
 /// A pulley and its memory.

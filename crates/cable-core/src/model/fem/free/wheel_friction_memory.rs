@@ -75,9 +75,9 @@ impl PulleyNetwork {
                     w.begin(&on, &points);
                     (pulley.angles, pulley.material) = ([a[0], b[0]], [a[1], b[1]]);
                 }
-                FrictionState::Point { held, .. } => {
-                    *held = said.arc_length_m;
-                    pulley.material = [*held; 2];
+                FrictionState::Point { resting_place, .. } => {
+                    *resting_place = said.arc_length_m;
+                    pulley.material = [*resting_place; 2];
                 }
             }
             found.push(pulley);
@@ -94,7 +94,7 @@ impl PulleyNetwork {
             FrictionState::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
         } else {
             let mode = if wheel.friction > 0.0 { PointFriction::Holds } else { PointFriction::Slides(0.0) };
-            FrictionState::Point { friction: wheel.friction, mode, held: station.arc_length }
+            FrictionState::Point { friction: wheel.friction, mode, resting_place: station.arc_length }
         };
         Some(PulleyState {
             support: station.support,
@@ -125,7 +125,7 @@ impl PulleyNetwork {
             let ends = self.ends_at(k, r);
             match &mut r.friction {
                 FrictionState::Wheel(w) => w.commit(&on, &ends),
-                FrictionState::Point { held, .. } => *held = r.material[0],
+                FrictionState::Point { resting_place, .. } => *resting_place = r.material[0],
             }
         }
         self.pulley_states = pulley_states;

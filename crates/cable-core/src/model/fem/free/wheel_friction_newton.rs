@@ -165,8 +165,8 @@ impl PulleyNetwork {
                         }
                     }
                 }
-                FrictionState::Point { mode: PointFriction::Holds, held, .. } => {
-                    e.residual[row] = (r.material[0] - *held) * unit;
+                FrictionState::Point { mode: PointFriction::Holds, resting_place, .. } => {
+                    e.residual[row] = (r.material[0] - *resting_place) * unit;
                     e.own[(row, row)] = unit;
                 }
                 FrictionState::Point { mode: PointFriction::Slides(m), .. } => {
@@ -333,10 +333,10 @@ impl PulleyNetwork {
             let [before, after] = self.forces[k];
             changed |= match &mut r.friction {
                 FrictionState::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
-                FrictionState::Point { friction, mode, held } if *friction > 0.0 => {
+                FrictionState::Point { friction, mode, resting_place } if *friction > 0.0 => {
                     let ratio = (ends.tension[1] / ends.tension[0]).ln();
                     let over = ratio.abs() - *friction * turn_between(before, after).abs();
-                    let slid = r.material[0] - *held;
+                    let slid = r.material[0] - *resting_place;
                     let next = match *mode {
                         PointFriction::Holds if over > CONE_ROUNDING => {
                             PointFriction::Slides(*friction * ratio.signum())

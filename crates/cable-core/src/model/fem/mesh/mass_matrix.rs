@@ -160,7 +160,7 @@ mod tests {
 
     /// Frequencies of small motion across bars with the tension of each (or along them with EA),
     /// per √density, from the lowest on.
-    fn frequencies(stretches: &[(usize, f64)], held: Held, tension: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    fn frequencies(stretches: &[(usize, f64)], ends: Held, tension: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
         let (diagonal, beside) = rows(stretches);
         let n = diagonal.len();
         let shares: Vec<f64> = (0..n)
@@ -177,7 +177,7 @@ mod tests {
             stiffness[(e + 1, e)] -= k;
         }
         mass.set_diagonal(&DVector::from_vec(diagonal));
-        let free = if held == Held::Both { n - 2 } else { n - 1 };
+        let free = if ends == Held::Both { n - 2 } else { n - 1 };
         let (mass, stiffness) = (mass.view((1, 1), (free, free)), stiffness.view((1, 1), (free, free)));
         let lower = Cholesky::new(mass.into_owned()).unwrap().l();
         let left = lower.solve_lower_triangular(&stiffness.into_owned()).unwrap();

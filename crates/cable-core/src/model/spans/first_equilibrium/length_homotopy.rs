@@ -85,9 +85,9 @@ impl CableEquilibrium {
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = section_along_route::section_along_route(layout, k, &self.context, begin);
+            let on_route = section_along_route::section_along_route(layout, k, &self.context, begin);
             let no_way = Failure::ContactImpossible { s: layout.sections[k].material[0], at: begin.places[0] };
-            let (section, route) = laid.ok_or(no_way)?;
+            let (section, route) = on_route.ok_or(no_way)?;
             self.sections.push(section);
             routes.push(route);
         }

@@ -62,8 +62,8 @@ fn cut(parts: &mut Vec<SlackPart>, end: usize, mut off: f64) -> Option<()> {
         let own = part.arc_lengths[1] - part.arc_lengths[0];
         if own > off {
             let left = 1.0 - off / own;
-            let [kept, cut] = [stretch.coordinates[1 - end], stretch.coordinates[end]];
-            stretch.coordinates[end] = kept + (cut - kept) * left;
+            let [other_end, cut] = [stretch.coordinates[1 - end], stretch.coordinates[end]];
+            stretch.coordinates[end] = other_end + (cut - other_end) * left;
             part.arc_lengths = [0.0, own * left];
             return Some(());
         }
