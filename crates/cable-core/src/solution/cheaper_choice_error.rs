@@ -37,7 +37,7 @@ pub struct NextCheaper {
     /// model has no answer.
     pub position_error_m: Option<f64>,
     /// True if the two were compared only until the difference was beyond doubt: the errors are at
-    /// least these.
+    /// least these, that of forces as a fraction of the greatest tension until then.
     #[serde(default)]
     pub is_lower_bound: bool,
 }

@@ -1,7 +1,7 @@
 //! A run without inertia beside one with it: the error that the next cheaper choice would have
 //! cost. It ends where it is off beyond doubt: a fall without inertia costs more than the fall.
 
-use super::{QUASI_STATIC_STEP_S, RunPeaks};
+use super::{QUASI_STATIC_STEP_S, RunPeaks, advance};
 use crate::math::larger;
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -13,17 +13,17 @@ use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 /// runs that nobody would choose cost more.
 const MATTERS_BEYOND_DOUBT: f64 = 0.3;
 
-/// Greatest work of a step, in nodes times iterations. Smaller: slow motions with hard steps have
+/// Greatest number of iterations of a step on all nodes. Smaller: slow motions with hard steps have
 /// no answer; larger: what is let go costs more to follow without inertia than with it.
-const MAX_WORK: usize = 20_000;
+const MAX_ITERATIONS: usize = 1000;
 
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
 pub(super) struct RunWithoutInertia {
     /// None once it has no answer, or need not go on.
     simulation: Option<Simulation>,
-    /// True once it is off beyond doubt.
-    is_decided: bool,
+    /// Once it is off beyond doubt: by how much, as a fraction of the greatest tension until then.
+    decided_off: Option<f64>,
     model: Model,
     /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
@@ -55,7 +55,8 @@ impl RunWithoutInertia {
         let mut simulation =
             simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
         if let Some(simulation) = &mut simulation {
-            simulation.limit_work(MAX_WORK);
+            let nodes = simulation.answers().iter().map(|answer| answer.nodes.len()).max();
+            simulation.limit_work(MAX_ITERATIONS * nodes.unwrap_or(1));
         }
         // A cast takes what is too long for one step as one.
         let times = ((QUASI_STATIC_STEP_S / step_s).round() as u64).max(1);
@@ -66,7 +67,7 @@ impl RunWithoutInertia {
         let greatest_n = vec![0.0; run.answers().len()];
         let mut this = Self {
             simulation,
-            is_decided: false,
+            decided_off: None,
             model,
             times,
             count: 0,
@@ -86,20 +87,16 @@ impl RunWithoutInertia {
         if self.simulation.is_none() || !self.count.is_multiple_of(self.times) {
             return;
         }
-        // Nobody reads its warnings.
-        let advance = |own: &mut Simulation| {
-            let dt_s = run.time_s() - own.time_s();
-            own.advance_unjudged(dt_s, Inertia::QuasiStatic)
-        };
-        if !self.simulation.as_mut().is_some_and(|own| advance(own).is_ok()) {
+        if !self.simulation.as_mut().is_some_and(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_ok()) {
             self.simulation = None;
         }
         self.compare(run);
         let of_run = run.answers().iter().map(|answer| answer.peaks_at(run.time_s()).greatest.tension_n);
         self.greatest_of_run_n = of_run.fold(self.greatest_of_run_n, larger);
         let off = larger_force(&self.apart).zip(larger_force(&self.apart_at_rest)).map(|(now, at_rest)| now - at_rest);
-        if off.is_some_and(|off| off > MATTERS_BEYOND_DOUBT * self.greatest_of_run_n) && self.simulation.is_some() {
-            (self.is_decided, self.simulation) = (true, None);
+        let off = off.map(|off| off / self.greatest_of_run_n).filter(|off| *off > MATTERS_BEYOND_DOUBT);
+        if self.simulation.is_some() && off.is_some() {
+            (self.decided_off, self.simulation) = (off, None);
         }
     }
 
@@ -121,20 +118,23 @@ impl RunWithoutInertia {
         let runs = peaks.iter().map(|run| run.peaks.greatest.tension_n);
         let most = runs.clone().fold(0.0, larger);
         let peaks = runs.zip(&self.greatest_n).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
-        // Of one that has ended the greatest tension since is not known.
-        let peaks = if self.is_decided { 0.0 } else { peaks };
         let beyond = |now: Option<f64>, at_rest: Option<f64>| {
-            let answered = self.is_decided || self.simulation.is_some();
+            let answered = self.simulation.is_some();
             now.zip(at_rest).filter(|_| answered).map(|(now, at_rest)| larger(now - at_rest, 0.0))
         };
         let forces =
             beyond(larger_force(&self.apart).map(|apart| larger(apart, peaks)), larger_force(&self.apart_at_rest));
+        let force_error = forces.map(|force| if most > 0.0 { force / most } else { force });
+        let place_error = self.apart.position_m.zip(self.apart_at_rest.position_m).map(|(now, at_rest)| now - at_rest);
         NextCheaper {
             model: self.model,
             neglects: NeglectedEffect::Inertia,
-            force_error: forces.map(|force| if most > 0.0 { force / most } else { force }),
-            position_error_m: beyond(self.apart.position_m, self.apart_at_rest.position_m),
-            is_lower_bound: self.is_decided,
+            force_error: self.decided_off.or(force_error),
+            position_error_m: match self.decided_off {
+                Some(_) => place_error.map(|place| larger(place, 0.0)),
+                None => beyond(self.apart.position_m, self.apart_at_rest.position_m),
+            },
+            is_lower_bound: self.decided_off.is_some(),
         }
     }
 }

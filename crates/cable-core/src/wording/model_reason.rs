@@ -87,6 +87,6 @@ impl Sentence for NextCheaper {
         let by = if self.is_lower_bound { "by at least" } else { "by" };
         let force = percent(force);
         let place = f.length(place, 3);
-        format!("{}, without {what}: off {by} {force} of the greatest tension, by {place} in shape", self.model)
+        format!("{}, without {what}: off {by} {force} of the greatest tension, {by} {place} in shape", self.model)
     }
 }

@@ -94,6 +94,8 @@ pub struct FemModel {
     elastica_answer: Option<CableSolution>,
     /// True if the first equilibrium on a rubbing floor is that on a smooth floor.
     on_smooth_floor: bool,
+    /// True if it measures the errors of another: it needs none of its own.
+    is_comparison: bool,
     /// Error of the mesh's equilibrium of a stiff cable by neglected bending, relative to the
     /// greatest tension, until something moves.
     bending_error: Option<f64>,
@@ -126,6 +128,7 @@ impl FemModel {
             robot_pose: problem.outline.as_ref().map(|o| o.placement),
             elastica_answer: None,
             on_smooth_floor: false,
+            is_comparison: false,
             bending_error: None,
             problem,
         })

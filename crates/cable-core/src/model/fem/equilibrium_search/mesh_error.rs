@@ -70,7 +70,8 @@ impl TwoMeshes {
         *self = Self::default();
         if problem.cable.self_contact {
             if let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
-                (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
+                self.errors = errors;
+                self.coarse = fine.cable.mesh.is_flexible().then(|| Box::new(coarse));
             }
             // At rest a cable that does not touch itself is like one that cannot; in motion it may.
             if let Some(exact) = exact.filter(|_| !fine.cable.touches_itself()) {
@@ -108,16 +109,33 @@ impl TwoMeshes {
         }
     }
 
-    /// The comparison of a cable at rest with one on bars twice as long, at rest too, whose own
-    /// errors are given.
-    pub fn beside(fine: &Stepper, coarse: Stepper, coarse_errors: ErrorEstimates) -> Self {
-        let answer = fine.solution();
-        let difference = ErrorEstimates::between(&coarse.solution(), &answer)
-            .plus(&ErrorEstimates::rounding(&answer, &fine.cable.problem));
-        // The coarsest mesh of all has no errors of its own.
-        let is_coarsest = coarse_errors == ErrorEstimates::default();
-        let errors = if is_coarsest { difference } else { difference.componentwise_max(&coarse_errors) };
+    /// The comparison of a cable at rest with one on bars twice as long, and of that with one on bars
+    /// four times as long, each of which found its own resting place.
+    pub fn beside(fine: &Stepper, coarse: Stepper, coarsest: Option<&Stepper>) -> Self {
+        let (answer, other) = (fine.solution(), coarse.solution());
+        let rounding = ErrorEstimates::rounding(&answer, &fine.cable.problem);
+        let errors = ErrorEstimates::between(&other, &answer).plus(&rounding);
+        let change = coarsest.map(|coarsest| ErrorEstimates::between(&coarsest.solution(), &other));
+        let errors =
+            change.map_or(errors, |change| errors.componentwise_max(&change.times(FIRST_ORDER_ERROR_FRACTION)));
         Self { coarse: Some(Box::new(coarse)), errors, ..Self::default() }
+    }
+
+    /// Estimates the errors of a cable beside a robot that has moved, or was laid before.
+    pub fn compare_again(
+        &mut self,
+        problem: &Arc<Problem>,
+        settings: Settings,
+        fine: &Stepper,
+        dragged: &[Option<Vec2>],
+    ) {
+        let before = std::mem::take(self);
+        if let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
+            let is_known = before.errors != ErrorEstimates::default();
+            // Which resting place was found depends on the mesh as it did before.
+            self.errors = if is_known { errors.componentwise_max(&before.errors) } else { errors };
+            self.coarse = Some(Box::new(coarse));
+        }
     }
 
     /// Begins to follow a cable whose mesh came to rest at an answer without a mesh. Refines the
@@ -132,6 +150,10 @@ impl TwoMeshes {
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
+        // Coarse bars are no measure of the bends of a cable that touches itself or a robot.
+        if problem.outline.is_some() || problem.cable.self_contact {
+            return;
+        }
         while let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
             (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
             let bars = 2 * fine.cable.meshing.even_bars;
@@ -164,7 +186,7 @@ impl TwoMeshes {
     ) {
         *self = Self::default();
         let bars = fine.cable.meshing.even_bars;
-        if bars < LEAST_BARS {
+        if bars < LEAST_BARS || (problem.cable.self_contact && !fine.cable.mesh.is_flexible()) {
             return;
         }
         if let Some(coarse) = at_rest_with_bars(problem, settings, fine, bars / 2, answer, dragged) {
@@ -232,7 +254,8 @@ impl TwoMeshes {
             (None, None) if before.resumes => {
                 let bars = fine.cable.meshing.even_bars;
                 let coarse = || at_rest_with_bars(problem, settings, fine, bars / 2, &answer, dragged);
-                if bars >= LEAST_BARS { coarse().map(Box::new) } else { None }
+                let may = bars >= LEAST_BARS && (!problem.cable.self_contact || fine.cable.mesh.is_flexible());
+                if may { coarse().map(Box::new) } else { None }
             }
             (None, None) => None,
         };
@@ -304,6 +327,7 @@ fn at_rest_with_bars(
             .ok()?;
     other.cable.meshing.slides = like.cable.meshing.slides;
     lead_outline(&mut other, like);
+    other.solver.work_of_advance = like.solver.work_of_advance;
     other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {
         other.solver.work_left = WorkBudget::Left(like.cable.mesh.tuning.equilibrium.max_work / ESTIMATES_PER_SEARCH);

@@ -8,6 +8,7 @@ use crate::model::fem::equilibrium::slides_as_a_whole;
 use crate::model::fem::equilibrium_search::easier_start::SpansStart;
 use crate::model::fem::equilibrium_search::mesh_error::{LEAST_BARS, MeshRefinement, TwoMeshes};
 use crate::model::fem::obstacle::touches_nothing;
+use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
@@ -108,7 +109,7 @@ impl FemModel {
             return Ok(report);
         }
         report.warnings.extend(self.coarse_bend_warning());
-        self.compare_meshes(spans);
+        self.compare_meshes(spans, begins);
         report.warnings.extend(self.coarse_mesh_warning());
         Ok(report)
     }
@@ -143,9 +144,15 @@ impl FemModel {
 
     /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
     /// refines it if the scene leaves its number of bars open.
-    pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
+    pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>, was_laid: bool) {
+        if self.is_comparison {
+            return;
+        }
         if self.problem.outline.is_some() {
-            self.meshes = self.compared_with_own_search_on_half_the_bars();
+            match if was_laid { self.compared_with_own_searches() } else { None } {
+                Some(meshes) => self.meshes = meshes,
+                None => self.meshes.compare_again(&self.problem, self.settings, &self.stepper, &self.dragged),
+            }
             return;
         }
         let refinement = self.refinement();
@@ -153,29 +160,37 @@ impl FemModel {
         meshes.compare(&self.problem, self.settings, refinement, stepper, exact, &self.dragged);
     }
 
-    /// Estimates the errors of a cable beside a robot from a mesh of half as many bars that finds
-    /// its own equilibrium: slack among a robot, obstacles and friction comes to rest in many ways,
-    /// and which of them is found depends on the mesh, too.
-    fn compared_with_own_search_on_half_the_bars(&self) -> TwoMeshes {
-        let bars = self.stepper.cable.meshing.even_bars / 2;
+    /// Estimates the errors of a cable that was laid beside a robot from meshes of a half and a
+    /// quarter of its bars that find their own resting places: slack among a robot, obstacles and
+    /// friction comes to rest in many ways, and which of them is found depends on the mesh, too.
+    fn compared_with_own_searches(&self) -> Option<TwoMeshes> {
+        let bars = self.stepper.cable.meshing.even_bars;
+        let coarse = self.at_rest_by_own_search(bars / 2)?;
+        let coarsest = self.at_rest_by_own_search(bars / 4);
+        Some(TwoMeshes::beside(&self.stepper, coarse, coarsest.as_ref()))
+    }
+
+    /// The same cable laid on fewer bars and come to rest, in no more iterations than this one took.
+    fn at_rest_by_own_search(&self, bars: usize) -> Option<Stepper> {
+        if 2 * bars < LEAST_BARS {
+            return None;
+        }
         let settings = Settings { segments: Some(bars), ..self.settings };
-        let coarse = (bars >= LEAST_BARS)
-            .then(|| Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok())
-            .flatten();
-        let Some(mut coarse) = coarse else { return TwoMeshes::default() };
-        coarse.starts_from_spans = self.starts_from_spans;
-        coarse.dragged.clone_from(&self.dragged);
-        coarse.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
-        coarse.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
+        let mut other = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
+        if let WorkBudget::Left(left) = self.stepper.solver.work_left {
+            let work = self.tuning().equilibrium.max_work.saturating_sub(left);
+            other.limit_work(work * bars / self.stepper.cable.meshing.even_bars);
+        }
+        other.is_comparison = true;
+        other.starts_from_spans = self.starts_from_spans;
+        other.dragged.clone_from(&self.dragged);
+        other.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
+        other.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         if let Some(pose) = self.robot_pose {
-            coarse.set_robot_pose(pose);
+            other.set_robot_pose(pose);
         }
-        match coarse.settle() {
-            Ok(_) if coarse.present == PresentPart::Stepper && coarse.elastica_answer.is_none() => {
-                TwoMeshes::beside(&self.stepper, coarse.stepper, coarse.meshes.errors)
-            }
-            _ => TwoMeshes::default(),
-        }
+        other.find_equilibrium().ok()?;
+        (other.present == PresentPart::Stepper && other.elastica_answer.is_none()).then_some(other.stepper)
     }
 
     /// Tells whether the mesh may be refined: whether the scene leaves the number of bars open.
