@@ -8,7 +8,7 @@ use cable_core::solution::{ContactState, Solution};
 use cable_core::wording::Sentence;
 
 use crate::answer_json::{ComparedEntry, SummaryJson};
-use crate::summary;
+use crate::summary::{self, fixed, without_sign_of_zero};
 
 /// Greatest length of the reason why a model has no answer, characters.
 const MAX_REASON_CHARS: usize = 90;
@@ -19,11 +19,11 @@ fn compared(t: &mut String, entries: &[ComparedEntry]) {
     if entries.is_empty() {
         return;
     }
-    let _ = writeln!(t, "\nOther settings, beside this answer");
+    let _ = writeln!(t, "\nOther models and meshes, compared with this answer");
     let _ = writeln!(
         t,
         "  {:<12} {:>8} {:>10}  {:>16}  {:>12}  {:>14}",
-        "model", "elements", "time ms", "forces differ by", "shape by m", "it says itself"
+        "model", "segments", "time ms", "forces differ by", "shape by m", "own estimate"
     );
     let mut sorted: Vec<&ComparedEntry> = entries.iter().collect();
     sorted.sort_by(|a, b| {
@@ -56,7 +56,7 @@ pub fn answer_text(s: &Solution, figures: &SummaryJson) -> String {
     // This is the time in the scene, not the computing time.
     let _ = writeln!(t, "Scene time        {} s", s.time_s);
     let name = s.cables.get(top.cable).map_or("", |c| &c.name);
-    let _ = writeln!(t, "Greatest tension  {:.6} N, at {:.4} m of `{name}`", top.tension_n, top.arc_length_m);
+    let _ = writeln!(t, "Greatest tension  {} N, at {:.4} m of `{name}`", fixed(top.tension_n), top.arc_length_m);
     for c in &s.cables {
         if let Some(b) = c.tightest_bend {
             let place = at(b.arc_length_m, b.x_m, b.y_m, &c.name);
@@ -72,9 +72,9 @@ pub fn answer_text(s: &Solution, figures: &SummaryJson) -> String {
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
     if let Some(v) = &s.verification {
-        let _ = writeln!(t, "Laws              {}", v.sentence(UnitSystem::Si));
+        let _ = writeln!(t, "Verification      {}", v.sentence(UnitSystem::Si));
         if v.folded_m > 0.0 {
-            let _ = writeln!(t, "In folds          {:.4} m of cable beyond the way it lies on", v.folded_m);
+            let _ = writeln!(t, "In folds          {:.4} m of cable more than the route it lies on", v.folded_m);
         }
     }
     summary::write(&mut t, figures);
@@ -108,7 +108,7 @@ fn errors(t: &mut String, c: &cable_core::solution::CableSolution) {
 
 /// A place on a cable and in the plane.
 fn at(arc_length_m: f64, x_m: f64, y_m: f64, cable: &str) -> String {
-    format!("at {arc_length_m:.4} m of `{cable}` ({x_m:.4} m, {y_m:.4} m)")
+    format!("at {} m of `{cable}` ({} m, {} m)", fixed(arc_length_m), fixed(x_m), fixed(y_m))
 }
 
 fn supports(t: &mut String, c: &cable_core::solution::CableSolution) {
@@ -120,16 +120,16 @@ fn supports(t: &mut String, c: &cable_core::solution::CableSolution) {
         "support", "along m", "x m", "y m", "x N", "y N", "before N", "after N"
     );
     for r in &c.supports {
-        let tension = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), |v| format!("{v:.4}"));
+        let tension = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), fixed);
         let _ = writeln!(
             t,
-            "  {:wide$}  {:>10.4} {:>10.4} {:>10.4} {:>13.4} {:>13.4} {:>13} {:>13}",
+            "  {:wide$}  {:>10} {:>10} {:>10} {:>13} {:>13} {:>13} {:>13}",
             r.name,
-            r.arc_length_m,
-            r.x_m,
-            r.y_m,
-            r.reaction_x_n,
-            r.reaction_y_n,
+            fixed(r.arc_length_m),
+            fixed(r.x_m),
+            fixed(r.y_m),
+            fixed(r.reaction_x_n),
+            fixed(r.reaction_y_n),
             tension(r.tension_before_n),
             tension(r.tension_after_n)
         );
@@ -149,21 +149,21 @@ fn contacts(t: &mut String, c: &cable_core::solution::CableSolution) {
     );
     for k in &c.contacts {
         let state = match k.state {
-            ContactState::Stick => "stick",
-            ContactState::Slip => "slip",
+            ContactState::Stick => "holds",
+            ContactState::Slip => "slides",
         };
         let _ = writeln!(
             t,
-            "  {:wide$}  {:>10.4} {:>10.4} {:>10.4} {:>13.4} {:>13.4} {state:>6} {:>9.3} {:>13.4} {:>13.4}",
+            "  {:wide$}  {:>10} {:>10} {:>10} {:>13} {:>13} {state:>6} {:>9.3} {:>13} {:>13}",
             k.obstacle,
-            k.arc_length_m,
-            k.x_m,
-            k.y_m,
-            k.normal_n,
-            k.friction_n,
-            k.turn_deg,
-            k.tension_before_n,
-            k.tension_after_n
+            fixed(k.arc_length_m),
+            fixed(k.x_m),
+            fixed(k.y_m),
+            fixed(k.normal_n),
+            fixed(k.friction_n),
+            without_sign_of_zero(k.turn_deg, 3),
+            fixed(k.tension_before_n),
+            fixed(k.tension_after_n)
         );
     }
 }

@@ -49,17 +49,17 @@ pub struct Common {
     /// given is refined up to twice (see --refine of `cable run`)
     #[arg(long, value_parser = tolerance)]
     pub tolerance: Option<f64>,
-    /// Friction that acts on every cable at rest: least-sliding, or all of it against a cable drawn
-    /// towards-start or towards-end [default: what the scene says]
+    /// Friction at rest: least-sliding, or fully used against a cable drawn towards-start or
+    /// towards-end [default: what the scene says]
     #[arg(long, value_parser = mobilised)]
     pub mobilised: Option<FrictionMobilised>,
-    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what
-    /// their preset is likely to have), or where-it-matters (that, of cables which at rest without
-    /// it are bent too tightly, curl up, lie in folds or cross themselves)
+    /// Bending stiffness of cables that have none in the scene: as-written (stay flexible), likely
+    /// (use the likely value of their preset), or where-it-matters (use that value only for cables
+    /// that at rest without it would bend too tightly, curl up, lie in folds or cross themselves)
     #[arg(long, default_value = "as-written", value_parser = bending)]
     pub bending: Bending,
-    /// Leave out what the likely bending stiffness of a preset would change of the rest where it
-    /// was neglected, which takes a second answer
+    /// Do not report what the likely bending stiffness of a preset would change; the report needs a
+    /// second solution
     #[arg(long)]
     pub no_bending: bool,
     /// Print JSON objects (one a line) instead of text
@@ -75,7 +75,7 @@ pub struct SolveArguments {
     /// friction remembered
     #[arg(long)]
     pub stiffness: bool,
-    /// Also answer by every model, on 25 to 400 elements where it has any, and say by how much each
+    /// Also answer by every model, on 25 to 400 segments where it has any, and say by how much each
     /// differs and how long it took
     #[arg(long)]
     pub compare: bool,
@@ -103,13 +103,13 @@ pub struct RunArguments {
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
-    /// Number of refinements: where errors of forces are above --tolerance, take elements and steps
-    /// half as long, at most so often and as long as that makes errors smaller; each time takes
-    /// four times as long [default: 2 where --tolerance is given, else 0]
+    /// Largest number of refinements: while force errors exceed --tolerance and get smaller, halve
+    /// segments and steps; each refinement takes four times as long [default: 2 where --tolerance
+    /// is given, else 0]
     #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
     pub refine: Option<u32>,
-    /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of
-    /// its cost
+    /// Skip the two coarser runs that estimate the errors of a run with inertia (they add about a
+    /// third to its cost)
     #[arg(long)]
     pub no_errors: bool,
     /// Stepping of mass-spring: auto, explicit or preview
@@ -172,11 +172,11 @@ impl RunArguments {
 }
 
 fn stepping(text: &str) -> Result<Stepping, String> {
-    Stepping::from_name(text).ok_or_else(|| "the ways are auto, explicit and preview".to_owned())
+    Stepping::from_name(text).ok_or_else(|| "the choices are auto, explicit and preview".to_owned())
 }
 
 fn mobilised(text: &str) -> Result<FrictionMobilised, String> {
-    let names = || "the ways are least-sliding, towards-start and towards-end".to_owned();
+    let names = || "the choices are least-sliding, towards-start and towards-end".to_owned();
     FrictionMobilised::from_name(text).ok_or_else(names)
 }
 
@@ -185,7 +185,7 @@ fn bending(text: &str) -> Result<Bending, String> {
         "as-written" => Ok(Bending::AsWritten),
         "likely" => Ok(Bending::Likely),
         "where-it-matters" => Ok(Bending::WhereItMatters),
-        _ => Err("neither as-written, likely nor where-it-matters".to_owned()),
+        _ => Err("the choices are as-written, likely and where-it-matters".to_owned()),
     }
 }
 

@@ -24,7 +24,7 @@ pub fn check(path: &Path) -> CommandResult {
     let mut out = Printer::new();
     let count = |n: usize, one: &str, many: &str| format!("{n} {}", if n == 1 { one } else { many });
     out.line(&format!(
-        "{}: sound, {}, {}, {}",
+        "{}: valid, {}, {}, {}",
         path.display(),
         count(scene.cables.len(), "cable", "cables"),
         count(scene.obstacles.len(), "obstacle", "obstacles"),

@@ -113,9 +113,9 @@ impl RunTotals {
     fn lines(&self, tolerance: f64) -> Vec<String> {
         let TensionPeaks { greatest, held, over_s } = self.peaks.peaks;
         let of = |p: TensionPeak, range: Option<[f64; 2]>| {
-            let range = range.map(|[from, to]| format!("; {from:.6} to {to:.6} N, as coarser runs differ from it"));
+            let range = range.map(|[from, to]| format!("; {from:.4} to {to:.4} N, estimated from coarser runs"));
             let (tension_n, time_s, at) = (p.tension_n, p.time_s, p.arc_length_m);
-            format!("{tension_n:.6} N at {time_s:.4} s, at {at:.4} m{}", range.unwrap_or_default())
+            format!("{tension_n:.4} N at {time_s:.4} s, at {at:.4} m{}", range.unwrap_or_default())
         };
         let ranges = self.peaks.ranges;
         let mut lines = vec![format!("\nGreatest tension of the run  {}", of(greatest, ranges.map(|r| r.greatest_n)))];
@@ -123,23 +123,25 @@ impl RunTotals {
             lines.push(format!("Greatest mean over {over_s} s   {}", of(held, ranges.map(|r| r.held_n))));
         }
         if ranges.is_some_and(|r| r.are_resolved(tolerance)) {
-            lines.push(format!("It is resolved: finer meshes and steps change it by less than {tolerance:.1e} of it"));
+            lines.push(format!(
+                "This maximum is resolved: finer meshes and steps would change it by less than {tolerance:.1e} of its value"
+            ));
         } else if ranges.is_some_and(|r| r.depend_on_small_differences()) {
             lines.push(
-                "It depends on small differences: the coarser runs beside it do not converge, and another mesh, step or start has another"
+                "This maximum depends on small differences: the coarser runs do not converge, and another mesh, step or start gives another value"
                     .to_owned(),
             );
         }
         if let Some(error) = self.relative_error {
             let asked = match error > tolerance {
                 true => format!(
-                    " (asked: {tolerance:.1e}; --refine 1 takes four times as long and is nearer where motion is smooth)"
+                    " ({tolerance:.1e} was asked for; --refine 1 takes four times as long and is more accurate where motion is smooth)"
                 ),
                 false => String::new(),
             };
-            lines.push(format!("Greatest error of its forces {error:.1e} of that{asked}"));
+            lines.push(format!("Greatest force error {error:.1e} of the greatest tension{asked}"));
         } else if self.errors_asked {
-            lines.push("Errors of its forces are not known: no coarser run goes beside it".to_owned());
+            lines.push("The force errors are not known: there is no coarser run to compare with".to_owned());
         }
         lines.extend(self.inertia.map(|effect| effect.to_string()));
         lines
@@ -365,7 +367,7 @@ fn check_durations(a: &RunArguments, every: f64) -> Result<(), CommandFailure> {
     }
     if let Some(step) = a.step.filter(|step| *step > a.duration_s && a.duration_s > 0.0) {
         return Err(CommandFailure::Argument(format!(
-            "--step {step} s is longer than the run (--for {} s): peaks and errors are looked for at steps",
+            "--step {step} s is longer than the run (--for {} s): make --step shorter",
             a.duration_s
         )));
     }

@@ -11,7 +11,7 @@ use crate::answer_json::SummaryJson;
 /// Appends a block for each cable. Writing to a `String` cannot fail, so its results are ignored.
 pub fn write(t: &mut String, figures: &SummaryJson) {
     for s in &figures.cables {
-        let _ = writeln!(t, "\nCable `{}`, what is read first", s.cable);
+        let _ = writeln!(t, "\nCable `{}`, key figures", s.cable);
         for (line, value) in lines(s) {
             let _ = writeln!(t, "  {line:<17} {value}");
         }
@@ -19,7 +19,7 @@ pub fn write(t: &mut String, figures: &SummaryJson) {
             let _ = writeln!(t, "  {:<17} {}", "End stiffness", stiffness(e));
         }
         for b in figures.bending.iter().filter(|b| b.cable == s.cable) {
-            let _ = writeln!(t, "  {:<17} {}", "Bending neglected", neglected(b, s.greatest_tension.tension_n));
+            let _ = writeln!(t, "  {:<17} {}", "With bending", neglected(b, s.greatest_tension.tension_n));
         }
     }
 }
@@ -28,8 +28,8 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
     let mut out: Vec<(&'static str, String)> =
         ["Start", "End"].into_iter().zip(&s.ends).map(|(name, end)| (name, force(end))).collect();
     let [most, least] = [s.greatest_tension, s.least_tension];
-    out.push(("Greatest tension", format!("{:.4} N {}", most.tension_n, at(most.at))));
-    out.push(("Least tension", format!("{:.4} N {}", least.tension_n, at(least.at))));
+    out.push(("Greatest tension", format!("{} N {}", fixed(most.tension_n), at(most.at))));
+    out.push(("Least tension", format!("{} N {}", fixed(least.tension_n), at(least.at))));
     let longer = s.stretched_length_m - s.length_m;
     out.push(("Length", format!("{:.4} m, now {:.6} m ({longer:+.3e} m)", s.length_m, s.stretched_length_m)));
     out.push(("Lying", format!("{:.4} m, suspended {:.4} m", s.lying_m, s.suspended_m)));
@@ -39,16 +39,16 @@ fn lines(s: &CableSummary) -> Vec<(&'static str, String)> {
             TouchKind::Ends => "leaves",
             TouchKind::Point => "touches",
         };
-        out.push(("Touchdown", format!("{touch} `{}` with {:.4} N {}", d.obstacle, d.tension_n, at(d.at))));
+        out.push(("Touchdown", format!("{touch} `{}` with {} N {}", d.obstacle, fixed(d.tension_n), at(d.at))));
     }
     if let Some(sag) = s.sag {
-        out.push(("Sag", format!("{:.4} m {}", sag.sag_m, at(sag.at))));
+        out.push(("Sag", format!("{} m {}", fixed(sag.sag_m), at(sag.at))));
     }
-    out.push(("Lowest", format!("{:.4} m {}", s.lowest.y_m, at(s.lowest))));
-    out.push(("Highest", format!("{:.4} m {}", s.highest.y_m, at(s.highest))));
-    out.push(("Used of limits", used_of_limits(&s.utilisation)));
+    out.push(("Lowest", format!("{} m {}", fixed(s.lowest.y_m), at(s.lowest))));
+    out.push(("Highest", format!("{} m {}", fixed(s.highest.y_m), at(s.highest))));
+    out.push(("Share of limits", used_of_limits(&s.utilisation)));
     if let Some(j) = &s.judged_bend {
-        out.push(("Sharpest led bend", judged_bend(j)));
+        out.push(("Bend at a guide", judged_bend(j)));
     }
     if let Some(f) = &s.friction {
         out.push(("Friction used", friction_used(f)));
@@ -83,16 +83,29 @@ fn judged_bend(j: &JudgedBend) -> String {
 
 fn friction_used(f: &FrictionUse) -> String {
     let most = percent(f.greatest_ratio);
-    format!("{:.4} of {:.4} N, most by `{}` at {:.4} m: {most}", f.used_n, f.available_n, f.obstacle, f.arc_length_m)
+    format!(
+        "{} of {} N available, most on `{}` at {} m: {most}",
+        fixed(f.used_n),
+        fixed(f.available_n),
+        f.obstacle,
+        fixed(f.arc_length_m)
+    )
 }
 
 fn balance(b: Option<&ForceBalance>) -> String {
     match b {
-        Some(b) => format!(
-            "{:.2e} N right, {:.2e} N up are left of all forces: {:.1e} of the largest",
-            b.residual_n[0], b.residual_n[1], b.relative_residual
-        ),
-        None => "not known: the floor of a plan view rubs".to_owned(),
+        Some(b) => {
+            let [x, y] = b.residual_n;
+            format!(
+                "sum of all forces on the cable {:.2e} N {}, {:.2e} N {}: {:.1e} of the largest",
+                x.abs(),
+                left_or_right(x),
+                y.abs(),
+                up_or_down(y),
+                b.relative_residual
+            )
+        }
+        None => "not known: in a plan view the floor's friction is not part of the answer".to_owned(),
     }
 }
 
@@ -101,31 +114,55 @@ fn force(e: &EndForce) -> String {
         Some(d) => format!(", leaves {:.3}° {} the horizontal", d.abs(), if d < 0.0 { "below" } else { "above" }),
         None => String::new(),
     };
+    let [x, y] = [e.horizontal_n, e.vertical_n].map(|n| without_sign_of_zero(n, 4));
     format!(
-        "`{}` tension {:.4} N, pulls with {:.4} N right, {:.4} N up{angle}",
+        "`{}` tension {} N, pulls with {} N {}, {} N {}{angle}",
         e.support,
-        without_sign_of_zero(e.tension_n),
-        without_sign_of_zero(e.horizontal_n),
-        without_sign_of_zero(e.vertical_n)
+        fixed(e.tension_n),
+        fixed(x.abs()),
+        left_or_right(x),
+        fixed(y.abs()),
+        up_or_down(y)
     )
 }
 
-/// A number that is written with four decimals; one that rounds to zero has no sign.
-fn without_sign_of_zero(value: f64) -> f64 {
-    if value.abs() < 0.5e-4 { 0.0 } else { value }
+/// The word for the direction of a component along x.
+fn left_or_right(x: f64) -> &'static str {
+    if x < 0.0 { "left" } else { "right" }
+}
+
+/// The word for the direction of a component along y.
+fn up_or_down(y: f64) -> &'static str {
+    if y < 0.0 { "down" } else { "up" }
+}
+
+/// A number with four decimals; one that rounds to zero has no sign.
+pub fn fixed(value: f64) -> String {
+    format!("{:.4}", without_sign_of_zero(value, 4))
+}
+
+/// A number that is written with so many decimals; one that rounds to zero has no sign.
+pub fn without_sign_of_zero(value: f64, decimals: i32) -> f64 {
+    if value.abs() < 0.5 * 10f64.powi(-decimals) { 0.0 } else { value }
 }
 
 fn stiffness(e: &EndStiffness) -> String {
-    let [[right, aslant], [raised, up]] = e.stiffness_n_per_m.map(|row| row.map(|k| figure(k, 6)));
+    let [[right, aslant], [raised, up]] = e.stiffness_n_per_m;
+    let across = |k: f64| format!("{} N/m {}", figure(k.abs(), 6), left_or_right(k));
+    let along = |k: f64| format!("{} N/m {}", figure(k.abs(), 6), up_or_down(k));
     format!(
-        "`{}` right {right} N/m by moves right, {aslant} N/m by moves up; up {raised} N/m, {up} N/m (moved {} m)",
+        "`{}`: moving it right changes the force that holds it by {} and {}; moving it up, by {} and {} (moves of {} m)",
         e.support,
+        across(right),
+        along(raised),
+        across(aslant),
+        along(up),
         figure(e.moved_m, 2)
     )
 }
 
 fn at(p: CablePlace) -> String {
-    format!("at {:.4} m ({:.4} m, {:.4} m)", p.arc_length_m, p.x_m, p.y_m)
+    format!("at {} m ({} m, {} m)", fixed(p.arc_length_m), fixed(p.x_m), fixed(p.y_m))
 }
 
 /// A number with so many significant digits, in powers of ten only where it is very large or small.
@@ -141,7 +178,7 @@ fn figure(value: f64, digits: i32) -> String {
 }
 
 fn percent(ratio: f64) -> String {
-    format!("{:.4} %", 100.0 * ratio)
+    format!("{:.2} %", without_sign_of_zero(100.0 * ratio, 2))
 }
 
 /// A line for each cable on the changes that the neglected bending stiffness would make to the
@@ -150,7 +187,7 @@ pub fn neglected_at_first_rest(figures: &SummaryJson) -> Vec<String> {
     let of = |b: &NeglectedBending| {
         let rest = figures.cables.iter().find(|s| s.cable == b.cable)?;
         let changes = neglected(b, rest.greatest_tension.tension_n);
-        Some(format!("\nBending neglected of `{}`: at the first rest {changes}", b.cable))
+        Some(format!("\nBending of `{}` was neglected: at the first rest, {changes}", b.cable))
     };
     figures.bending.iter().filter_map(of).collect()
 }
@@ -162,7 +199,7 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
         [Some(low), Some(high)] => format!(" ({low} to {high})"),
         _ => String::new(),
     };
-    let with = format!("with {}{range} N·m², likely of its preset,", b.bending_stiffness_n_m2);
+    let with = format!("with the likely {}{range} N·m² of its preset,", b.bending_stiffness_n_m2);
     let Some(tension) = b.greatest_tension_n else {
         return format!(
             "{with} no answer was found: {}",
@@ -172,7 +209,7 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
     let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
     let change = |what: &str, of: Option<f64>, unit: &str| {
         of.map_or_else(
-            || format!("{what} by what is not known"),
+            || format!("{what} by an unknown amount"),
             |v| format!("{what} by up to {} {unit}", figure(v, 3)),
         )
     };

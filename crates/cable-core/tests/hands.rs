@@ -240,7 +240,7 @@ fn a_hand_beyond_the_length_pulls_until_the_cable_breaks() {
             }
             assert!(reach < 20.1, "{model}: {reach} m away");
             let force = hand(&sim).1.norm();
-            said |= force > 1000.0 && held(&sim).iter().any(|w| w.contains("behind the hand, which pulls it with"));
+            said |= force > 1000.0 && held(&sim).iter().any(|w| w.contains("hand that drags it, which pulls with"));
             most = most.max(force);
         }
         assert!(!sim.answers()[0].breaks.is_empty() && said, "{model}: {most} N");

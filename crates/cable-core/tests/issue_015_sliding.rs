@@ -129,7 +129,7 @@ fn other_histories_are_said_of_every_rest_that_rubs() {
     for (scene, model) in scenes {
         let answer = settle(&scene, model).unwrap();
         let said = answer.warnings.iter().find(|w| w.kind == WarningKind::NotUnique).expect("said");
-        assert!(said.to_string().contains("towards the end: "), "{model}: {said}");
+        assert!(said.to_string().contains("drawn towards its end: "), "{model}: {said}");
     }
 }
 

@@ -235,7 +235,7 @@ fn what_runs_away_is_held_back_and_said_with_place_and_time() {
         sim.step(0.02).unwrap();
         let s = sim.solution();
         let said: Vec<_> = s.warnings.iter().filter(|w| w.kind == WarningKind::Stabilised).collect();
-        for what in ["velocity was cut", "kinetic energy"] {
+        for what in ["speed was limited", "kinetic energy"] {
             let w = said.iter().find(|w| w.to_string().contains(what)).unwrap_or_else(|| panic!("{what}: {said:?}"));
             assert!(w.value > w.limit && w.since_s.is_some_and(|t| t <= 0.02), "{w:?}");
             let place = sim.states()[0].arc_length_m[17];

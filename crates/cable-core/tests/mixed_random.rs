@@ -336,7 +336,7 @@ fn issue_016_a_load_that_cannot_run_over_a_wheel_is_told() {
     for (seed, inertia) in [(2, Inertia::QuasiStatic), (42, Inertia::Dynamic), (480, Inertia::QuasiStatic)] {
         let found = found_in(seed, inertia);
         let told =
-            found.faults.get("beyond the model").is_some_and(|(_, places)| places[0].contains("comes to the pulley"));
+            found.faults.get("beyond the model").is_some_and(|(_, places)| places[0].contains("reaches the pulley"));
         assert!(told && found.faults.len() == 1, "{seed}: {:?}", found.faults);
     }
 }

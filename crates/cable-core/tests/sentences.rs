@@ -1,7 +1,7 @@
 //! Warnings, errors and verdicts are sentences, in SI and in US units.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::answer_verifier::{Finding, Law, NotChecked, Verification};
+use cable_core::answer_verifier::{Balance, Finding, Law, NotChecked, Verification};
 use cable_core::error::{
     DocumentFault, EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SceneError, SceneFault,
     SolveError, SpanError, TensionLoss, TextPosition, Unsupported,
@@ -216,6 +216,11 @@ fn errors() -> Vec<Box<dyn Sentence>> {
         }),
         Box::new(Verification { findings: vec![finding], ..Verification::default() }),
         Box::new(Verification::default()),
+        Box::new(Verification {
+            balance: Balance { residual_n: 2e-6, scale_n: 93.0, ..Balance::default() },
+            not_checked: vec![NotChecked::SelfContact { cable: name("main") }],
+            ..Verification::default()
+        }),
     ]
 }
 

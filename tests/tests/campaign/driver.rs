@@ -280,7 +280,7 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
             }
             match case.expect {
                 Expect::Slides => {
-                    v.told = why.contains("resting place: ");
+                    v.told = ["resting place: ", "cannot come to rest: "].iter().any(|words| why.contains(words));
                     v.refused = (!v.told).then(|| why.clone());
                 }
                 Expect::Perhaps => v.excused = true,

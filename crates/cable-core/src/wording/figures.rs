@@ -163,9 +163,13 @@ impl Figures {
         self.fixed(Quantity::Force, force_n, decimals)
     }
 
-    /// From one force (N) to another, with two decimals.
+    /// From one force (N) to another, with two decimals; one number where these are the same.
     pub(super) fn forces(self, [from_n, to_n]: [f64; 2]) -> String {
-        format!("{} to {}", rounded(Quantity::Force.convert(from_n, self.0), 2), self.force(to_n, 2))
+        let (from, to) = (self.force(from_n, 2), self.force(to_n, 2));
+        if from == to {
+            return to;
+        }
+        format!("{} to {to}", rounded(Quantity::Force.convert(from_n, self.0), 2))
     }
 }
 

@@ -118,11 +118,13 @@ impl Sentence for RunRemark {
     fn sentence(&self, units: UnitSystem) -> String {
         match self {
             Self::Partial { reached_s, stop } => {
-                let reached =
-                    reached_s.map_or_else(|| "no instant".to_owned(), |t| Figures(units).given(Quantity::Time, t));
+                let reached = reached_s.map_or_else(
+                    || "no results written".to_owned(),
+                    |t| format!("up to {}", Figures(units).given(Quantity::Time, t)),
+                );
                 let stop =
                     stop.clone().map_or_else(|| "it was cut off, or is still being written".to_owned(), String::from);
-                format!("The run is partial, to {reached}: {stop}")
+                format!("The run is partial ({reached}): {stop}")
             }
             Self::LeftOut(LeftOut::IncompleteLine { table, bytes }) => {
                 format!("{table} ends within a line, of which {bytes} bytes were left out")

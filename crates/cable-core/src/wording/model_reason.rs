@@ -18,13 +18,13 @@ impl Sentence for ModelReason {
             Self::BendingStiffness => "the cable has bending stiffness",
             Self::SelfContact => "the cable can touch itself",
             Self::ClearOfItself => {
-                "the cable could touch itself, and at rest does so nowhere: contacts as intervals have no discretisation error"
+                "the cable could touch itself but does not at rest; solved without a mesh and so without mesh error"
             }
             Self::FloorFriction => "in plan view the floor rubs everywhere",
-            Self::Obstacles => "a taut cable among obstacles: contacts as intervals have no discretisation error",
-            Self::EndOverPulleys => "an end hangs over pulleys: contacts as intervals find where it stops running",
-            Self::WheelFriction => "the cable rubs on wheels: contacts as intervals have no discretisation error",
-            Self::SupportsOnly => "supports only: the elastic catenary has no discretisation error",
+            Self::Obstacles => "a taut cable among obstacles, solved without a mesh and so without mesh error",
+            Self::EndOverPulleys => "an end hangs over pulleys; this model finds where it stops running",
+            Self::WheelFriction => "the cable rubs on wheels, solved without a mesh and so without mesh error",
+            Self::SupportsOnly => "the cable touches only its supports, so the elastic catenary has no mesh error",
             Self::LooseCable => "the cable lies loose: what hangs is plumb, what lies has no tension",
             Self::TouchesRobot => "the cable touches the robot, which moves",
             Self::BuriedWithoutMesh => "the cable was not found clear of the ground without a mesh",
@@ -45,20 +45,19 @@ impl Sentence for LikelyBending {
                 format!("`{}` with {stiffness}", c.cable)
             });
             let all = each.collect::<Vec<_>>().join(", ");
-            format!("the bending stiffness that is likely of its preset was taken: {all}")
+            format!("the likely bending stiffness of its preset was used: {all}")
         };
         match self {
             Self::Taken(cables) => taken(cables),
             Self::TakenWhereItMatters(cables) => {
                 format!(
-                    "without bending stiffness it is bent too tightly, lies in folds or crosses itself, so {}",
+                    "without bending stiffness it bends too tightly, lies in folds or crosses itself, so {}",
                     taken(cables)
                 )
             }
-            Self::NoAnswer(error) => format!(
-                "with the bending stiffness that is likely of its preset there is no answer: {}",
-                error.sentence(units)
-            ),
+            Self::NoAnswer(error) => {
+                format!("with the likely bending stiffness of its preset there is no answer: {}", error.sentence(units))
+            }
         }
     }
 }
@@ -79,14 +78,17 @@ impl Sentence for NextCheaper {
             NeglectedEffect::Inertia => "inertia",
         };
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
-            return format!("{}, without {what}: no answer", self.model);
+            return format!("{}, ignoring {what}, has no answer", self.model);
         };
         if force <= ANSWER_DIFFERENCE_FRACTION {
-            return format!("{}, without {what}: the same answer", self.model);
+            return format!("{}, ignoring {what}, gives the same answer", self.model);
         }
         let by = if self.is_lower_bound { "by at least" } else { "by" };
         let force = percent(force);
         let place = f.length(place, 3);
-        format!("{}, without {what}: off {by} {force} of the greatest tension, {by} {place} in shape", self.model)
+        format!(
+            "{}, ignoring {what}, would be off {by} {force} of the greatest tension and {by} {place} in shape",
+            self.model
+        )
     }
 }

@@ -62,27 +62,27 @@ impl Sentence for SceneFault {
                 format!("{} is beyond the cable's end at {}", length(*arc_length_m), length(*length_m))
             }
             Self::OutOfOrder { arc_length_m, between_m: [before, after] } => format!(
-                "{} must lie between {} and {}, in order",
+                "{} is out of order: it must lie between {} and {}",
                 length(*arc_length_m),
                 length(*before),
                 length(*after)
             ),
             Self::MotionStartsElsewhere { motion_m, support_m } => format!(
-                "at 0 s it is at {}, its support's at_m is {}: they must agree",
+                "at 0 s the schedule is at {}, but its support is placed at {}: make them agree",
                 f.given_point(*motion_m),
                 f.given_point(*support_m)
             ),
             Self::EdgesCross { other, edges_m } => {
                 let [edge, others] = edges_m.map(|ends| ends.map(|at| f.given_point(at)).join(" to "));
                 format!(
-                    "the edge from here, {edge}, crosses or touches the edge from point {other}, {others}: move a point of one, or leave it out"
+                    "the edge that starts here, {edge}, crosses or touches the edge from point {other}, {others}: move or remove one of their points"
                 )
             }
             Self::UnknownName { what, name, nearest } => {
                 format!("there is no {what} named `{name}`{}", hint(nearest.as_deref()))
             }
             Self::RouteInside { obstacle, depth_m, x_m, y_m } => format!(
-                "from here the route leads {} deep through `{obstacle}` at {}: lead it past, on the side where the cable shall lie",
+                "from here the route leads {} deep through `{obstacle}` at {}: lead it past, on the side where the cable is to lie",
                 f.length(*depth_m, 3),
                 f.point([*x_m, *y_m], 3)
             ),
@@ -107,7 +107,7 @@ impl Sentence for SceneFault {
                 )
             }
             Self::TooShort { length_m, way_m, needed_n, breaking_n } => format!(
-                "the way between the supports is {way}, the cable is {} long, and stretching to it takes {} where it breaks at {}: make length_m at least {way}",
+                "the route between the supports is {way} but the cable is only {} long; stretching it that far takes {}, and it breaks at {}: make length_m at least {way}",
                 f.length(*length_m, 4),
                 f.significant(Quantity::Force, *needed_n, 4),
                 f.given(Quantity::Force, *breaking_n),

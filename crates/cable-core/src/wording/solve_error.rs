@@ -7,6 +7,7 @@ use crate::error::{
     EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
     Unsupported, UnsupportedReach,
 };
+use crate::model_id::Model;
 use crate::units::{Quantity, UnitSystem};
 
 /// A force that no cable bears, N: left over it says that a search ran away, not how much is
@@ -49,12 +50,12 @@ impl Sentence for SolveError {
         let f = Figures(units);
         match self {
             Self::NotConverged { model, residual_n, place, .. } => format!(
-                "{model} found no resting place: {} {}. Lay the cable by another way there (route_m), or ask another model",
+                "{model} found no resting place: {} {}. Give the cable another route there (route_m), or use another model",
                 left_over(f, *residual_n),
                 place.sentence(units)
             ),
             Self::TooMuchWork { model, segments, residual_n, place, .. } => format!(
-                "{model} has found no resting place with {segments} segments by all the work it does for one: {} {}. Draw its route nearer to where it will lie, or give it fewer segments",
+                "{model} gave up its search for a resting place with {segments} segments: {} {}. Draw the route nearer to where the cable will lie, or use fewer segments",
                 left_over(f, *residual_n),
                 place.sentence(units)
             ),
@@ -73,12 +74,13 @@ impl Sentence for SolveError {
                 "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
             ),
             Self::TensionLost { model, loss, arc_length_m, at_m } => format!(
-                "{model} follows a taut cable only: {} {} along it, at {}",
+                "{model} works for a taut cable only, but here {} {} along it, at {}{}",
                 loss.sentence(units),
                 f.length(*arc_length_m, 3),
-                f.point((*at_m).into(), 3)
+                f.point((*at_m).into(), 3),
+                if *model == Model::Fem { "" } else { "; use fem" }
             ),
-            Self::NoRestingPlace { why } => format!("there is no resting place: {}", why.sentence(units)),
+            Self::NoRestingPlace { why } => format!("the cable cannot come to rest: {}", why.sentence(units)),
             Self::AfterBreak { cable, time_s, arc_length_m, at_m, breaking_n, why } => format!(
                 "`{cable}` breaks at {time_s:.4} s, {} along it, at {}, under its breaking tension of {}; what is left of it has no answer without inertia: {}. Run it with inertia, which follows the fall",
                 f.length(*arc_length_m, 3),
@@ -91,7 +93,7 @@ impl Sentence for SolveError {
                 format!("{model} cannot answer this scene: {}", feature.sentence(units))
             }
             Self::NonFinite { quantity, arc_length_m, time_s } => format!(
-                "{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others",
+                "the {quantity} {} along the cable at {} is not a finite number: a time step, a load or a stiffness is far out of proportion to the others",
                 f.distance(*arc_length_m),
                 if time_s.is_finite() { format!("{} s", six_digits(*time_s)) } else { "no finite time".to_owned() }
             ),
@@ -102,16 +104,16 @@ impl Sentence for SolveError {
                 f.point((*at_m).into(), 3)
             ),
             Self::Unsound { model, finding } => {
-                format!("the answer of {model} is not sound: {}", finding.sentence(units))
+                format!("the answer of {model} did not pass verification: {}", finding.sentence(units))
             }
             Self::Setting { name, value, allowed: [low, high], quantity } => {
                 let value = f.given(*quantity, *value);
                 let [low, most] = [*low, *high].map(|end| f.bound(*quantity, end));
                 let allowed = match high.is_finite() {
-                    true => format!("lie in {low} to {}", f.with_unit(*quantity, most)),
+                    true => format!("be between {low} and {}", f.with_unit(*quantity, most)),
                     false => format!("be {} or more, and finite", f.with_unit(*quantity, low)),
                 };
-                format!("the setting {name} = {value} cannot be worked by: it must {allowed}")
+                format!("the setting {name} = {value} is not allowed: it must {allowed}")
             }
             Self::TimeStep { dt_s, longest_s } => {
                 let most = if longest_s.is_finite() {
@@ -136,7 +138,7 @@ impl Sentence for SolveError {
 /// measure, says nothing to anybody.
 fn left_over(f: Figures, residual_n: f64) -> String {
     if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
-        format!("{} stay unbalanced", f.significant(Quantity::Force, residual_n, 4))
+        format!("a force of {} stays unbalanced", f.significant(Quantity::Force, residual_n, 4))
     } else {
         "no balance of forces was reached".to_owned()
     }
@@ -149,17 +151,17 @@ impl Sentence for NoEquilibrium {
             Self::NothingHolds => "nothing holds the cable".to_owned(),
             Self::NothingBelow => "no support holds the cable and there is nothing that it could lie on".to_owned(),
             Self::SlidesOff => {
-                "nothing holds the cable where it is laid: it slides away by more than its length".to_owned()
+                "nothing holds it where it is laid, and it slides away by more than its length".to_owned()
             }
-            Self::NoFriction => "it slides: nothing rubs that would hold it where it is laid".to_owned(),
+            Self::NoFriction => "it slides, because there is no friction to hold it where it is laid".to_owned(),
             Self::TooLittleFriction { friction_ratio } => missing_friction(*friction_ratio),
             Self::UnheldForce { left_n, loads_n } => format!(
-                "it slides: {} of {} are held by nothing",
+                "it slides, because nothing holds {} of the {} of load on it",
                 f.significant(Quantity::Force, *left_n, 4),
                 f.significant(Quantity::Force, *loads_n, 4)
             ),
             Self::ThroughObstacle { obstacle, at_m, arc_length_m } => format!(
-                "the cable is laid through `{obstacle}`, at {}, {} along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
+                "the cable is laid through `{obstacle}`, at {}, {} along it, and it finds no way out: draw a route_m round it, or leave a way to where its ends are held",
                 f.point((*at_m).into(), 3),
                 f.length(*arc_length_m, 3)
             ),
@@ -182,7 +184,7 @@ fn missing_friction(friction_ratio: f64) -> String {
     let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
     let unit = 10f64.powi(-(digits as i32));
     let shown = (more / unit).ceil() * unit;
-    format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize)
+    format!("it slides; {shown:.0$} % more friction would hold it where it is laid", digits as usize)
 }
 
 impl Sentence for SpanError {
@@ -199,7 +201,7 @@ impl Sentence for SpanError {
                 format!("an inextensible cable of {} cannot span {}", metres(length_m), metres(chord_m))
             }
             Self::NotConverged { iterations, closure_m } => format!(
-                "no convergence in {iterations} iterations: the span closes to {}",
+                "no convergence in {iterations} iterations: the computed end is still {} from its support",
                 Figures(units).significant(Quantity::Length, closure_m, 4)
             ),
         }
@@ -265,8 +267,8 @@ impl Sentence for Unsupported {
             Self::BackOnWheel { support } => {
                 return format!("the cable comes back to the moving wheel of `{support}`, which it had left");
             }
-            Self::NothingHolds => "no support holds the cable: two loads or loose ends, and obstacles at most",
-            Self::SupportWithoutPlace => "a grip without a place",
+            Self::NothingHolds => "no support holds the cable, only loads, loose ends or obstacles",
+            Self::SupportWithoutPlace => "a support has no place on the cable",
             Self::EndlessContacts { arc_length_m } => {
                 return format!("contacts come and go without end near {}", f.length(*arc_length_m, 3));
             }
@@ -282,23 +284,27 @@ impl Sentence for Unsupported {
             Self::LoadAtPulley { support, arc_length_m } => {
                 let along = f.length(*arc_length_m, 3);
                 return format!(
-                    "the load {along} along the cable comes to the pulley `{support}`: one of a stiff cable runs over none, and none that pulls away from its wheel"
+                    "the load {along} along the cable reaches the pulley `{support}`: a load on a stiff cable cannot run over a pulley, nor can a load that pulls away from the wheel"
                 );
             }
             Self::LooseCableDrawn { arc_length_m } => {
-                return format!("the cable lies loose and is drawn along, from {}", f.length(*arc_length_m, 3));
+                return format!("loose cable is dragged along, starting at {} along it", f.length(*arc_length_m, 3));
             }
             Self::Unverified { finding, arc_length_m, at_m } => {
                 let (along, at) = (f.length(*arc_length_m, 3), f.point((*at_m).into(), 3));
-                return format!("{} {along} along it at {at}", finding.sentence(units));
+                return format!("{}, {along} along the cable at {at}", finding.sentence(units));
             }
-            Self::EmptyState => "a state of no nodes",
-            Self::StateOfOtherLength => "a state of a cable of another length",
-            Self::StateOfWholeCable => "the state of a whole cable for one that broke (reset first)",
-            Self::EditOfBrokenCable => "another length, other supports or loads for a cable that broke (reset first)",
+            Self::EmptyState => "the given state has no nodes",
+            Self::StateOfOtherLength => "the given state is that of a cable of another length",
+            Self::StateOfWholeCable => {
+                "the given state is that of a whole cable, but this one has broken (reset first)"
+            }
+            Self::EditOfBrokenCable => {
+                "a broken cable cannot take another length, other supports or other loads (reset first)"
+            }
             Self::MotionTooFast { support, speed_m_per_s, time_s, limit_m_per_s } => {
                 return format!(
-                    "the motion of support `{support}`, which reaches {} at {time_s:.4} s: with inertia one is followed up to {}",
+                    "support `{support}` reaches {} at {time_s:.4} s; with inertia its speed may be at most {}",
                     f.fixed(Quantity::Speed, *speed_m_per_s, 1),
                     f.given(Quantity::Speed, *limit_m_per_s)
                 );
@@ -312,15 +318,15 @@ impl Sentence for Unsupported {
 impl Sentence for UnsupportedReach {
     fn sentence(&self, _: UnitSystem) -> String {
         let text = match self {
-            Self::NoSuchCable => "a cable that is not there",
-            Self::SupportWithoutPlace => "a support without a place",
-            Self::EmptyGrid => "a grid without places",
-            Self::GridTooLarge => "a grid of so many places",
-            Self::HitchWithoutRobot => "a cable on a robot that is not there",
-            Self::NoRobot => "a scene without a robot",
-            Self::UnknownRobot => "a robot of no known kind",
-            Self::RobotWithoutCable => "a robot that no cable hangs on",
-            Self::BrokenCable => "a cable that has broken",
+            Self::NoSuchCable => "there is no such cable",
+            Self::SupportWithoutPlace => "the support has no place",
+            Self::EmptyGrid => "the grid has no places",
+            Self::GridTooLarge => "the grid has too many places",
+            Self::HitchWithoutRobot => "the cable hangs on a robot that is not there",
+            Self::NoRobot => "the scene has no robot",
+            Self::UnknownRobot => "the robot is of no known kind",
+            Self::RobotWithoutCable => "no cable hangs on the robot",
+            Self::BrokenCable => "the cable has broken",
         };
         text.to_owned()
     }
@@ -331,7 +337,7 @@ impl Sentence for TensionLoss {
         let text = match self {
             Self::Fold => "a span folds",
             Self::Span => "a span goes slack",
-            Self::Lay => "what lies goes slack",
+            Self::Lay => "the lying cable goes slack",
         };
         text.to_owned()
     }
@@ -345,15 +351,15 @@ impl Sentence for EquilibriumFault {
             Self::MaterialAlongContact => "material is lost along a contact",
             Self::Unbalanced => "supports and contacts do not hold the weight and the loads",
             Self::SpanOpen => "a span does not close",
-            Self::SpanNotTangent => "a span is not tangent to what it leaves",
+            Self::SpanNotTangent => "a free span does not leave its contact tangentially",
             Self::ContactBeyondBoundary => "a contact goes on beyond what it lies on",
-            Self::ContactPulls => "a contact pulls",
-            Self::FrictionBeyondCone => "friction beyond its cone",
-            Self::SlackUnderTension => "slack has tension",
-            Self::LooseCableSlides => "what lies loose slides",
-            Self::EndTension => "an end is not what draws it",
+            Self::ContactPulls => "a contact pulls on the cable",
+            Self::FrictionBeyondCone => "friction exceeds its limit",
+            Self::SlackUnderTension => "a slack part has tension",
+            Self::LooseCableSlides => "a loose part slides",
+            Self::EndTension => "the tension at an end differs from that of its support",
             Self::LoadHeldDown => "a load is held down",
-            Self::LoadOutOfKink => "a load is out of its kink",
+            Self::LoadOutOfKink => "a load is not in the corner where it should rest",
             Self::LoadSlides => "a load slides against more than its friction",
             Self::LoadElsewhere => "a load is not where the cable beside it ends",
             Self::InsideObstacle => "the cable is inside an obstacle",

@@ -40,13 +40,16 @@ impl Sentence for NotChecked {
 }
 
 impl Sentence for Verification {
-    /// The verdict in a line: sound or not, the balance, and what was not asked.
+    /// The verdict in a line: verified or not, the balance, and what was not checked.
     fn sentence(&self, units: UnitSystem) -> String {
         let (residual_n, scale_n) = (self.balance.residual_n, self.balance.scale_n);
         let share = if scale_n > 0.0 { residual_n / scale_n } else { 0.0 };
+        let verdict = if self.not_checked.is_empty() { "verified" } else { "partly verified" };
+        let scale = Figures(units).force(scale_n, 4);
         let mut line = match self.worst() {
-            None => format!("sound, forces balance within {} of {}", percent(share), Figures(units).force(scale_n, 4)),
-            Some(worst) => format!("NOT SOUND: {}", worst.sentence(units)),
+            None if scale_n > 0.0 => format!("{verdict}: forces balance to within {} of {scale}", percent(share)),
+            None => verdict.to_owned(),
+            Some(worst) => format!("VERIFICATION FAILED: {}", worst.sentence(units)),
         };
         for what in &self.not_checked {
             line.push_str("; not checked: ");

@@ -21,13 +21,13 @@ impl Sentence for Warning {
         let pulled = |decimals: usize| f.force(value, decimals);
         match &self.cause {
             Cause::AboveService { time_s } => format!(
-                "`{cable}` is pulled with {} at {place}{}, above its service tension of {}: it wears out early; lengthen the cable or lighten the load",
+                "`{cable}` carries {} at {place}{}, above its service tension of {}: it wears out early; lengthen the cable or lighten the load",
                 pulled(1),
                 instant(*time_s),
                 given(limit)
             ),
             Cause::BrieflyAboveBreaking { time_s, breaking_n, held_n, over_s } => format!(
-                "`{cable}` is pulled with {} at {place}{}, for an instant, above its service tension of {} and its breaking tension of {}. It holds, as its mean over {over_s} s is {} at most; but how high such an instant is hangs on loss and mesh",
+                "`{cable}` carries {} at {place}{}, for an instant, above its service tension of {} and its breaking tension of {}. It does not break, because its mean tension over {over_s} s is at most {}; the height of such a peak depends on damping and mesh",
                 pulled(1),
                 instant(Some(*time_s)),
                 given(limit),
@@ -35,14 +35,14 @@ impl Sentence for Warning {
                 f.force(*held_n, 1)
             ),
             Cause::AboveBreaking { mean } => format!(
-                "`{cable}` is pulled with {} at {place}{}, {}above its breaking tension of {}: it would break here; the figures assume that it does not",
+                "`{cable}` carries {} at {place}{}, {}above its breaking tension of {}: it would break here; the figures assume that it does not",
                 pulled(1),
                 instant(mean.map(|m| m.time_s)),
-                mean.map_or_else(String::new, |m| format!("in the mean over {} s, ", m.over_s)),
+                mean.map_or_else(String::new, |m| format!("averaged over {} s, ", m.over_s)),
                 given(limit)
             ),
             Cause::AboveBreakingAfterBreak { mean } => format!(
-                "`{cable}` is pulled with {} at {place}{}, in the mean over {} s, above its breaking tension of {}, after it broke: a piece is not watched until the wave of its break has crossed it and come back, so whether it breaks here too is not known",
+                "`{cable}` carries {} at {place}{}, averaged over {} s, above its breaking tension of {}, shortly after it broke. A broken piece is not tested for further breaks until the wave of its break has run through it and back, so whether it breaks here too is not known",
                 pulled(1),
                 instant(Some(mean.time_s)),
                 mean.over_s,
@@ -64,8 +64,12 @@ impl Sentence for Warning {
                 )
             }
             Cause::BreakageUncertain { broke, held_n, lowest_n, over_s } => format!(
-                "`{cable}` {}: its greatest mean tension over {over_s} s is {}, {:.0} to {} as coarser runs differ from it, and it breaks at {}: pull less, or more slowly",
-                if *broke { "broke here, and may hold" } else { "held here, and may break" },
+                "`{cable}` {}: its greatest mean tension over {over_s} s is {} ({:.0} to {}, estimated from coarser runs), and it breaks at {}. Pull less, or more slowly",
+                if *broke {
+                    "broke here, but a finer run may not break it"
+                } else {
+                    "did not break here, but a finer run may break it"
+                },
                 f.force(*held_n, 0),
                 Quantity::Force.convert(*lowest_n, units),
                 pulled(0),
@@ -76,24 +80,24 @@ impl Sentence for Warning {
                 f.radius(value),
                 f.radius(limit),
                 if self.cause == Cause::FreeKink {
-                    "it kinks there and stays bent; give it more way to turn, or a guide"
+                    "it kinks there and stays bent; give it more room to turn, or a guide"
                 } else {
-                    "its strands are overstretched there; lead it round something wider"
+                    "its strands are overstretched there; guide it round something wider"
                 }
             ),
             Cause::Pressure => format!(
-                "`{cable}` is pressed with {} against what leads it at {place}, above the {} it stands: its insulation is crushed; pull less, or lead it round something wider",
+                "`{cable}` is pressed against its guide with {} at {place}, above the {} allowed: its insulation is crushed; pull less, or guide it round something wider",
                 f.fixed(Quantity::ForcePerLength, value, 0),
                 given(limit)
             ),
             Cause::Folds { material_m, ground_m, on_ground } => format!(
-                "{} of `{cable}` lie without tension in folds on {} of {}, most of it at {place}: in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
+                "{} of `{cable}` lies in folds, without tension, on {} of {}, most of it at {place}: a 2D model cannot show layers and loops, so how they lie is not known; shorten the cable or give it more room",
                 f.length(*material_m, 2),
                 f.length(*ground_m, 2),
-                if *on_ground { "ground" } else { "way" }
+                if *on_ground { "ground" } else { "route" }
             ),
             Cause::LowTension { below_n } => format!(
-                "{} of `{cable}` round {place} have less than {} of tension: this part may be run over, snag or loop; shorten the cable or pull it in",
+                "{} of `{cable}` near {place} has less than {} of tension: this part may be run over, snag or loop; shorten the cable or pull it in",
                 f.length(value, 2),
                 f.force(*below_n, 3)
             ),
@@ -112,25 +116,25 @@ impl Sentence for Warning {
                 "`{cable}` goes round `{obstacle}` {value:.2} times at {place}: friction multiplies the pull with every turn and pulling an end does not free it; drive back round it"
             ),
             Cause::Caught { obstacle, first_ratio } => format!(
-                "`{cable}` is caught by `{obstacle}` at {place}: it does not slip there while the tension across it has grown from {first_ratio:.2} to {value:.2} times; the pull goes into the obstacle, not along the cable; stop, drive back, and lead it past"
+                "`{cable}` is caught on `{obstacle}` at {place}: it has not slipped there, although the ratio of the tensions on its two sides has grown from {first_ratio:.2} to {value:.2}; the pull goes into the obstacle, not along the cable. Stop, drive back, and guide it past"
             ),
             Cause::Weightless => "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable".to_owned(),
-            Cause::Unstable => "This balance runs away at the least push: nothing rubs that would hold the cable in it".to_owned(),
+            Cause::Unstable => "This resting place is unstable: there is no friction to hold the cable, and the slightest push moves it away".to_owned(),
             Cause::Loose { material_m, ground_m, held_n } => format!(
-                "The cable lies loose: {} of it on {} of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may pull at its ends by what friction on it holds, {} at most",
+                "The cable lies loose: {} of it on {} of ground, without tension, so each end carries only what hangs from it. How the slack is folded is not known; it is drawn spread evenly. Laid differently, friction on the slack could pull at the ends with up to {}",
                 f.length(*material_m, 3),
                 f.length(*ground_m, 3),
                 f.force(*held_n, 2)
             ),
             Cause::ManyEquilibria { shown, histories: known } => {
                 let shown = match shown {
-                    ShownEquilibrium::EvenlyLaid => ": this is the one laid evenly along its way with the least sliding",
+                    ShownEquilibrium::EvenlyLaid => ". Shown: the one laid evenly along its route with the least sliding",
                     ShownEquilibrium::LeastSliding => ". Shown: the one laid along its route with the least sliding",
                     ShownEquilibrium::Frictionless => ". Shown: the frictionless shape, held by friction",
-                    ShownEquilibrium::FromRoute => ": this is the one found from its way",
-                    ShownEquilibrium::FromRouteAsFlexible => ": this is the one found from its way; the histories are those of a flexible cable in its place",
+                    ShownEquilibrium::FromRoute => ". Shown: the one found starting from its route",
+                    ShownEquilibrium::FromRouteAsFlexible => ". Shown: the one found starting from its route (the other cases are computed for a flexible cable)",
                 };
-                let friction = if matches!(known, Histories::SlackElsewhere { .. } | Histories::BowedElsewhere { .. }) { "The" } else { "With friction the" };
+                let friction = if matches!(known, Histories::SlackElsewhere { .. } | Histories::BowedElsewhere { .. }) { "The" } else { "Because of friction, the" };
                 format!("{friction} resting place depends on how the cable was laid{shown}{}", histories(f, known))
             }
             Cause::Blocked { support, obstacle, short_m } => {
@@ -139,13 +143,13 @@ impl Sentence for Warning {
                     None => ["where it is".to_owned(), "where it is sent".to_owned()],
                 };
                 let by = if obstacle.is_empty() { "an obstacle".to_owned() } else { format!("`{obstacle}`") };
-                format!("support `{support}` cannot reach {to}: blocked by {by}, it stopped at {from}")
+                format!("Support `{support}` cannot reach {to}: blocked by {by}, it stopped at {from}")
             }
             Cause::ClearOfWheel { pulley } => {
-                format!("the cable hangs clear of the wheel of pulley `{pulley}`, which carries nothing")
+                format!("The cable hangs clear of the wheel of pulley `{pulley}`, which carries nothing")
             }
             Cause::Lags { support, behind_m } => format!(
-                "support `{support}` is {} behind its target: it moves at {} at most",
+                "Support `{support}` is {} behind its target, because it moves at {} at most",
                 f.length(*behind_m, 2),
                 given(limit)
             ),
@@ -153,7 +157,7 @@ impl Sentence for Warning {
                 let mut parts = Vec::new();
                 if let Some(behind_m) = behind_m {
                     parts.push(format!(
-                        "is {} behind the hand, which pulls it with {} by a spring of {}",
+                        "it is {} behind the hand that drags it, which pulls with {} through a spring of {}",
                         f.length(*behind_m, 2),
                         f.force(*pull_n, 0),
                         f.fixed(Quantity::ForcePerLength, *stiffness_n_per_m, 0)
@@ -162,9 +166,9 @@ impl Sentence for Warning {
                 if *hand_behind_m > 0.0 {
                     let hand = if behind_m.is_some() { "the hand" } else { "its hand" };
                     let behind = f.length(*hand_behind_m, 2);
-                    parts.push(format!("{hand} is {behind} behind its target: it moves at {} at most", given(limit)));
+                    parts.push(format!("{hand} is {behind} behind its target, because it moves at {} at most", given(limit)));
                 }
-                format!("support `{support}`: {}", parts.join("; "))
+                format!("Support `{support}`: {}", parts.join("; "))
             }
             Cause::RouteBuried { obstacle } => format!(
                 "The route leads {} deep below `{obstacle}`{}: the cable is laid along the surface there",
@@ -181,31 +185,31 @@ impl Sentence for Warning {
                 self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3)))
             ),
             Cause::RobotIgnored { model } => {
-                format!("`{cable}` lies through the robot: {model} knows nothing of it")
+                format!("`{cable}` passes through the robot: {model} does not treat the robot as an obstacle; use fem")
             }
             Cause::RobotInObstacle { obstacle } => format!(
                 "The robot stands in `{obstacle}`{}: it drives on terrain alone, and nothing else stops it; lead its path clear of it",
                 self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3)))
             ),
             Cause::SlidFromRoute { why } => format!(
-                "This is not where the cable was laid: from there there is no resting place: {}. How it moved there is not shown",
+                "The cable cannot rest where it was laid: {}. Shown: the place it slid to; the slide itself is not shown",
                 NoEquilibrium::from(*why).sentence(units)
             ),
-            Cause::SlidOn => "Nothing held the cable where it was: it slid to the next place that does. How it moved there is not shown".to_owned(),
+            Cause::SlidOn => "Nothing held the cable where it was, so it slid to the next place where it can rest. The slide itself is not shown".to_owned(),
             Cause::SpeedCut => format!(
-                "`{cable}` moved at {} at {place}{}: its velocity was cut to {} and the motion from then on is not to be believed; use fem",
+                "`{cable}` moved at {} at {place}{}: its speed was limited to {}. Do not trust the motion from then on; use fem",
                 f.fixed(Quantity::Speed, value, 0),
                 after(self.since_s),
                 given(limit)
             ),
             Cause::TooFast => format!(
-                "`{cable}` moves at {} at {place}{}: beyond {} the drag of the air and shocks, which no model here has, count more than what is computed. So fast are recoils of breaks, and cables under a force or a stiffness that is far too great",
+                "`{cable}` moves at {} at {place}{}: above {}, air drag and shocks, which no model includes, matter more than what is computed. Such speeds come from the recoil of a break, or from a force or stiffness that is far too great",
                 f.fixed(Quantity::Speed, value, 0),
                 after(self.since_s),
                 given(limit)
             ),
             Cause::EnergyCut => format!(
-                "the kinetic energy of `{cable}` reached {}, fastest at {place}{}, where supports, loads and stretch can give {}: the motion was braked and is not to be believed; use fem, or more segments",
+                "The kinetic energy of `{cable}` reached {}, fastest at {place}{}, but supports, loads and stretch can give only {}: the motion was slowed artificially. Do not trust it; use fem, or more segments",
                 f.significant(Quantity::Energy, value, 4),
                 after(self.since_s),
                 f.significant(Quantity::Energy, limit, 4)
@@ -215,7 +219,7 @@ impl Sentence for Warning {
                 f.significant(Quantity::Time, value, 3)
             ),
             Cause::EnergyFromNowhere { from_s, work_j, speed_m_per_s } => format!(
-                "`{cable}` has {} more energy than at {from_s:.4} s that came from nowhere: what moves it can have given {} at most since then, and rounding is below {}. It is fastest at {place} with {}. The motion from then on is not to be believed; use fem, shorter steps, or damping",
+                "`{cable}` has gained {} of energy since {from_s:.4} s that nothing explains: at most {} of work was done on it, and rounding is below {}. It is fastest at {place}, at {}. Do not trust the motion from then on; use fem, shorter steps, or damping",
                 f.significant(Quantity::Energy, value, 4),
                 f.significant(Quantity::Energy, *work_j, 4),
                 f.significant(Quantity::Energy, limit, 4),
@@ -225,35 +229,35 @@ impl Sentence for Warning {
                 let by = if value < 1.0 {
                     format!("{:.0} %", (100.0 * value).ceil())
                 } else {
-                    "any factor".to_owned()
+                    "100 % or more".to_owned()
                 };
                 format!(
-                    "tension of `{cable}` beyond `{obstacle}` at {place} is uncertain by {by}: it turns {turn_deg:.0}° there over elements of {}, and a chain of springs jerks at every node; use fem, which slides through, or shorter elements on a round",
+                    "The tension of `{cable}` beyond `{obstacle}` at {place} is uncertain by {by}: the cable turns {turn_deg:.0}° there with segments of {}, and the tension jumps as each node passes. Use fem, which lets the cable slide over the corner, or shorter segments if the obstacle is round",
                     f.length(*element_m, 3)
                 )
             }
             Cause::CoarseBend { bars } => format!(
-                "{bars} bars show the bend of a stiff cable where it is led round something to {} of the greatest tension only; {} was asked for: use more segments",
+                "With {bars} segments the bend of a stiff cable round its guide is accurate to {} of the greatest tension only; {} was asked for: give the cable more segments",
                 percent(value),
                 percent(limit)
             ),
             Cause::BarContacts => format!(
-                "The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {} of the greatest tension; {} was asked for",
+                "The contacts of this stiff cable are computed with straight segments, which gives the forces to about {} of the greatest tension; {} was asked for",
                 percent(value),
                 percent(limit)
             ),
             Cause::CoarseForces { elements } => format!(
-                "{elements} elements give the forces to about {} of the greatest tension; {} was asked for: use more segments",
+                "With {elements} segments the forces are accurate to about {} of the greatest tension; {} was asked for: give the cable more segments",
                 percent(value),
                 percent(limit)
             ),
             Cause::CoarseTension { elements } => format!(
-                "{elements} elements give the largest tension to about {}; {} was asked for: use more segments",
+                "With {elements} segments the greatest tension is accurate to about {}; {} was asked for: give the cable more segments",
                 percent(value),
                 percent(limit)
             ),
             Cause::RobotOutOfBalance { left_n } => format!(
-                "The robot and `{cable}` are {} out of balance in this step, {} of the forces on the robot; {} was asked for, but no speed was found at which they agree: drive more slowly, or keep the cable from being squeezed",
+                "The forces of the robot and `{cable}` are {} out of balance in this step, {} of the forces on the robot; {} was asked for, but no robot speed was found that balances them: drive more slowly, or keep the cable from being squeezed",
                 f.force(*left_n, 1),
                 percent(value),
                 percent(limit)
@@ -274,9 +278,9 @@ fn after(time_s: Option<f64>) -> String {
 /// Returns what other histories would have left, to follow what is said of the one that is shown.
 fn histories(f: Figures, known: &Histories) -> String {
     match known {
-        Histories::NotSought => ", no other was sought".to_owned(),
+        Histories::NotSought => "; no other was looked for".to_owned(),
         Histories::NotFound { greatest_n } => format!(
-            ". The greatest tension is {} as laid; by how much another history would change it was not found",
+            ". Its greatest tension is {}; how much another way of laying would change it could not be found",
             f.force(*greatest_n, 2)
         ),
         Histories::Mobilised {
@@ -288,15 +292,17 @@ fn histories(f: Figures, known: &Histories) -> String {
             start_n,
             end_n,
         } => {
-            let figure = |of: Option<f64>| of.map_or_else(|| "no balance was found".to_owned(), |n| f.force(n, 2));
+            let figure = |of: Option<f64>| {
+                of.map_or_else(|| "unknown (no resting place was found)".to_owned(), |n| f.force(n, 2))
+            };
             format!(
-                ". The greatest tension is {} as laid; with friction fully mobilised towards the start: {}, towards the end: {}{}{}. Among the histories that were found the tension is {} at the start and {} at the end",
+                ". Its greatest tension is {}; drawn towards its start against all friction: {}; drawn towards its end: {}{}{}. In all cases found the tension is {} at the start and {} at the end",
                 f.force(*greatest_n, 2),
                 figure(*towards_start_n),
                 figure(*towards_end_n),
                 loose_n.map_or_else(String::new, |n| format!("; laid down loose: {}", f.force(n, 2))),
                 frictionless_n.map_or_else(String::new, |n| format!(
-                    "; the frictionless shape, held by friction: {}",
+                    "; in the frictionless shape, held by friction: {}",
                     f.force(n, 2)
                 )),
                 f.forces(*start_n),
@@ -309,21 +315,21 @@ fn histories(f: Figures, known: &Histories) -> String {
             let slack = matches!(known, Histories::SlackElsewhere { .. });
             let otherwise = if slack { "with the slack in another span" } else { "bowed to another side" };
             format!(
-                ". The greatest tension is {}; {otherwise}: {}. Among these the tension is {} at the start and {} at the end",
+                ". Its greatest tension is {}; {otherwise} it would be {}. In all these cases the tension is {} at the start and {} at the end",
                 f.force(*greatest_n, 2),
-                others.join(", "),
+                others.join(" or "),
                 f.forces(*start_n),
                 f.forces(*end_n)
             )
         }
         Histories::EndsMoved { greatest_n, moves, start_n, end_n, range_n } => {
             let each = |m: &EndMove| {
-                let what = if m.drawn_out_m < 0.0 { "let in" } else { "drawn out" };
+                let what = if m.drawn_out_m < 0.0 { "moved in" } else { "pulled out" };
                 let (by, left) = (f.length(m.drawn_out_m.abs(), 3), f.force(m.greatest_n, 2));
-                format!("with `{}` {what} by {by} and put back: {left}", m.support)
+                format!("after `{}` is {what} by {by} and returned: {left}", m.support)
             };
             format!(
-                ". The greatest tension is {} as laid; {}. Among these histories the tension is {} at the start and {} at the end, and the greatest {}",
+                ". Its greatest tension is {} as laid; {}. In all these cases the tension is {} at the start and {} at the end, and the greatest tension is {}",
                 f.force(*greatest_n, 2),
                 moves.iter().map(each).collect::<Vec<_>>().join("; "),
                 f.forces(*start_n),

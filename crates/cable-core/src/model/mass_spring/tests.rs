@@ -349,7 +349,7 @@ fn a_preview_that_runs_away_is_cut_and_said() {
     m.cable.chain.mesh.velocity.fill(crate::math::Vec2::new(0.0, 1e4));
     let report = m.advance(0.02, Inertia::Dynamic).unwrap();
     let said: Vec<_> = report.warnings.iter().map(|w| w.to_string()).collect();
-    assert!(said.iter().any(|s| s.contains("velocity was cut")), "{said:?}");
+    assert!(said.iter().any(|s| s.contains("speed was limited")), "{said:?}");
     assert!(said.iter().any(|s| s.contains("kinetic energy")), "{said:?}");
 }
 
