@@ -35,8 +35,8 @@ pub fn tools(state: &AppState) -> [Tool; 8] {
             Some(ViewCommand::SearchSafeReach),
         ),
         tool(
-            "Mark the largest tension",
-            "Breaks the largest tension down into pull, weight, wind and friction",
+            "Mark the greatest tension",
+            "Breaks the greatest tension down into pull, weight, wind and friction",
             ToolSection::MarkedPlace,
             most,
         ),
@@ -60,7 +60,7 @@ pub fn tools(state: &AppState) -> [Tool; 8] {
         ),
         tool(
             "Chart error over cost of every model",
-            "Solves the scene at rest by every model and mesh, and draws error over time",
+            "Solves the scene at rest with every model and mesh, and plots error against computing time",
             ToolSection::Solver,
             of_answer(ViewCommand::ChartWorkPrecision),
         ),

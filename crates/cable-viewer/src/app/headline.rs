@@ -36,12 +36,12 @@ fn figures(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
     let current = state.is_current();
     if !current {
-        let said = match state.freshness() {
-            Freshness::Outdated => "not this scene",
-            _ => "solving…",
+        let (said, help) = match state.freshness() {
+            Freshness::Outdated => ("old scene", "This figure is of the last scene that had an answer"),
+            Freshness::Draft => ("solving…", "This figure is of a coarse preview"),
+            _ => ("solving…", "This figure is of the scene before the last change"),
         };
-        ui.colored_label(ui.visuals().warn_fg_color, said)
-            .on_hover_text("The figure beside is not of the scene as it is");
+        ui.colored_label(ui.visuals().warn_fg_color, said).on_hover_text(help);
     }
     let most = answer.max_tension();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);

@@ -79,7 +79,7 @@ fn edits(state: &AppState) -> Vec<PaletteEntry> {
         scene("Cut", SceneCommand::Cut),
         scene("Paste", SceneCommand::Paste { at_m: None }),
         scene("Remove selected", SceneCommand::RemoveAll(state.selection.selected_items())),
-        scene("Lay anew: the cable from its supports", SceneCommand::LayAnew { cable: state.current_cable() }),
+        scene("Lay again: the cable from its supports", SceneCommand::LayAnew { cable: state.current_cable() }),
         view("Deselect", ViewCommand::Select(None)),
     ];
     let at_m = state.selection.selected.and_then(|item| handles::of(state, item));
@@ -155,7 +155,7 @@ fn analyses(state: &AppState) -> Vec<PaletteEntry> {
     );
     let most = tension_budget::at_the_largest(state);
     all.extend(
-        most.map(|marker| view("At the largest: break the tension down", ViewCommand::SetTensionMarker(Some(marker)))),
+        most.map(|marker| view("At the greatest tension: break it down", ViewCommand::SetTensionMarker(Some(marker)))),
     );
     let pins = pin_names(state).into_iter().enumerate();
     all.extend(pins.map(|(k, name)| view(format!("Unpin {}", name.full), ViewCommand::RemoveReferences(Some(k)))));
@@ -259,14 +259,14 @@ fn places(state: &AppState) -> Vec<PaletteEntry> {
     }
     for (name, bend) in [
         ("tightest bend", summary_of_cable.tightest_bend),
-        ("bend with its stiffness", summary_of_cable.judged_bend.map(|j| j.bend)),
-        ("bend that is free", found.free_bend),
+        ("bend at a guide", summary_of_cable.judged_bend.map(|j| j.bend)),
+        ("bend away from guides", found.free_bend),
     ] {
         all.extend(bend.map(|b| to(name, [b.x_m, b.y_m])));
     }
     let far = |n: &cable_core::solution::Node| n.displacement_m[0].hypot(n.displacement_m[1]);
     for (name, node) in [
-        ("the largest tension", extremes::greatest(found, |n| n.tension_n)),
+        ("the greatest tension", extremes::greatest(found, |n| n.tension_n)),
         ("max stress", extremes::greatest(found, |n| n.stress_pa)),
         ("max strain", extremes::greatest(found, |n| n.strain)),
         ("greatest displacement", extremes::greatest(found, far)),

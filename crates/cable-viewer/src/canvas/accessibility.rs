@@ -114,7 +114,7 @@ pub fn summary(state: &AppState) -> String {
         let most = answer.max_tension();
         let on = answer.cables.get(most.cable).map_or("", |c| &c.name);
         out.push(format!(
-            "time {}: largest tension {} at {} along {on}",
+            "time {}: greatest tension {} at {} along {on}",
             format::duration(answer.time_s),
             format::force(most.tension_n),
             format::length(most.arc_length_m)
@@ -140,7 +140,7 @@ pub fn summary(state: &AppState) -> String {
         out.push(format!("no answer: {}", sentence(error)));
     }
     if let Some(item) = state.selection.selected {
-        out.push(format!("picked: {}", state.describe(item)));
+        out.push(format!("selected: {}", state.describe(item)));
     }
     out.join(". ")
 }

@@ -76,7 +76,7 @@ pub fn offer(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>)
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
         egui::Frame::popup(ui.style()).show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.label(format!("The {name} has left the picture"));
+                ui.label(format!("The {name} has left the view"));
                 let help = "The view goes with it until you move the view (F shows the whole scene, C the cable)";
                 let button = match kind {
                     LeaderKind::Robot => "Follow the robot",

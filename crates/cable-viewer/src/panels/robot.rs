@@ -39,7 +39,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
         Some(report) => dimmed_if_old(ui, state, |ui| readouts(ui, &report, pull_n(state))),
         None => {
-            ui.weak("It cannot drive here: it needs terrain below it in a side view");
+            ui.weak("It cannot drive here: it needs ground below it in a side view");
         }
     }
     figures(ui, robot, commands);
@@ -208,7 +208,7 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             add(first_wait());
         }
         let mut repeat = robot.repeat;
-        if checkbox(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
+        if checkbox(ui, &mut repeat, "Repeat").on_hover_text("Starts again after the last leg").changed() {
             set(Robot { repeat, ..robot.clone() }, commands);
         }
     });

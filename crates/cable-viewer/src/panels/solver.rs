@@ -29,7 +29,7 @@ const SEGMENTS: PropertyQuantity = PropertyQuantity {
     unit: Unit::COUNT,
     usual: [4.0, 1000.0],
     logarithmic: true,
-    help: "Elements every cable is cut into; overrides the cables' own numbers. More: finer and slower.",
+    help: "Segments that every cable is divided into; overrides the cables' own numbers. More: finer and slower.",
 };
 
 const HAND: PropertyQuantity = PropertyQuantity {
@@ -37,7 +37,7 @@ const HAND: PropertyQuantity = PropertyQuantity {
     unit: Unit::M_PER_S,
     usual: [0.1, 20.0],
     logarithmic: true,
-    help: "How fast the hand follows the pointer that drags a support while time runs. It holds the support by a spring, which is drawn; where it lags is said as a warning. 2 m/s is an arm's; a faster one may break the cable by a flick of the mouse.",
+    help: "How fast a dragged support can follow the pointer while time runs. The “hand” is the pointer's grip: it holds the support by a spring, which is drawn; a warning says when it lags. 2 m/s is about arm speed; faster, a flick of the mouse may break the cable.",
 };
 
 const HAND_STIFFNESS: PropertyQuantity = PropertyQuantity {
@@ -71,10 +71,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             if state.solver.model.is_automatic() { format!(": {}", sentence(&answer.reason)) } else { String::new() };
         ui.label(format!("Solved with {}{why}", labels::model(answer.model)));
         if let Some(next) = &answer.next_cheaper {
-            ui.weak(format!("Next cheaper: {}", sentence(next)));
+            ui.weak(format!("Next cheaper model: {}", sentence(next)));
         } else if state.live.snapshot.seeks_histories {
             // The row keeps its place until it is known.
-            ui.weak("Next cheaper: …");
+            ui.weak("Next cheaper model: …");
         }
     }
     if worker::engine::is_quasi_static(state.solver.model) {
@@ -114,7 +114,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     default_hand_stiffness(ui, state, commands);
     pull_past_length(ui, state, commands);
     let mut fixed = segments.is_some();
-    let help = "Off: the cable's own number, else by the tolerance";
+    let help = "Off: each cable's own number or, without one, as many as the tolerance needs";
     if checkbox(ui, &mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
         let count = largest_mesh(state.live.snapshot.solution.as_deref()).unwrap_or(FIRST_SEGMENTS);
         commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.solver.settings }));
@@ -133,7 +133,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
     let set =
         |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.solver.settings });
     let mut stated = stiffness.is_some();
-    let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
+    let help = "Off: for each cable, so stiff that its whole load stretches the spring by 1 % of the cable's length";
     if checkbox(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
         // The choice of the present cable, which is as wide as any.
         let of_cable =
@@ -149,8 +149,8 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
 fn pull_past_length(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut pulls = state.solver.pulls_past_length;
     let help = "On: a support that is dragged farther than the cable reaches, while time runs, is pulled by the hand's \
-                spring; the force rises with the way until the cable breaks. Off: it is refused";
-    if checkbox(ui, &mut pulls, "Pull past the length").on_hover_text(help).changed() {
+                spring; the force rises with the distance until the cable breaks. Off: it is refused";
+    if checkbox(ui, &mut pulls, "Allow pulling beyond the cable's length").on_hover_text(help).changed() {
         commands.push(Command::Playback(PlaybackCommand::PullPastLength(pulls)));
     }
 }

@@ -113,16 +113,18 @@ pub fn restart(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let is_later = is_later_run(state);
     let help = match &run.cause {
         RestartCause::Reset(_) if state.live.reset_is_last => {
-            "Takes the reset back: the run goes on from its end, recording and all (Ctrl+Z)"
+            "Undoes the reset: the run continues from its end, with its recording (Ctrl+Z)"
         }
-        RestartCause::Reset(_) => "Goes on with the other run from its end; this one is kept in its place",
+        RestartCause::Reset(_) => {
+            "Switches to the other run and continues it from its end; the present run is kept and can be brought back"
+        }
         RestartCause::Edit(_) if is_later => {
-            "Makes the edit again that began the run anew, and brings back what was recorded since; this run is kept \
-             in its place (Ctrl+Shift+Z)"
+            "Repeats the edit that restarted the run and brings back what was recorded after it; the present run is kept \
+             (Ctrl+Shift+Z)"
         }
         RestartCause::Edit(_) => {
-            "An edit began the run anew: takes it back, and brings back what was recorded before; what was since is \
-             kept in its place (Ctrl+Z)"
+            "Undoes the edit that restarted the run and brings back the earlier recording; what was recorded since is \
+             kept (Ctrl+Z)"
         }
     };
     if ui.button(restart_button(state)).on_hover_text(help).clicked() {

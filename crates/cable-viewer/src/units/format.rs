@@ -29,6 +29,14 @@ pub fn force(value_n: f64) -> String {
     scaled(if value_n.abs() < MIN_FORCE_N { 0.0 } else { value_n }, system::Kind::Force)
 }
 
+/// The components of a force, N, each with its direction in a word.
+#[must_use]
+pub fn force_with_direction([x_n, y_n]: [f64; 2]) -> [String; 2] {
+    let across = if x_n < 0.0 { "left" } else { "right" };
+    let along = if y_n < 0.0 { "down" } else { "up" };
+    [format!("{} {across}", force(x_n.abs())), format!("{} {along}", force(y_n.abs()))]
+}
+
 /// A stress with Pa, kPa, MPa or GPa, Pa.
 #[must_use]
 pub fn stress(value_pa: f64) -> String {

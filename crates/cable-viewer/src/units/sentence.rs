@@ -105,10 +105,10 @@ mod tests {
     fn a_sentence_follows_the_units_on_screen() {
         let cause = WarningCause::Lags { support: "beam 3 m".to_owned(), behind_m: 0.3048 };
         let warning = Warning::new(cause, "a", 0.0, [1.0, 2.0]);
-        let expected = "support “beam 3 m” is 0.30 m behind its target: it moves at 2 m/s at most";
+        let expected = "Support “beam 3 m” is 0.30 m behind its target, because it moves at 2 m/s at most";
         assert_eq!(sentence(&warning), expected);
         system::set_current(system::System::Us);
-        let expected = "support “beam 3 m” is 1.00 ft behind its target: it moves at 6.5617 ft/s at most";
+        let expected = "Support “beam 3 m” is 1.00 ft behind its target, because it moves at 6.5617 ft/s at most";
         assert_eq!(sentence(&warning), expected);
         system::set_current(system::System::Si);
     }

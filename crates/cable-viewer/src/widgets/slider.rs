@@ -46,7 +46,7 @@ pub fn drag_help(logarithmic: bool) -> String {
     let (fraction, of) =
         if logarithmic { (VALUE_FRACTION_PER_POINT, "the value") } else { (RANGE_FRACTION_PER_POINT, "the range") };
     format!(
-        "Drag the knob: {:.1} % of {of} per point at first, more the farther; Shift: a tenth. Click the rail: jump there",
+        "Drag the knob: {:.1} % of {of} per screen point at first, faster the farther you drag; hold Shift for a tenth of that. Click the track to jump there",
         1e2 * fraction
     )
 }

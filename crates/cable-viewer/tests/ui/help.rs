@@ -155,11 +155,11 @@ fn the_picture_is_told_in_words() {
     let mut harness = open(catalog::robot_drive());
     let told = |h: &Harness<'_, ViewerApp>| h.get_by_label("Canvas").accesskit_node().description().unwrap_or_default();
     let text = told(&harness);
-    for part in ["1 cable", "1 obstacle", "a robot", "riser at (0.000, 5.000) m", "largest tension", "standing"] {
+    for part in ["1 cable", "1 obstacle", "a robot", "riser at (0.000, 5.000) m", "greatest tension", "standing"] {
         assert!(text.contains(part), "{part}: {text}");
     }
     apply(&mut harness, Command::View(ViewCommand::Select(Some(Item::Robot))));
-    assert!(told(&harness).contains("picked: the robot"));
+    assert!(told(&harness).contains("selected: the robot"));
 }
 
 #[test]
@@ -402,7 +402,7 @@ fn small_windows_keep_a_canvas_and_have_all_panels() {
         }
         harness.get_by_label("Results").click();
         harness.run_steps(3);
-        harness.get_by_label("Max tension");
+        harness.get_by_label("Greatest tension");
         // The menu of the same name is above it.
         harness.get_all_by_label("Edit").find(|n| n.rect().top() > 24.0).unwrap().click();
         harness.run_steps(3);

@@ -154,9 +154,14 @@ fn results_stand_above_the_form_of_what_is_selected() {
             apply(&mut harness, Command::View(select));
             harness.run_steps(4);
             let form = harness.get_by_label("Selected").rect();
-            for text in
-                ["Max tension", " of service 800.0 N", " of break 10.00 kN", "Ends ", "verified", "13.1 % of service"]
-            {
+            for text in [
+                "Greatest tension",
+                " of service 800.0 N",
+                " of break 10.00 kN",
+                "Ends ",
+                "verified",
+                "13.1 % of service",
+            ] {
                 let figures = harness.query_all_by_label_contains(text).map(|n| n.rect());
                 let seen = figures.filter(|r| r.min.x >= 0.0 && r.max.x <= size[0] && r.max.y < form.min.y).count();
                 assert!(seen > 0, "{size:?}, {item:?}: {text}");
@@ -184,7 +189,7 @@ fn a_recording_with_events_does_not_push_the_graphs_out_of_sight() {
         for size in [[1280.0, 800.0], [1024.0, 640.0]] {
             harness.set_size(Vec2::from(size));
             harness.run_steps(4);
-            let results = harness.get_by_label("Max tension").rect().min.x;
+            let results = harness.get_by_label("Greatest tension").rect().min.x;
             for name in ["Export Along the cable", "Along the cable"] {
                 let right = harness.query_all_by_label(name).map(|n| n.rect().max.x).fold(0.0, f32::max);
                 assert!(right < results, "{size:?}, {shown:?}: {name} ends at {right}, the panel at {results}");

@@ -74,7 +74,7 @@ fn a_view_that_was_moved_is_left_alone_and_offers_to_follow_what_leads_the_cable
     harness.run_steps(480);
     let camera = harness.state().state.view.camera;
     assert_eq!((camera.centre_m, camera.points_per_m), (moved.centre_m, moved.points_per_m));
-    harness.get_by_label("The moving end has left the picture");
+    harness.get_by_label("The moving end has left the view");
     harness.get_by_label("Follow the cable").click();
     for _ in 0..4 {
         harness.run_steps(20);

@@ -129,7 +129,7 @@ fn what_a_hand_is_ahead_of_a_support_is_drawn_and_said() {
     let held = said.iter().find(|w| w.kind == WarningKind::SupportHeld).expect("said");
     assert!(held.to_string().contains("2 m/s"), "{}", held.to_string());
     // Issue 20: four warnings in a frame said that it was blocked, though nothing is in its way.
-    assert_eq!(harness.query_all_by_label_contains("Behind the hand at ").count(), 1);
+    assert_eq!(harness.query_all_by_label_contains("Support lags behind at ").count(), 1);
     assert!(harness.query_by_label_contains("Support blocked").is_none());
     harness.run_steps(60);
     assert_eq!(hand_spring(&harness.state().state, 0, 1), None);

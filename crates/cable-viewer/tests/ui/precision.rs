@@ -51,13 +51,13 @@ fn every_model_and_mesh_is_charted_with_the_choice_and_its_reason() {
     assert!(errors(Model::Catenary)[0].is_err());
     let figure = harness.get_by_role_and_label(egui::accesskit::Role::Figure, "Error over cost");
     let spoken = figure.accesskit_node().description().unwrap_or_default();
-    assert!(spoken.contains("Spans: ") && spoken.contains("FEM of 400 elements: "), "{spoken}");
+    assert!(spoken.contains("Spans: ") && spoken.contains("FEM with 400 segments: "), "{spoken}");
     harness.get_by_label_contains("In use: Spans");
-    assert!(harness.get_all_by_label_contains("contacts as intervals have no discretisation error").count() > 0);
+    assert!(harness.get_all_by_label_contains("solved without a mesh and so without mesh error").count() > 0);
     harness.get_by_label_contains("Catenary: ");
     // The tolerance is a line in it, and moves what is quickest.
     let quickest = |h: &Harness<'_, ViewerApp>| {
-        let found = h.get_by_label_contains("Quickest within");
+        let found = h.get_by_label_contains("Fastest within");
         found.accesskit_node().value().or(found.accesskit_node().label()).unwrap_or_default()
     };
     for tolerance in [1e-6, 0.3] {

@@ -135,11 +135,11 @@ fn a_pull_that_is_refused_offers_to_pull_past_the_length() {
     assert!(harness.state().state.document.fault.is_some());
     press(&harness, at, false);
     harness.run_steps(3);
-    harness.get_by_label("Pull past the length").click();
+    harness.get_by_label("Allow pulling beyond the cable's length").click();
     harness.run_steps(3);
     let state = &harness.state().state;
     assert!(state.solver.pulls_past_length && state.document.fault.is_none(), "{:?}", state.document.fault);
-    assert!(harness.query_by_label("Pull past the length").is_none());
+    assert!(harness.query_by_label("Allow pulling beyond the cable's length").is_none());
     // The drag had stopped time, and while that stands the same pull would be refused once more.
     assert!(!state.live.playback.paused, "a hand pulls while time runs");
     let again = support(&harness, "right");
@@ -159,7 +159,7 @@ fn a_pull_that_is_refused_offers_to_pull_past_the_length() {
     let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
     apply(&mut harness, Command::Scene(edit));
     assert!(harness.state().state.document.fault.is_some());
-    assert!(harness.query_by_label("Pull past the length").is_none());
+    assert!(harness.query_by_label("Allow pulling beyond the cable's length").is_none());
 }
 
 #[test]

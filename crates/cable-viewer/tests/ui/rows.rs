@@ -126,9 +126,9 @@ fn s04_the_cable_stays_out_of_the_robot() {
         }
     }
     assert!(way > 2.0 && pressed > 1.0, "it backs ({way} m) against its cable ({pressed} N)");
-    // Whatever it is warned of, the largest tension stays in sight.
+    // Whatever it is warned of, the greatest tension stays in sight.
     let warnings = answer(&harness).warnings.len();
-    let read = harness.get_by_label("Max tension").rect();
+    let read = harness.get_by_label("Greatest tension").rect();
     assert!(warnings >= 2 && read.bottom() < 500.0, "{warnings} warnings, {read}");
 }
 

@@ -115,7 +115,7 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     assert!(!words(&harness).contains("Friction on beam"), "the beam is not between the hand and the place");
     // A list that is scrolled to its end moves where it becomes shorter.
     harness.run_steps(2);
-    click(&mut harness, "At the largest");
+    click(&mut harness, "At the greatest tension");
     let most = answer(&harness).max_tension();
     assert_eq!(state(&harness).analysis.tension_marker.map(|p| p.arc_length_m), Some(most.arc_length_m));
     harness.run_steps(2);
@@ -273,7 +273,7 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     harness.run_steps(2);
     let with = found[0].greatest_tension_n.unwrap();
     assert!(with < 0.99 * flexible, "{with} N of {flexible} N");
-    let said = format!("ignored: {:+.2} %", 100.0 * (with / flexible - 1.0));
+    let said = format!("{:+.2} % with it", 100.0 * (with / flexible - 1.0));
     harness.get_by_label(&said);
     // The stiffness can be taken, and that be undone: it is one edit.
     click(&mut harness, "Take 1.400 N·m²");

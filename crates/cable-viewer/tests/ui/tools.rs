@@ -15,7 +15,7 @@ use crate::{apply, open};
 /// The verbs, and the heading of the section that each leads to.
 const HEADINGS: [(&str, &str); 7] = [
     ("Find safe reach", "Safe reach"),
-    ("Mark the largest tension", "Tension at the marked place"),
+    ("Mark the greatest tension", "Tension at the marked place"),
     ("Pin this result", "Compare"),
     ("Compare all models", "Compare"),
     ("Find the friction range", "Friction range"),

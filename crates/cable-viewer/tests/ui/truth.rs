@@ -188,7 +188,7 @@ fn a_draft_warns_of_nothing_and_its_figures_are_dimmed() {
     assert!(harness.query_all_by_label_contains("Breaks here").next().is_none());
     harness.get_by_label("Draft, not at rest yet");
     let words = harness.get_by_label("Canvas").accesskit_node().description().unwrap_or_default();
-    assert!(!words.contains("largest tension"), "{words}");
+    assert!(!words.contains("greatest tension"), "{words}");
 }
 
 /// D6b: the hitch dragged and the drag undone gave 123.9 N where the same scene had 104.5 N.

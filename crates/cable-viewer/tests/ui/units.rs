@@ -44,7 +44,7 @@ fn warnings_and_refusals_are_read_in_us_units() {
     apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Us)));
     harness.run_steps(2);
     assert_eq!(metric(&harness), Vec::<String>::new());
-    let pull = format!("is pulled with {:.1} lbf", most / 4.448_221_615_260_5);
+    let pull = format!("carries {:.1} lbf", most / 4.448_221_615_260_5);
     harness.get_by_label_contains(&pull);
     // The reason why a scene cannot be solved is, too.
     set_cable(&mut harness, |c| c.length_m = 9.0);

@@ -140,7 +140,7 @@ fn a_cable_that_a_route_or_time_led_can_be_laid_anew() {
     // As laid from its supports there is nothing to lay anew.
     open_laid(&mut harness);
     let enabled = |h: &Harness<'_, ViewerApp>| {
-        let button = h.get_by_label("Lay anew");
+        let button = h.get_by_label("Lay again");
         !egui_kittest::kittest::NodeT::accesskit_node(&button).is_disabled()
     };
     assert!(!enabled(&harness));
@@ -152,7 +152,7 @@ fn a_cable_that_a_route_or_time_led_can_be_laid_anew() {
     assert_eq!(harness.state().state.live.snapshot.error, None);
     let before = harness.state().state.document.scene.clone();
     assert!(!before.cables[0].route_m.is_empty() && enabled(&harness));
-    harness.get_by_label("Lay anew").click();
+    harness.get_by_label("Lay again").click();
     harness.run_steps(3);
     assert_eq!(harness.state().state.document.scene, scene);
     let anew = harness.state().state.live.snapshot.solution.clone().unwrap();

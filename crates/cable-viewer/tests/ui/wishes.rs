@@ -47,7 +47,7 @@ fn u03_both_ends_are_labelled_with_x_and_y() {
 #[test]
 fn u04_sag_and_tension_stand_in_the_window() {
     let harness = open_span();
-    harness.get_by_label("Max tension");
+    harness.get_by_label("Greatest tension");
     harness.get_by_label("Sag");
     let text = cable_viewer::units::format::force(answer(&harness).max_tension().tension_n);
     assert!(harness.get_all_by_label(&text).count() >= 1, "{text}");
@@ -296,6 +296,6 @@ fn t05_what_is_picked_is_said_and_shown() {
     for item in [Item::Support { cable: 0, support: 0 }, Item::Obstacle(0), Item::Cable(0)] {
         apply(&mut harness, Command::View(ViewCommand::Select(Some(item))));
         let told = harness.get_by_label("Canvas").accesskit_node().description().unwrap_or_default();
-        assert!(told.contains("picked: "), "{told}");
+        assert!(told.contains("selected: "), "{told}");
     }
 }

@@ -75,7 +75,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             ),
             read(
                 "Readouts section",
-                "Read the largest tension, its place and the sag on the right: a scale explains the colours, and Readouts has more",
+                "Read the greatest tension, its place and the sag on the right: a scale explains the colours, and Readouts has more",
             ),
             act("Edit menu", "Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
         ],
@@ -121,7 +121,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
                     })
                 },
             ),
-            act("Support waypoint of cable", "Press Delete while it is picked to take it out again", |s| {
+            act("Support waypoint of cable", "Press Delete while it is selected to remove it again", |s| {
                 supports(s) == saved_supports(s)
             }),
         ],

@@ -186,9 +186,9 @@ fn runs(ui: &mut Ui, state: &AppState, names: &[PinName]) {
     readout::wide(ui, "runs", |ui| {
         Grid::new("runs").num_columns(4).spacing([10.0, 3.0]).show(ui, |ui| {
             for (title, help) in [
-                ("Lasts", "From its first to its last picture"),
-                ("Most tension", "Over the whole run, and when"),
-                ("Most pull", "Of the cable on the robot, and when"),
+                ("Lasts", "From its first to its last frame"),
+                ("Peak tension", "Over the whole run, and when"),
+                ("Peak pull", "Of the cable on the robot's hitch, and when"),
                 ("Events", "Warnings that began"),
             ] {
                 ui.add(egui::Label::new(RichText::new(title).weak().size(FIGURE_SIZE_POINTS)).extend())

@@ -19,22 +19,22 @@ const MIN_FRICTION: PropertyQuantity = PropertyQuantity {
     unit: Unit::PERCENT,
     usual: [0.0, 1.0],
     logarithmic: false,
-    help: "Least friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
+    help: "Lowest friction to assume, as a share of the values in the scene: cables, obstacles and pulleys alike.",
 };
 const GREATEST_FRICTION: PropertyQuantity = PropertyQuantity {
     name: "Most friction",
     unit: Unit::PERCENT,
     usual: [1.0, 3.0],
     logarithmic: false,
-    help: "Most friction there may be, as a share of what the scene says: of cables, obstacles and pulleys alike.",
+    help: "Highest friction to assume, as a share of the values in the scene: cables, obstacles and pulleys alike.",
 };
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let view = &state.analysis.friction_range;
     let mut on = view.on;
-    let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
-                window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
+    let help = "Repeats the run with less and with more friction and shows the spread as a ribbon in the tension graphs. Computed \
+                in the background while time is paused; what you moved or drove by hand is repeated";
     if checkbox(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
         commands.push(Command::View(ViewCommand::SetFrictionRange { shown: on, factors: view.factors }));
     }
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     match &view.progress {
         Progress::None => {
-            ui.weak("Begins once time stands still");
+            ui.weak("Begins once time is paused");
         }
         Progress::Running(share, _) => {
             let bar = progress::bar(ui, *share);
@@ -63,7 +63,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         Progress::Done((found, _)) => {
             Grid::new("spread").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
                 for title in ["Least friction", "As in the scene", "Most friction"] {
-                    ui.weak(title).on_hover_text("Largest tension of all cables at the end of the run");
+                    ui.weak(title).on_hover_text("Greatest tension of all cables at the end of the run");
                 }
                 ui.end_row();
                 for most_n in found.most_n {

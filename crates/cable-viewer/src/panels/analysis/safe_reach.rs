@@ -79,9 +79,9 @@ fn progress_and_cancel(ui: &mut Ui, view: &SafeReachState, share: f64, commands:
 /// The buttons that begin a search and take its map away.
 fn find_and_clear(ui: &mut Ui, view: &SafeReachState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
-                    from where the cable lies now; first coarsely, then finer, between the ends of the ground. The window stays usable meanwhile. Nothing \
-                    limits what moves: the question is what the cable would bear";
+        let help = "Tests places along the ground, or across the area in view, going there and back from where the cable lies now: \
+                    coarsely first, then finer. You can go on working meanwhile. Only the cable's tension counts; the robot \
+                    or support itself is assumed to reach every place";
         let find = ui.button("Find safe reach").on_hover_text(help);
         highlight::register(&find, "Find safe reach");
         if find.clicked() {
@@ -130,8 +130,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
             ui.spacing_mut().slider_width = (ui.available_width() - SPIN_WIDTH).max(30.0);
             let slider = ui.add(Slider::new(&mut across, PLACES_ACROSS_RANGE[0]..=PLACES_ACROSS_RANGE[1]));
             field::name(&slider, "Grid resolution");
-            let help =
-                "How finely the part of the picture in view is looked at: twice as many take up to four times as long";
+            let help = "How finely the area in view is tested: twice as many take up to four times as long";
             if slider.on_hover_text(help).changed() {
                 commands.push(set(SafeReachOptions { across, ..choice }));
             }
@@ -141,8 +140,8 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
 
 fn both_ways(ui: &mut Ui, choice: SafeReachOptions, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let there = "The largest tension with the end at each place";
-        let back = "The largest tension on the way there and back, snags included";
+        let there = "The greatest tension with the end at each place";
+        let back = "The greatest tension on the way there and back, snags included";
         for (trip, text, help) in [(Trip::There, "There", there), (Trip::ThereAndBack, "There and back", back)] {
             if radio_button(ui, choice.trip == trip, text).on_hover_text(help).clicked() {
                 commands.push(set(SafeReachOptions { trip, ..choice }));

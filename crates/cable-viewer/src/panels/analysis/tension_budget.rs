@@ -38,8 +38,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     ui.horizontal_wrapped(|ui| {
-        let help = "Breaks the largest tension down into weight, friction at each contact and pull at the end";
-        if ui.button("At the largest").on_hover_text(help).clicked() {
+        let help = "Breaks the greatest tension down into weight, friction at each contact and pull at the end";
+        if ui.button("At the greatest tension").on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::SetTensionMarker(at_the_largest(state))));
         }
         let help = "Removes the mark";

@@ -38,7 +38,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             commands.push(Command::View(ViewCommand::EndWorkPrecision));
         }
     } else {
-        let help = "Solves the scene at rest by every model, on meshes of 25 to 400 elements, in the background, and charts \
+        let help = "Solves the scene at rest with every model, with 25 to 400 segments where it has a mesh, in the background, and charts \
                     how far each is from the answer with the settings in use, and how long it takes";
         let can = state.document.fault.is_none();
         let button = ui.add_enabled(can, egui::Button::new("Chart error over cost")).on_hover_text(help);
@@ -66,9 +66,9 @@ fn outcome(ui: &mut Ui, state: &AppState, found: &WorkPrecision) {
     ui.weak(capital(&sentence(&given.reason)));
     ui.label(match found.quickest(tolerance) {
         Some((setting, wall_s)) => {
-            format!("Quickest within {}: {}, {}", format::percent(tolerance), name(setting), format::duration(wall_s))
+            format!("Fastest within {}: {}, {}", format::percent(tolerance), name(setting), format::duration(wall_s))
         }
-        None => format!("None is within {}", format::percent(tolerance)),
+        None => format!("No setting is within {}", format::percent(tolerance)),
     });
     let refused = found.entries.iter().filter_map(|e| Some((e.setting, e.result.as_ref().err()?)));
     // A model refuses a scene on every mesh for the same reason.
@@ -81,7 +81,7 @@ fn outcome(ui: &mut Ui, state: &AppState, found: &WorkPrecision) {
 
 fn name(setting: Setting) -> String {
     let model = labels::model(setting.model);
-    setting.elements.map_or_else(|| model.to_owned(), |n| format!("{model} of {n} elements"))
+    setting.elements.map_or_else(|| model.to_owned(), |n| format!("{model} with {n} segments"))
 }
 
 /// Place of an answer in the chart: powers of ten of milliseconds and of the difference.

@@ -88,7 +88,7 @@ pub const PROPERTIES: [Property; 13] = [
         Unit::PERCENT,
         [0.0, 1.0],
         true,
-        "Half the loss factor of the material in stretching, at every frequency; with fem a cable that can touch something has more in fast motion. It calms vibration and does not change where the cable rests."
+        "Half the loss factor of the material in stretching, at every frequency; with FEM a cable that can touch something has more in fast motion. It calms vibration and does not change where the cable rests."
     ),
     property!(
         thermal_expansion_per_k,

@@ -83,7 +83,7 @@ fn unbalanced(tolerance: f64, answer: &Solution) -> (f64, Option<&'static str>) 
 fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
     let (share, wrong) = unbalanced(tolerance, answer);
     let value = format!("{} ({})", format::force(answer.cost.residual_n), format::percent(share));
-    let help = "Largest force left unbalanced at a node, and its share of the greatest tension: the smaller, the closer to equilibrium";
+    let help = "Largest force left unbalanced at a node, and its share of the greatest tension: the smaller, the closer to balance";
     readout::assessed_row(ui, "Residual", &value, help, wrong);
 }
 
@@ -121,14 +121,14 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     let Some((worst, wrong)) = worst_condition(tolerance, scene, answer) else {
         return readout::row(ui, name, "not known", "No cable is under tension", |_| {});
     };
-    let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
-                contact. Of the 16 digits of a number, about as many as its power of ten are lost to rounding";
+    let help = "Condition number, estimated as that of a straight cable of as many segments under the mean tension, without bending and \
+                contact; its exponent is roughly the number of the 16 digits lost to rounding";
     readout::assessed_row(ui, name, &format!("≈ {}", format::magnitude(worst, 2)), help, wrong);
 }
 
 fn kinetic_energy(ui: &mut Ui, state: &AppState, answer: &Solution) {
-    let help = "Energy of motion now, and whether its greatest in the last second is above that of the second before. \
-                What supports, loads and the robot do explains a growth; where nothing does, it is warned of once it lasts";
+    let help = "Kinetic energy now, marked “growing” if its peak in the last second is above that of the second before. \
+                Supports, loads or the robot may explain this; if nothing does and it lasts, a warning appears";
     let now = format::energy(answer.energy.kinetic_j);
     let growing = kinetic_peaks_j(&state.live.history).is_some_and(|peaks: [f64; 2]| grows(&peaks));
     let value = if growing { format!("{now}, growing") } else { now };
@@ -151,7 +151,7 @@ fn grows_for_long(state: &AppState, answer: &Solution) -> Option<&'static str> {
     let gained_j = total_j(history.samples.back()?) - total_j(history.view([from_s, from_s], None).first()?);
     let given = is_driven(state, answer) || gained_j < MIN_GAINED_SHARE * (last - before);
     (moves && !given && grows(&peaks))
-        .then_some("It grows from second to second and nothing in the scene gives it: the motion is not to be believed")
+        .then_some("It grows every second and nothing in the scene supplies it: do not trust the motion")
 }
 
 /// Returns whether a hand, a schedule, the robot or a load may do work.

@@ -70,8 +70,10 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let freshness = state.freshness();
     let (said, help) = match freshness {
         Freshness::Current => ("", ""),
-        Freshness::Solving => ("Solving… figures of the scene before", "They belong to the last answer"),
-        Freshness::Draft => ("Draft, not at rest yet", "Few segments follow the hand; the answer comes once it rests"),
+        Freshness::Solving => ("Solving… figures of the previous scene", "They belong to the last answer"),
+        Freshness::Draft => {
+            ("Draft, not at rest yet", "A coarse preview follows the pointer; the full answer comes when it stops")
+        }
         Freshness::Outdated => ("Last valid result, not this scene", "The present scene has no answer"),
     };
     ui.scope(|ui| {
@@ -123,16 +125,16 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     reactions::ui(ui, cable, solved, commands);
 }
 
-/// The largest tension, where it is, and how much of the limits it takes.
+/// The greatest tension, where it is, and how much of the limits it takes.
 fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, freshness: Freshness, commands: &mut Vec<Command>) {
     let Some((tension_n, node)) = extremes::greatest(solved, |n| n.tension_n) else {
         ui.weak("No tension in this answer");
         return;
     };
     ui.horizontal(|ui| {
-        ui.label("Max tension");
+        ui.label("Greatest tension");
         ui.label(RichText::new(format::force(tension_n)).strong().size(18.0));
-        place(ui, "Show the largest tension", &node, commands);
+        place(ui, "Show the greatest tension", &node, commands);
     });
     let at = format!("at {} along the cable", along(&node));
     ui.weak(at).on_hover_text(format::position([node.x_m, node.y_m]));
@@ -206,11 +208,10 @@ fn pull(end: &EndForce) -> String {
 }
 
 fn explained(end: &EndForce) -> String {
+    let [across, along] = format::force_with_direction([end.horizontal_n, end.vertical_n]);
     format!(
-        "Tension at `{}` and the angle above or below the horizontal in which the cable leaves it; it pulls with {} to the right and {} up",
-        end.support,
-        format::force(end.horizontal_n),
-        format::force(end.vertical_n)
+        "Tension at “{}” and the angle above or below the horizontal at which the cable leaves it; it pulls with {across} and {along}",
+        end.support
     )
 }
 
@@ -258,7 +259,7 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
 
 fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSummary, commands: &mut Vec<Command>) {
     if let Some((stress_pa, node)) = extremes::greatest(solved, |n| n.stress_pa) {
-        let help = "Largest tension over the full round section (conductors alone carry more)";
+        let help = "Greatest tension over the full round section (conductors alone carry more)";
         figure(ui, "Max stress", format::stress(stress_pa), help, Some((&node, &mut *commands)));
     }
     if let Some((strain, node)) = extremes::greatest(solved, |n| n.strain) {
@@ -287,14 +288,14 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     figure(ui, "Tightest bend", text, help, Some((&place(bend), &mut *commands)));
     if let Some(j) = judged {
         let help = format!(
-            "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
+            "Tightest bend at a guide, computed at sharp corners with a bending stiffness of {}; warnings use this value",
             unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
         );
-        figure(ui, "  with its stiffness", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
+        figure(ui, "  at a guide", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
     }
     if let Some(free) = solved.free_bend.filter(|b| judged.is_some() && b.radius_m < limit) {
-        let help = "Sharpest bend where nothing leads it: it kinks there";
-        figure(ui, "  free", radius(free.radius_m), help, Some((&place(free), &mut *commands)));
+        let help = "Tightest bend where nothing guides the cable: it kinks there";
+        figure(ui, "  away from guides", radius(free.radius_m), help, Some((&place(free), &mut *commands)));
     }
     if limit > 0.0 {
         figure(
@@ -307,7 +308,7 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     }
     if let (Some(p), Some(ratio)) = (first.sidewall_pressure, first.utilisation.sidewall_pressure_ratio) {
         let at = node(CablePlace { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
-        let help = "Pressure on what leads it round, of the most it stands";
+        let help = "Pressure between the cable and its guide, as a share of the allowed value";
         figure(ui, "Sidewall pressure", format::percent(ratio), help, Some((&at, commands)));
     }
 }
@@ -324,13 +325,11 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
     let most = format::force(run.peaks.greatest.tension_n);
     let help = match run.ranges.is_some_and(|r| r.depend_on_small_differences()) {
         true => {
-            "Greatest tension of any inner step since the start, and from what to what it may be. It depends on small differences: two coarser runs beside this one do not converge, and another mesh, step or start has another"
+            "Greatest tension of any inner step since the start, with its range estimated from two coarser runs. It depends on small differences: the coarser runs do not converge, and another mesh, step or start gives another value"
         }
-        false => {
-            "Greatest tension of any inner step since the start, and from what to what it may be, as two coarser runs beside this one differ from it"
-        }
+        false => "Greatest tension of any inner step since the start, with its range estimated from two coarser runs",
     };
-    figure(ui, "Max tension so far", most, help, None);
+    figure(ui, "Greatest so far", most, help, None);
     if let Some(TensionRanges { greatest_n: [from, to], .. }) = run.ranges {
         figure(ui, "  range", format!("{} to {}", format::force(from), format::force(to)), help, None);
     }
@@ -352,7 +351,7 @@ fn bending_stiffness(
         return;
     }
     let likely = unit::Unit::N_M2.text(likely);
-    let help = format!("This answer is of a perfectly flexible cable; of its preset {likely} is likely");
+    let help = format!("This answer is for a perfectly flexible cable; for its preset, {likely} is likely");
     if let Some(ComparedReadout { text, more, answered }) = compared(state, cable, solved) {
         readout::row(ui, name, &text, &format!("{help}{more}"), |ui| {
             let Some((label, take)) = take_likely_bending(state).filter(|_| answered) else { return };
@@ -413,20 +412,20 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<C
     };
     let Some(with) = found.greatest_tension_n else {
         let why = found.unknown.as_ref().map_or_else(|| "not sought".to_owned(), sentence);
-        return without("ignored", format!(". No answer was found with that: {why}"));
+        return without("ignored", format!(". No answer was found with it: {why}"));
     };
     let most = extremes::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
     let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { format::force(with) };
     let part = |of: Option<f64>, text: fn(f64) -> String| {
-        of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))
+        of.map_or_else(|| "by an unknown amount".to_owned(), |v| format!("by up to {}", text(v)))
     };
     let more = format!(
-        ". With that the greatest tension is {} ({change}), forces on supports change {}, the shape {}",
+        ". With it, the greatest tension would be {} ({change}), the forces on supports would change {}, and the shape {}",
         format::force(with),
         part(found.changes.support_force_n, format::force),
         part(found.changes.position_m, format::length),
     );
-    Some(ComparedReadout { text: format!("ignored: {change}"), more, answered: true })
+    Some(ComparedReadout { text: format!("{change} with it"), more, answered: true })
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
@@ -442,7 +441,7 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         ui,
         "Error estimate",
         text,
-        "Estimated relative error of the largest tension, of discretisation alone",
+        "Estimated relative error of the greatest tension, of discretisation alone",
         None,
     );
     if !solved.contacts.is_empty() {
@@ -456,7 +455,7 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         let used_n = if f.used_n.abs() < NEGLIGIBLE_FRICTION_FRACTION * f.available_n.abs() { 0.0 } else { f.used_n };
         let text = format!("{} of {}", format::force(used_n), format::force(f.available_n));
         let help = format!(
-            "Friction called upon of all there is; `{}` uses {} of its own",
+            "Friction in use, of all that is available; “{}” uses {} of its share",
             f.obstacle,
             format::percent(f.greatest_ratio)
         );
@@ -464,14 +463,14 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     }
     // The sum of the forces on a moving cable is no fault: it accelerates the cable.
     let (name, help) = if solved.assumptions.inertia {
-        ("Accelerating force", "The sum of all forces on the cable, of the largest: it accelerates the cable")
+        ("Accelerating force", "Sum of all forces on the cable, as a share of the largest: it accelerates the cable")
     } else {
-        ("Out of balance", "What is left of all forces on the cable, of the largest")
+        ("Out of balance", "Sum of all forces on the cable, as a share of the largest: 0 in perfect balance")
     };
     match &first.balance {
         Some(b) => figure(ui, name, format::percent(b.relative_residual), help, None),
         None => {
-            let why = "The floor of a plan view rubs with a force that no answer holds";
+            let why = "In a plan view the floor's friction is not part of the answer, so the balance cannot be checked";
             figure(ui, name, "not known".to_owned(), why, None);
         }
     }

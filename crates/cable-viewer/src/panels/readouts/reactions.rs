@@ -33,11 +33,9 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
                 });
             });
         });
-        let across = if s.reaction_x_n < 0.0 { "left" } else { "right" };
-        let along = if s.reaction_y_n < 0.0 { "down" } else { "up" };
-        let (x, y) = (format::force(s.reaction_x_n.abs()), format::force(s.reaction_y_n.abs()));
+        let [across, along] = format::force_with_direction([s.reaction_x_n, s.reaction_y_n]);
         ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
-            ui.add(Label::new(RichText::new(format!("{x} {across}, {y} {along}")).weak()).truncate());
+            ui.add(Label::new(RichText::new(format!("{across}, {along}")).weak()).truncate());
         });
     }
     for s in &solved.supports {
@@ -49,17 +47,16 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
 fn hand(ui: &mut Ui, s: &SupportReaction) {
     let Some(hand) = &s.hand else { return };
     let ahead = (hand.x_m - s.x_m).hypot(hand.y_m - s.y_m);
+    let [across, along] = format::force_with_direction([hand.force_x_n, hand.force_y_n]);
     ui.label(format!(
-        "Hand at {}: {} by a spring of {}, {} ahead",
+        "Hand at {}: {} through a spring of {}, {} ahead",
         s.name,
         format::force(hand.force_n()),
         unit::Unit::N_PER_M.text(hand.stiffness_n_per_m),
         unit::Unit::COORDINATE.text(ahead)
     ))
     .on_hover_text(format!(
-        "Force of the hand on the cable: {} to the right, {} up. What the spring's stiffness times its length lacks of it is its damper's",
-        format::force(hand.force_x_n),
-        format::force(hand.force_y_n)
+        "Force of the hand on the cable: {across}, {along}. The spring gives its stiffness times its length; the damper beside it gives the rest"
     ));
 }
 

@@ -26,7 +26,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.push_id(k, |ui| rows::row(ui, state, Item::Obstacle(k), &obstacle.name, form, commands));
     }
     let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
-    menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");
+    menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the view");
 }
 
 fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -44,7 +44,7 @@ fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 pub fn new_obstacles(state: &AppState) -> [(&'static str, &'static str, SceneCommand); 4] {
     let [x, y] = state.view.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
     let forms = [
-        ("Floor", "Ground, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
+        ("Ground", "From left to right, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
         (
             "Beam",
             "A square beam of 0.3 m",
@@ -67,7 +67,7 @@ pub fn new_obstacles(state: &AppState) -> [(&'static str, &'static str, SceneCom
 
 fn shape_name(shape: &Shape) -> (&'static str, &'static str) {
     match shape {
-        Shape::Terrain { .. } => ("Terrain", "Ground from left to right, solid below"),
+        Shape::Terrain { .. } => ("Ground", "From left to right, solid below"),
         Shape::Polygon { .. } => ("Polygon", "Closed, solid inside"),
         Shape::Circle { .. } => ("Circle", "A round post or pipe"),
         Shape::Polyline { .. } => ("Line", "Thin, two-sided"),

@@ -164,7 +164,7 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
     head(ui, state, row, commands, &mut faults);
     place_apart(ui, state, row);
     if s.arc_length_m.is_some() || (row.place == SupportPlace::Between && s.kind != SupportKind::Pulley) {
-        let text = ["Arc length", "Where on the cable it grips, m of unstretched length from the start"];
+        let text = ["Arc length", "Where it grips the cable: unstretched length from the start of the cable"];
         if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
             row.changed(commands, |s| s.arc_length_m = Some(v));
         }
@@ -176,8 +176,10 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
     }
     match s.kind {
         SupportKind::Clamped => {
-            let text =
-                ["Direction", "Direction in which the cable leaves with growing length, anticlockwise from the right"];
+            let text = [
+                "Direction",
+                "Direction of the cable at this point, going from its start to its end; anticlockwise from the right",
+            ];
             if let Some(v) = optional(ui, text, Unit::DEGREE, s.angle_deg, &mut faults) {
                 row.changed(commands, |s| s.angle_deg = Some(v));
             }
@@ -221,7 +223,8 @@ fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut
 fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
     let s = row.value;
     let Some(at_m) = s.at_m else { return };
-    let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
+    let help =
+        "Passes smoothly through points at given times and stays at the last; moving the support moves all of them";
     if let Some(on) = time_table::toggle(ui, "Follows a schedule", s.motion.is_some(), help) {
         let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
         row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));

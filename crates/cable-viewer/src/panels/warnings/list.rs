@@ -226,7 +226,7 @@ fn scene_fault(state: &AppState) -> Option<WarningRow> {
     let title = "The scene cannot be solved".to_owned();
     let pull = is_refused_pull(state) && !is_quasi_static(state.solver.model);
     let pull = pull.then(|| Fix {
-        label: "Pull past the length".to_owned(),
+        label: "Allow pulling beyond the cable's length".to_owned(),
         command: Command::Playback(PlaybackCommand::PullPastLength(true)),
     });
     let fixes = scene_errors::fix(state).into_iter().chain(pull).collect();
@@ -256,7 +256,7 @@ fn severity_and_title(warning: &Warning) -> (Severity, &'static str) {
         WarningKind::SupportHeld
             if matches!(warning.cause, WarningCause::Lags { .. } | WarningCause::HandLags { .. }) =>
         {
-            (Severity::Note, "Behind the hand")
+            (Severity::Note, "Support lags behind")
         }
         WarningKind::SupportHeld => (Severity::Caution, "Support blocked"),
         WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
@@ -316,7 +316,7 @@ fn of_problem(problem: quality::QualityProblem) -> WarningRow {
         title: format!("{title}: {figure}"),
         parts: Some([title.to_owned(), figure, String::new()]),
         item: Some(Item::Solver),
-        ..entry(Severity::Caution, format!("{why}. The form of the solver has more."))
+        ..entry(Severity::Caution, format!("{why}. Select Solver in the outline for details."))
     }
 }
 
@@ -331,7 +331,7 @@ fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
 }
 
 /// Said of a cable that laying anew would leave where it is.
-const LIES_AS_LAID: &str = "It lies as it is laid from its supports: no route leads it, and no time has run";
+const LIES_AS_LAID: &str = "It already lies as laid from its supports: it has no route, and no time has run";
 
 /// Returns whether a cable lies otherwise than laid from its supports: led by a route, or moved
 /// since.
@@ -354,7 +354,7 @@ fn remedy(state: &AppState, answer: &Solution, warning: &Warning, index: Option<
         WarningKind::BendRadius => wheel(state, answer, warning, index?),
         WarningKind::NotUnique => {
             let command = Command::Scene(SceneCommand::LayAnew { cable: index? });
-            Some(Fix { label: "Lay anew".to_owned(), command })
+            Some(Fix { label: "Lay again".to_owned(), command })
         }
         _ => None,
     }
@@ -480,12 +480,12 @@ fn actions(ui: &mut Ui, number: usize, entry: &WarningRow, commands: &mut Vec<Co
         let button = ui.add_enabled(entry.no_use.is_none(), Button::new(&fix.label));
         let help = match fix.command {
             Command::Scene(SceneCommand::LayAnew { .. }) => {
-                "Forgets its route and lays it from its supports, at the start; undo takes it back"
+                "Drops its route and lays it from its supports again, back at the start; undo reverts this"
             }
             Command::Playback(PlaybackCommand::PullPastLength(_)) => {
-                "Takes the move back; from now on such a pull pulls by the hand's spring, until the cable breaks: play, and pull again"
+                "Undoes the move. From now on, a support dragged beyond the cable's length is pulled by a spring until the cable breaks: press Play and drag again"
             }
-            _ => "Puts this right; undo takes it back",
+            _ => "Corrects this; undo reverts it",
         };
         if button.on_hover_text(help).on_disabled_hover_text(entry.no_use.unwrap_or_default()).clicked() {
             commands.push(fix.command.clone());
