@@ -329,7 +329,7 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
         }
         false => "Greatest tension of any inner step since the start, with its range estimated from two coarser runs",
     };
-    figure(ui, "Greatest so far", most, help, None);
+    figure(ui, "Greatest tension so far", most, help, None);
     if let Some(TensionRanges { greatest_n: [from, to], .. }) = run.ranges {
         figure(ui, "  range", format!("{} to {}", format::force(from), format::force(to)), help, None);
     }
