@@ -490,7 +490,12 @@ mod tests {
         assert!(both.contains("spans") && both.contains("fem"), "{both}");
         let lifts = SolveError::Unsupported { model: Model::Spans, feature: Unsupported::NothingHolds };
         let told = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
-        assert!(told.starts_with("spans cannot answer this scene: no support holds the cable, only loads, loose ends or obstacles; and"), "{told}");
+        assert!(
+            told.starts_with(
+                "spans cannot answer this scene: no support holds the cable, only loads, loose ends or obstacles; and"
+            ),
+            "{told}"
+        );
         assert_eq!(told.matches("fem").count(), 1, "{told}");
     }
 }

@@ -189,7 +189,7 @@ fn errors() -> Vec<Box<dyn Sentence>> {
         Box::new(SolveError::NotConverged { model, iterations: 7, residual_n: 4.448, place: place() }),
         Box::new(SolveError::TooMuchWork { model, iterations: 7, segments: 40, residual_n: f64::NAN, place: place() }),
         Box::new(SolveError::Compressed { model, tension_n: -4.448, place: place() }),
-        Box::new(SolveError::TensionLost { model, loss: TensionLoss::Fold, arc_length_m: 3.2, at_m }),
+        Box::new(SolveError::TensionLost { model: Model::Spans, loss: TensionLoss::Fold, arc_length_m: 3.2, at_m }),
         Box::new(why(NoEquilibrium::UnheldForce { left_n: 12.0, loads_n: 120.0 })),
         Box::new(why(NoEquilibrium::TooLittleFriction { friction_ratio: 1.0312 })),
         Box::new(why(NoEquilibrium::ThroughObstacle { obstacle: name("post"), at_m, arc_length_m: 3.2 })),

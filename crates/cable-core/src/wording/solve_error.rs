@@ -7,7 +7,6 @@ use crate::error::{
     EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
     Unsupported, UnsupportedReach,
 };
-use crate::model_id::Model;
 use crate::units::{Quantity, UnitSystem};
 
 /// A force that no cable bears, N: left over it says that a search ran away, not how much is
@@ -74,11 +73,10 @@ impl Sentence for SolveError {
                 "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
             ),
             Self::TensionLost { model, loss, arc_length_m, at_m } => format!(
-                "{model} works for a taut cable only, but here {} {} along it, at {}{}",
+                "{model} works for a taut cable only, but here {} {} along it, at {}; use fem",
                 loss.sentence(units),
                 f.length(*arc_length_m, 3),
-                f.point((*at_m).into(), 3),
-                if *model == Model::Fem { "" } else { "; use fem" }
+                f.point((*at_m).into(), 3)
             ),
             Self::NoRestingPlace { why } => format!("the cable cannot come to rest: {}", why.sentence(units)),
             Self::AfterBreak { cable, time_s, arc_length_m, at_m, breaking_n, why } => format!(
