@@ -109,8 +109,8 @@ impl TwoMeshes {
         }
     }
 
-    /// The comparison of a cable at rest with one on bars twice as long, and of that with one on bars
-    /// four times as long, each of which found its own resting place.
+    /// The comparison of a cable at rest with one on bars twice as long, and of that with one on
+    /// bars four times as long, each of which found its own resting place.
     pub fn beside(fine: &Stepper, coarse: Stepper, coarsest: Option<&Stepper>) -> Self {
         let (answer, other) = (fine.solution(), coarse.solution());
         let rounding = ErrorEstimates::rounding(&answer, &fine.cable.problem);

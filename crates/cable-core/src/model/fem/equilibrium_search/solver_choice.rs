@@ -170,7 +170,8 @@ impl FemModel {
         Some(TwoMeshes::beside(&self.stepper, coarse, coarsest.as_ref()))
     }
 
-    /// The same cable laid on fewer bars and come to rest, in no more iterations than this one took.
+    /// The same cable laid on fewer bars and come to rest, in no more iterations than this one
+    /// took.
     fn at_rest_by_own_search(&self, bars: usize) -> Option<Stepper> {
         if 2 * bars < LEAST_BARS {
             return None;
@@ -190,6 +191,9 @@ impl FemModel {
             other.set_robot_pose(pose);
         }
         other.find_equilibrium().ok()?;
+        // What follows is not bounded by the work of the search.
+        other.stepper.solver.work_of_advance = self.stepper.solver.work_of_advance;
+        other.stepper.cable.mesh.tuning = self.tuning().clone();
         (other.present == PresentPart::Stepper && other.elastica_answer.is_none()).then_some(other.stepper)
     }
 
