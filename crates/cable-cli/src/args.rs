@@ -108,8 +108,8 @@ pub struct RunArguments {
     /// is given, else 0]
     #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
     pub refine: Option<u32>,
-    /// Skip the two coarser runs that estimate the errors of a run with inertia (they add about a
-    /// third to its cost)
+    /// Skip the two coarser runs that estimate the errors of a run with inertia (they add a
+    /// third to three quarters to its cost)
     #[arg(long)]
     pub no_errors: bool,
     /// Stepping of mass-spring: auto, explicit or preview

@@ -87,7 +87,7 @@ impl RunWithoutInertia {
         if self.simulation.is_none() || !self.count.is_multiple_of(self.times) {
             return;
         }
-        if !self.simulation.as_mut().is_some_and(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_ok()) {
+        if self.simulation.as_mut().is_none_or(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_err()) {
             self.simulation = None;
         }
         self.compare(run);
