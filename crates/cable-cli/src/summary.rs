@@ -105,7 +105,7 @@ fn balance(b: Option<&ForceBalance>) -> String {
                 b.relative_residual
             )
         }
-        None => "not known: in a plan view the floor's friction is not part of the answer".to_owned(),
+        None => "not known: in a plan view the floor's friction is not among the forces reported".to_owned(),
     }
 }
 

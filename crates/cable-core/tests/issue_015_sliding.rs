@@ -37,7 +37,7 @@ fn missing(scene: &Scene, model: Model) -> Option<f64> {
         Err(SolveError::NoRestingPlace { why }) => {
             let said = why.to_string();
             let figure =
-                said.strip_prefix("it slides: ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{said}"));
+                said.strip_prefix("it slides; ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{said}"));
             Some(figure.0.parse().unwrap())
         }
         Err(other) => panic!("{model}: {other}"),
@@ -168,5 +168,5 @@ fn what_other_histories_leave_in_the_tank_is_said_in_figures() {
     let (_, said) = most(FrictionMobilised::LeastSliding);
     let (drawn, _) = most(FrictionMobilised::TowardsEnd);
     let said = said.expect("said");
-    assert!(said.contains(&format!("towards the end: {drawn:.2} N")), "{said}");
+    assert!(said.contains(&format!("towards its end: {drawn:.2} N")), "{said}");
 }

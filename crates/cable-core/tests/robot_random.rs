@@ -280,8 +280,8 @@ fn issue_016_errors_beside_a_robot_are_stated_and_cover_those_on_a_finer_mesh() 
 #[ignore = "minutes: 24 robots at rest and driven, each on four times as many segments, too"]
 fn errors_beside_many_robots_are_covered() {
     let [all, covered] = errors_beside_robots(preset::map_presets(), asked("FROM", 1)..=asked("TO", 4));
-    // One of 24 comes to rest elsewhere on four times as many segments, and on half as many where it
-    // does on all of them: no coarser mesh tells of that.
+    // One of 24 comes to rest elsewhere on four times as many segments, and on half as many where
+    // it does on all of them: no coarser mesh tells of that.
     assert!((0..3).all(|k| 20 * covered[k] >= 17 * all[k]), "{covered:?} of {all:?}");
     assert!(3 * covered[3] >= 2 * all[3], "{covered:?} of {all:?}");
 }

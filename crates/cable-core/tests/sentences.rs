@@ -246,7 +246,6 @@ fn others() -> Vec<Box<dyn Sentence>> {
         neglects: NeglectedEffect::Obstacles,
         force_error,
         position_error_m: force_error.map(|_| 0.123),
-        is_lower_bound: force_error.is_some_and(|error| error > 0.5),
     };
     vec![
         Box::new(ModelReason::Requested),

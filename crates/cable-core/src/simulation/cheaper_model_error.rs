@@ -43,7 +43,6 @@ pub(super) fn next_cheaper<'a>(
             neglects,
             force_error: errors.map(|e| e[0]).filter(|e| e.is_finite()),
             position_error_m: errors.map(|e| e[1]).filter(|e| e.is_finite()),
-            is_lower_bound: false,
         };
         if let Some(before) = found {
             let worse = |a: Option<f64>, b: Option<f64>| Some(larger(a?, b?));

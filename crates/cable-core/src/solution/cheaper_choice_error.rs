@@ -36,8 +36,4 @@ pub struct NextCheaper {
     /// Greatest distance between the two places of a point of the cable, m; `None` if the cheaper
     /// model has no answer.
     pub position_error_m: Option<f64>,
-    /// True if the two were compared only until the difference was beyond doubt: the errors are at
-    /// least these, that of forces as a fraction of the greatest tension until then.
-    #[serde(default)]
-    pub is_lower_bound: bool,
 }

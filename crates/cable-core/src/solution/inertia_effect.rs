@@ -34,13 +34,11 @@ pub struct InertiaEffect {
 }
 
 impl InertiaEffect {
-    /// Returns whether forces without inertia differ by more than the tolerance, beyond doubt or as
-    /// known, or are not known;
+    /// Returns whether forces without inertia differ by more than the tolerance, or are not known;
     /// `None` if no run without inertia accompanies this one, or if the difference is not clear.
     #[must_use]
     pub fn matters(&self) -> Option<bool> {
-        let without = self.without?;
-        let Some(apart) = without.force_error.filter(|_| !without.is_lower_bound) else { return Some(true) };
+        let Some(apart) = self.without?.force_error else { return Some(true) };
         if apart <= self.tolerance {
             Some(false)
         } else {

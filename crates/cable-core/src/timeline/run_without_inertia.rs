@@ -1,5 +1,6 @@
 //! A run without inertia beside one with it: the error that the next cheaper choice would have
-//! cost. It ends where it is off beyond doubt: a fall without inertia costs more than the fall.
+//! cost. It ends where a step takes too many iterations: a fall costs more without inertia than
+//! with it.
 
 use super::{QUASI_STATIC_STEP_S, RunPeaks, advance};
 use crate::math::larger;
@@ -8,11 +9,6 @@ use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
-/// Difference from the run, as a fraction of its greatest tension, beyond which inertia matters
-/// whatever comes. Smaller: errors said of fast motion are lower bounds that are lower; larger:
-/// runs that nobody would choose cost more.
-const MATTERS_BEYOND_DOUBT: f64 = 0.3;
-
 /// Greatest number of iterations of a step on all nodes. Smaller: slow motions with hard steps have
 /// no answer; larger: what is let go costs more to follow without inertia than with it.
 const MAX_ITERATIONS: usize = 1000;
@@ -20,10 +16,8 @@ const MAX_ITERATIONS: usize = 1000;
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
 pub(super) struct RunWithoutInertia {
-    /// None once it has no answer, or need not go on.
+    /// None once it has no answer.
     simulation: Option<Simulation>,
-    /// Once it is off beyond doubt: by how much, as a fraction of the greatest tension until then.
-    decided_off: Option<f64>,
     model: Model,
     /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
@@ -32,9 +26,8 @@ pub(super) struct RunWithoutInertia {
     /// allows.
     apart: ErrorEstimates,
     apart_at_rest: ErrorEstimates,
-    /// Greatest tension of each cable so far, N, and of any cable in the run beside it.
+    /// Greatest tension of each cable so far, N.
     greatest_n: Vec<f64>,
-    greatest_of_run_n: f64,
 }
 
 /// The larger of the errors of forces, N.
@@ -65,17 +58,7 @@ impl RunWithoutInertia {
         let apart =
             ErrorEstimates { max_tension_n: Some(0.0), support_force_n: Some(0.0), position_m: Some(0.0), ..none };
         let greatest_n = vec![0.0; run.answers().len()];
-        let mut this = Self {
-            simulation,
-            decided_off: None,
-            model,
-            times,
-            count: 0,
-            apart,
-            apart_at_rest: apart,
-            greatest_n,
-            greatest_of_run_n: 0.0,
-        };
+        let mut this = Self { simulation, model, times, count: 0, apart, apart_at_rest: apart, greatest_n };
         this.compare(run);
         this.apart_at_rest = this.apart;
         Some(this)
@@ -91,13 +74,6 @@ impl RunWithoutInertia {
             self.simulation = None;
         }
         self.compare(run);
-        let of_run = run.answers().iter().map(|answer| answer.peaks_at(run.time_s()).greatest.tension_n);
-        self.greatest_of_run_n = of_run.fold(self.greatest_of_run_n, larger);
-        let off = larger_force(&self.apart).zip(larger_force(&self.apart_at_rest)).map(|(now, at_rest)| now - at_rest);
-        let off = off.map(|off| off / self.greatest_of_run_n).filter(|off| *off > MATTERS_BEYOND_DOUBT);
-        if self.simulation.is_some() && off.is_some() {
-            (self.decided_off, self.simulation) = (off, None);
-        }
     }
 
     fn compare(&mut self, run: &Simulation) {
@@ -124,17 +100,11 @@ impl RunWithoutInertia {
         };
         let forces =
             beyond(larger_force(&self.apart).map(|apart| larger(apart, peaks)), larger_force(&self.apart_at_rest));
-        let force_error = forces.map(|force| if most > 0.0 { force / most } else { force });
-        let place_error = self.apart.position_m.zip(self.apart_at_rest.position_m).map(|(now, at_rest)| now - at_rest);
         NextCheaper {
             model: self.model,
             neglects: NeglectedEffect::Inertia,
-            force_error: self.decided_off.or(force_error),
-            position_error_m: match self.decided_off {
-                Some(_) => place_error.map(|place| larger(place, 0.0)),
-                None => beyond(self.apart.position_m, self.apart_at_rest.position_m),
-            },
-            is_lower_bound: self.decided_off.is_some(),
+            force_error: forces.map(|force| if most > 0.0 { force / most } else { force }),
+            position_error_m: beyond(self.apart.position_m, self.apart_at_rest.position_m),
         }
     }
 }

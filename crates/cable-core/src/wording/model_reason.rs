@@ -78,16 +78,17 @@ impl Sentence for NextCheaper {
             NeglectedEffect::Inertia => "inertia",
         };
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
-            return format!("{}, ignoring {what}, has no answer", self.model);
+            let fails =
+                if self.neglects == NeglectedEffect::Inertia { "does not come to the end" } else { "has no answer" };
+            return format!("{}, ignoring {what}, {fails}", self.model);
         };
         if force <= ANSWER_DIFFERENCE_FRACTION {
             return format!("{}, ignoring {what}, gives the same answer", self.model);
         }
-        let by = if self.is_lower_bound { "by at least" } else { "by" };
         let force = percent(force);
         let place = f.length(place, 3);
         format!(
-            "{}, ignoring {what}, would be off {by} {force} of the greatest tension and {by} {place} in shape",
+            "{}, ignoring {what}, would be off by {force} of the greatest tension and by {place} in shape",
             self.model
         )
     }

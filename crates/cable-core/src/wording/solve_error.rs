@@ -73,7 +73,7 @@ impl Sentence for SolveError {
                 "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
             ),
             Self::TensionLost { model, loss, arc_length_m, at_m } => format!(
-                "{model} works for a taut cable only, but here {} {} along it, at {}; use fem",
+                "{model} works for a taut cable only, but here {} {} along it, at {}",
                 loss.sentence(units),
                 f.length(*arc_length_m, 3),
                 f.point((*at_m).into(), 3)
@@ -199,7 +199,7 @@ impl Sentence for SpanError {
                 format!("an inextensible cable of {} cannot span {}", metres(length_m), metres(chord_m))
             }
             Self::NotConverged { iterations, closure_m } => format!(
-                "no convergence in {iterations} iterations: the computed end is still {} from its support",
+                "no resting place was found in {iterations} iterations: the computed end is still {} from its support",
                 Figures(units).significant(Quantity::Length, closure_m, 4)
             ),
         }
@@ -355,7 +355,7 @@ impl Sentence for EquilibriumFault {
             Self::FrictionBeyondCone => "friction exceeds its limit",
             Self::SlackUnderTension => "a slack part has tension",
             Self::LooseCableSlides => "a loose part slides",
-            Self::EndTension => "the tension at an end differs from that of its support",
+            Self::EndTension => "the tension at a loose end differs from the pull of what hangs on it",
             Self::LoadHeldDown => "a load is held down",
             Self::LoadOutOfKink => "a load is not in the corner where it should rest",
             Self::LoadSlides => "a load slides against more than its friction",

@@ -345,6 +345,7 @@ impl Mechanics for FemModel {
         self.stepper.solver.work_of_advance = WorkBudget::Left(work);
         let most = &mut Arc::make_mut(&mut self.stepper.cable.mesh.tuning).equilibrium.max_work;
         *most = work.min(*most);
+        self.meshes.limit_work(work);
     }
 
     fn start_without_spans(&mut self) {

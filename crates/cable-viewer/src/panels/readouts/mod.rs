@@ -470,7 +470,7 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     match &first.balance {
         Some(b) => figure(ui, name, format::percent(b.relative_residual), help, None),
         None => {
-            let why = "In a plan view the floor's friction is not part of the answer, so the balance cannot be checked";
+            let why = "In a plan view the floor's friction is not among the forces reported, so the balance cannot be checked";
             figure(ui, name, "not known".to_owned(), why, None);
         }
     }

@@ -66,7 +66,9 @@ impl FemModel {
     /// The model of an easier cable at the same supports; None if there is none.
     fn of_easier_cable(&self, problem: Problem, settings: Settings) -> Option<Self> {
         let model = Self::with_tuning(Arc::new(problem), settings, self.tuning().clone()).ok()?;
-        let mut model = Self { dragged: self.dragged.clone(), present: PresentPart::Stepper, ..model };
+        // Nobody reads its errors.
+        let dragged = self.dragged.clone();
+        let mut model = Self { dragged, present: PresentPart::Stepper, is_comparison: true, ..model };
         if let Some(to) = self.robot_pose {
             model.set_robot_pose(to);
         }

@@ -10,7 +10,8 @@
 //! first order where the cable touches down or meets a corner: the error on the finest of three
 //! meshes is a third of the difference of the finer two, or all of it. The estimate is all of it,
 //! and at least half of the difference of the coarser two, because a single difference may vanish
-//! by chance, as when a node comes to lie at a corner. (L. F. Richardson and J. A. Gaunt, *The
+//! by chance, as when a node comes to lie at a corner; all of that, too, beside a robot, where each
+//! mesh finds its own resting place. (L. F. Richardson and J. A. Gaunt, *The
 //! deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation:
 //! its order is not known here.)
 
@@ -166,6 +167,13 @@ impl TwoMeshes {
             let Some(mut finer) = at_rest_with_bars(problem, settings, fine, bars, answer, dragged) else { return };
             finer.hand_drive.pulled.clone_from(&fine.hand_drive.pulled);
             *fine = finer;
+        }
+    }
+
+    /// Limits the work of each step of the mesh beside the cable's.
+    pub fn limit_work(&mut self, work: usize) {
+        if let Some(coarse) = &mut self.coarse {
+            coarse.solver.work_of_advance = WorkBudget::Left(work);
         }
     }
 

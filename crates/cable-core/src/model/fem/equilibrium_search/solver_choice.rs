@@ -17,6 +17,11 @@ use crate::problem::Problem;
 use crate::solution::{Cost, Histories, ShownEquilibrium, Warning, WarningCause, WarningKind};
 use crate::state::State;
 
+/// Iterations that a mesh which measures the errors of another may take for its own rest, however
+/// quickly that other one came to rest. Smaller: errors are measured from meshes that begin at the
+/// answer; larger: hard cables beside a robot take longer to solve.
+const LEAST_ITERATIONS: usize = 1000;
+
 impl FemModel {
     /// Finds the equilibrium.
     pub(in crate::model::fem) fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
@@ -47,6 +52,7 @@ impl FemModel {
         let mut model = Self::with_tuning(smooth, self.settings, self.tuning().clone())?;
         model.dragged.clone_from(&self.dragged);
         model.starts_from_spans = self.starts_from_spans;
+        model.is_comparison = self.is_comparison;
         let mut report = model.settle()?;
         report.warnings.retain(|w| w.kind != WarningKind::NotUnique);
         let shown = ShownEquilibrium::Frictionless;
@@ -170,8 +176,8 @@ impl FemModel {
         Some(TwoMeshes::beside(&self.stepper, coarse, coarsest.as_ref()))
     }
 
-    /// The same cable laid on fewer bars and come to rest, in no more iterations than this one
-    /// took.
+    /// The same cable laid on fewer bars and come to rest, in no more iterations than this one took
+    /// or than [`LEAST_ITERATIONS`].
     fn at_rest_by_own_search(&self, bars: usize) -> Option<Stepper> {
         if 2 * bars < LEAST_BARS {
             return None;
@@ -180,7 +186,8 @@ impl FemModel {
         let mut other = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
         if let WorkBudget::Left(left) = self.stepper.solver.work_left {
             let work = self.tuning().equilibrium.max_work.saturating_sub(left);
-            other.limit_work(work * bars / self.stepper.cable.meshing.even_bars);
+            let iterations = work / self.stepper.cable.meshing.even_bars;
+            other.limit_work(iterations.max(LEAST_ITERATIONS) * bars);
         }
         other.is_comparison = true;
         other.starts_from_spans = self.starts_from_spans;
