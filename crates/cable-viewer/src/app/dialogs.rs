@@ -365,7 +365,7 @@ const CONTROLS: [(&str, &str); 28] = [
     ("Left, right in a graph", "Moves its cursor; with Shift, moves the view"),
     ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
     ("F, C", "Fits the scene, recentres on the cable"),
-    ("[, ], G", "Shows or hides the outline, the selection and results, the graphs and timeline"),
+    ("[, ], G", "Shows or hides outline, selection and results, graphs, timeline"),
     ("Space", "Runs or pauses"),
     ("Arrow right, left", "One step of 1/60 s forward; one frame back"),
     ("Hold A, D", "Drives the robot left, right"),
