@@ -32,7 +32,7 @@ pub struct Motion {
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
     pub figure: Vec2,
-    /// Where [`SHAPE_PLACES`] even places of the cable are at the end, m.
+    /// Positions of [`SHAPE_PLACES`] even places of the cable at the end, m.
     pub shape: Vec<Vec2>,
     /// Length of the cable, m.
     pub length_m: f64,
@@ -134,7 +134,7 @@ fn force_on(sim: &Simulation, support: usize) -> Vec2 {
     found.map_or_else(Vec2::zeros, |s| Vec2::new(s.reaction_x_n, s.reaction_y_n))
 }
 
-/// Where even places of the only cable are, m.
+/// Positions of even places of the only cable, m.
 fn shape(sim: &Simulation, length_m: f64) -> Vec<Vec2> {
     let answer = sim.solution();
     let places = (0..SHAPE_PLACES).map(|k| length_m * k as f64 / (SHAPE_PLACES - 1) as f64);

@@ -291,7 +291,7 @@ struct Finest {
     shape: Vec<Vec2>,
 }
 
-/// What `fem` finds on the finest mesh in half the shortest step, extrapolated.
+/// The result of `fem` on the finest mesh in half the shortest step, extrapolated.
 fn extrapolated(motion: &Motion) -> Result<Finest, Box<dyn Error>> {
     let finest = motion.meshes.last().copied().ok_or("a motion without meshes")?;
     let step = 0.5 * STEPS[STEPS.len() - 1];

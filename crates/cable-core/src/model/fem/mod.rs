@@ -45,7 +45,7 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2, larger};
-use crate::model::fem::equilibrium_search::TwoMeshes;
+use crate::model::fem::equilibrium_search::{MeshRefinement, TwoMeshes};
 use crate::model::fem::obstacle::touches_nothing;
 use crate::model::fem::obstacle::{outline_report, place_bodies};
 use crate::model::fem::remesh::break_cable;
@@ -156,21 +156,25 @@ impl FemModel {
     /// open and the mesh gave the first answer.
     fn on_finer_mesh(&self) -> Option<Self> {
         let bars = 2 * self.stepper.cable.meshing.even_bars;
-        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let by_mesh = self.present == PresentPart::Stepper && self.elastica_answer.is_none() && self.time_s() <= 0.0;
-        if given || !by_mesh || bars > self.tuning().start.max_refined_bars {
+        if self.refinement() == MeshRefinement::Forbidden || !by_mesh || bars > self.tuning().start.max_refined_bars {
             return None;
         }
+        self.laid_on(bars)
+    }
+
+    /// The same cable laid along its route on another number of bars; None if there is none.
+    pub(in crate::model::fem) fn laid_on(&self, bars: usize) -> Option<Self> {
         let settings = Settings { segments: Some(bars), ..self.settings };
-        let mut finer = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
-        finer.starts_from_spans = self.starts_from_spans;
-        finer.dragged.clone_from(&self.dragged);
-        finer.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
-        finer.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
+        let mut other = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
+        other.starts_from_spans = self.starts_from_spans;
+        other.dragged.clone_from(&self.dragged);
+        other.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
+        other.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         if let Some(pose) = self.robot_pose {
-            finer.set_robot_pose(pose);
+            other.set_robot_pose(pose);
         }
-        Some(finer)
+        Some(other)
     }
 
     /// Estimates the errors of the steps without inertia that follow on an answer of another model.

@@ -117,7 +117,7 @@ impl TwoMeshes {
         let rounding = ErrorEstimates::rounding(&answer, &fine.cable.problem);
         let errors = ErrorEstimates::between(&other, &answer).plus(&rounding);
         let change = coarsest.map(|coarsest| ErrorEstimates::between(&coarsest.solution(), &other));
-        // What differs by the choice of a resting place does not become less with the bars.
+        // Differences by the choice of a resting place do not become less with the bars.
         let errors = change.map_or(errors, |change| errors.componentwise_max(&change));
         Self { coarse: Some(Box::new(coarse)), errors, ..Self::default() }
     }

@@ -13,4 +13,4 @@ mod mesh_error;
 mod solver_choice;
 mod stiff_equilibrium;
 
-pub(in crate::model::fem) use mesh_error::TwoMeshes;
+pub(in crate::model::fem) use mesh_error::{MeshRefinement, TwoMeshes};

@@ -12,7 +12,7 @@ use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, slid_first, slides_on, work};
-use crate::model::{Mechanics, Settings, StepReport};
+use crate::model::{Mechanics, StepReport};
 use crate::problem::Problem;
 use crate::solution::{Cost, Histories, ShownEquilibrium, Warning, WarningCause, WarningKind};
 use crate::state::State;
@@ -182,23 +182,15 @@ impl FemModel {
         if 2 * bars < LEAST_BARS {
             return None;
         }
-        let settings = Settings { segments: Some(bars), ..self.settings };
-        let mut other = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
+        let mut other = self.laid_on(bars)?;
         if let WorkBudget::Left(left) = self.stepper.solver.work_left {
             let work = self.tuning().equilibrium.max_work.saturating_sub(left);
             let iterations = work / self.stepper.cable.meshing.even_bars;
             other.limit_work(iterations.max(LEAST_ITERATIONS) * bars);
         }
         other.is_comparison = true;
-        other.starts_from_spans = self.starts_from_spans;
-        other.dragged.clone_from(&self.dragged);
-        other.stepper.hand_drive.pulled.clone_from(&self.stepper.hand_drive.pulled);
-        other.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
-        if let Some(pose) = self.robot_pose {
-            other.set_robot_pose(pose);
-        }
         other.find_equilibrium().ok()?;
-        // What follows is not bounded by the work of the search.
+        // The work of the search does not bound the steps that follow.
         other.stepper.solver.work_of_advance = self.stepper.solver.work_of_advance;
         other.stepper.cable.mesh.tuning = self.tuning().clone();
         (other.present == PresentPart::Stepper && other.elastica_answer.is_none()).then_some(other.stepper)
