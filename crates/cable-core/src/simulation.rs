@@ -524,6 +524,16 @@ impl Simulation {
         self.cables.iter_mut().for_each(|cable| cable.limit_work(work));
     }
 
+    /// The work of the last step on elements, in iterations times nodes of a cable; models without
+    /// elements need little.
+    pub(crate) fn work_of_step(&self) -> usize {
+        if !self.model().capabilities().mesh {
+            return 0;
+        }
+        let nodes: usize = self.answers.iter().map(|answer| answer.nodes.len()).sum();
+        self.cost.iterations * nodes / self.answers.len().max(1)
+    }
+
     /// The largest tension of some cables now, N (NaN propagates).
     pub fn largest_n(&self, cables: impl IntoIterator<Item = usize>) -> f64 {
         let nodes = cables.into_iter().filter_map(|k| self.answers.get(k)).flat_map(|a| &a.nodes);

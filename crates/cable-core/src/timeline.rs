@@ -225,6 +225,7 @@ impl Timeline {
         (self.inertia == Inertia::Dynamic).then(|| InertiaEffect {
             numbers: self.monitor.motion_numbers(),
             without: self.monitor.next_cheaper(),
+            error_at_rest: self.monitor.error_without_inertia_at_rest(),
             tolerance: self.simulation.settings().tolerance,
         })
     }

@@ -98,6 +98,12 @@ impl RunMonitor {
         self.without_inertia.as_ref().map(|run| run.next_cheaper(&self.peaks))
     }
 
+    /// The error of a run without inertia at rest, in parts of the greatest tension so far; None
+    /// where none goes beside the run.
+    pub(super) fn error_without_inertia_at_rest(&self) -> Option<f64> {
+        self.without_inertia.as_ref().and_then(|run| run.error_at_rest(&self.peaks))
+    }
+
     /// The Mach and Froude numbers of the run so far.
     #[must_use]
     pub fn motion_numbers(&self) -> MotionNumbers {

@@ -1,6 +1,6 @@
 //! A run without inertia beside one with it: the error that the next cheaper choice would have
-//! cost. It ends where a step takes too many iterations: a fall costs more without inertia than
-//! with it.
+//! cost. It ends once it has taken more work than the run that it accompanies: a choice that is not
+//! cheaper is none. A fall costs more without inertia than with it, and so do folds.
 
 use super::{QUASI_STATIC_STEP_S, RunPeaks, advance};
 use crate::math::larger;
@@ -9,9 +9,10 @@ use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
-/// Greatest number of iterations of a step on all nodes. Smaller: slow motions with hard steps have
-/// no answer; larger: what is let go costs more to follow without inertia than with it.
-const MAX_ITERATIONS: usize = 1000;
+/// Number of iterations on all nodes by which the run without inertia may be ahead of the run that
+/// it accompanies. Smaller: a slow motion that begins with a hard step has no answer; larger: what
+/// is let go costs more to follow without inertia than with it.
+const ITERATIONS_AHEAD: usize = 1000;
 
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
@@ -22,6 +23,8 @@ pub(super) struct RunWithoutInertia {
     /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
     count: u64,
+    /// Work that it may still do, in iterations times nodes.
+    work_left: usize,
     /// The most by which the two differed so far, and at rest: of their meshes, or of what friction
     /// allows.
     apart: ErrorEstimates,
@@ -35,6 +38,16 @@ fn larger_force(apart: &ErrorEstimates) -> Option<f64> {
     apart.max_tension_n.zip(apart.support_force_n).map(|(a, b)| larger(a, b))
 }
 
+/// The greatest tension of all cables so far, N.
+fn greatest_tension_n(peaks: &[RunPeaks]) -> f64 {
+    peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger)
+}
+
+/// A force in parts of the greatest tension; the force itself where nothing pulls.
+fn in_parts_of(force: f64, most: f64) -> f64 {
+    if most > 0.0 { force / most } else { force }
+}
+
 impl RunWithoutInertia {
     /// The run as `auto` has it beside one that has settled at its start; None beside one without
     /// inertia and one that has begun.
@@ -45,12 +58,9 @@ impl RunWithoutInertia {
         let settings = Settings { histories: false, ..run.settings() };
         let question = Question::History(Inertia::QuasiStatic);
         let simulation = Simulation::for_question(run.scene().clone(), Model::Auto, settings, question);
-        let mut simulation =
-            simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
-        if let Some(simulation) = &mut simulation {
-            let nodes = simulation.answers().iter().map(|answer| answer.nodes.len()).max();
-            simulation.limit_work(MAX_ITERATIONS * nodes.unwrap_or(1));
-        }
+        let simulation = simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
+        let nodes: usize = run.answers().iter().map(|answer| answer.nodes.len()).sum();
+        let work_left = ITERATIONS_AHEAD * nodes;
         // A cast takes what is too long for one step as one.
         let times = ((QUASI_STATIC_STEP_S / step_s).round() as u64).max(1);
         let model = simulation.as_ref().map_or(Model::Auto, Simulation::model);
@@ -58,7 +68,7 @@ impl RunWithoutInertia {
         let apart =
             ErrorEstimates { max_tension_n: Some(0.0), support_force_n: Some(0.0), position_m: Some(0.0), ..none };
         let greatest_n = vec![0.0; run.answers().len()];
-        let mut this = Self { simulation, model, times, count: 0, apart, apart_at_rest: apart, greatest_n };
+        let mut this = Self { simulation, model, times, count: 0, work_left, apart, apart_at_rest: apart, greatest_n };
         this.compare(run);
         this.apart_at_rest = this.apart;
         Some(this)
@@ -67,12 +77,16 @@ impl RunWithoutInertia {
     /// Goes on to the run it is beside, which has made one more step.
     pub fn follow(&mut self, run: &Simulation) {
         self.count += 1;
-        if self.simulation.is_none() || !self.count.is_multiple_of(self.times) {
+        self.work_left += run.work_of_step();
+        if !self.count.is_multiple_of(self.times) {
             return;
         }
-        if self.simulation.as_mut().is_none_or(|own| advance(own, run.time_s(), Inertia::QuasiStatic).is_err()) {
-            self.simulation = None;
-        }
+        self.simulation = self.simulation.take().and_then(|mut own| {
+            own.limit_work(self.work_left);
+            advance(&mut own, run.time_s(), Inertia::QuasiStatic).ok()?;
+            self.work_left = self.work_left.checked_sub(own.work_of_step())?;
+            Some(own)
+        });
         self.compare(run);
     }
 
@@ -88,11 +102,16 @@ impl RunWithoutInertia {
         }
     }
 
+    /// The most by which forces differed at rest, in parts of the greatest of such peaks.
+    pub fn error_at_rest(&self, peaks: &[RunPeaks]) -> Option<f64> {
+        larger_force(&self.apart_at_rest).map(|force| in_parts_of(force, greatest_tension_n(peaks)))
+    }
+
     /// The most by which it has differed from a run with such peaks so far, beyond what it did at
     /// rest.
     pub fn next_cheaper(&self, peaks: &[RunPeaks]) -> NextCheaper {
+        let most = greatest_tension_n(peaks);
         let runs = peaks.iter().map(|run| run.peaks.greatest.tension_n);
-        let most = runs.clone().fold(0.0, larger);
         let peaks = runs.zip(&self.greatest_n).map(|(a, b)| (a - b).abs()).fold(0.0, larger);
         let beyond = |now: Option<f64>, at_rest: Option<f64>| {
             let answered = self.simulation.is_some();
@@ -103,7 +122,7 @@ impl RunWithoutInertia {
         NextCheaper {
             model: self.model,
             neglects: NeglectedEffect::Inertia,
-            force_error: forces.map(|force| if most > 0.0 { force / most } else { force }),
+            force_error: forces.map(|force| in_parts_of(force, most)),
             position_error_m: beyond(self.apart.position_m, self.apart_at_rest.position_m),
         }
     }
