@@ -186,7 +186,10 @@ fn verdicts_are_those_of_finer_runs() {
         let is = difference(&scene);
         let tolerance = said.tolerance;
         slow += u64::from(said.matters() == Some(false));
-        let line = format!("{number}: reach {reach:.1e} m, {said}; at rest {:.1e}; finer: {is:?}", said.error_at_rest.unwrap_or(f64::NAN));
+        let line = format!(
+            "{number}: reach {reach:.1e} m, {said}; at rest {:.1e}; finer: {is:?}",
+            said.error_at_rest.unwrap_or(f64::NAN)
+        );
         println!("{line}");
         match is {
             _ if said.matters().is_none() => hidden += 1,

@@ -222,7 +222,11 @@ fn driven_slowly(scene: &Scene, segments: usize, speed_m_per_s: f64, seconds: f6
     let mut scene = scene.clone();
     scene.cables[0].segments = Some(segments);
     let mut simulation = Simulation::new(scene, Model::Fem).ok()?;
-    simulation.settle().ok()?;
+    if let Err(why) = simulation.settle() {
+        println!("{segments} segments: {why}");
+        if let Ok(f) = std::env::var("DUMP") { std::fs::write(f, simulation.scene().to_toml()).unwrap(); }
+        return None;
+    }
     simulation.command_robot(Some(speed_m_per_s));
     for _ in 0..(seconds / FRAME_S) as usize {
         simulation.step_quasi_static(FRAME_S).ok()?;
@@ -233,12 +237,16 @@ fn driven_slowly(scene: &Scene, segments: usize, speed_m_per_s: f64, seconds: f6
 /// Compares the stated errors of the greatest tension, of supports, contacts and the shape with the
 /// differences from four times as many segments; returns how many there were and how many covered
 /// their difference.
-fn errors_beside_robots(maps: &[preset::MapPreset], numbers: std::ops::RangeInclusive<u64>) -> [[usize; 4]; 2] {
+fn errors_beside_robots(
+    maps: &[preset::MapPreset],
+    numbers: std::ops::RangeInclusive<u64>,
+    bending: Bending,
+) -> [[usize; 4]; 2] {
     let (mut all, mut covered, mut apt) = ([0; 4], [0; 4], [0; 4]);
     for map in maps {
         for number in numbers.clone() {
             let mut seed = 7919 * number + 13;
-            let scene = scene(map, &mut seed, Bending::None);
+            let scene = scene(map, &mut seed, bending);
             let speed = 0.3 * (next(&mut seed) - 0.5);
             for seconds in [0.0, 1.0] {
                 let answers = [60, 240].map(|segments| driven_slowly(&scene, segments, speed, seconds));
@@ -271,7 +279,7 @@ fn errors_beside_robots(maps: &[preset::MapPreset], numbers: std::ops::RangeIncl
 /// than two meshes tell: of the shape two errors in three are covered.
 #[test]
 fn issue_016_errors_beside_a_robot_are_stated_and_cover_those_on_a_finer_mesh() {
-    let [all, covered] = errors_beside_robots(&preset::map_presets()[..3], 2..=2);
+    let [all, covered] = errors_beside_robots(&preset::map_presets()[..3], 2..=2, Bending::None);
     assert!(all[0] >= 4, "{all:?}");
     assert!((0..3).all(|k| 10 * covered[k] >= 8 * all[k]), "{covered:?} of {all:?}");
 }
@@ -279,7 +287,9 @@ fn issue_016_errors_beside_a_robot_are_stated_and_cover_those_on_a_finer_mesh() 
 #[test]
 #[ignore = "minutes: 24 robots at rest and driven, each on four times as many segments, too"]
 fn errors_beside_many_robots_are_covered() {
-    let [all, covered] = errors_beside_robots(preset::map_presets(), asked("FROM", 1)..=asked("TO", 4));
+    let numbers = asked("FROM", 1)..=asked("TO", 4);
+    let bending = if std::env::var("STIFF").is_ok() { Bending::Likely } else { Bending::None };
+    let [all, covered] = errors_beside_robots(preset::map_presets(), numbers, bending);
     // One of 24 comes to rest elsewhere on four times as many segments, and on half as many where
     // it does on all of them: no coarser mesh tells of that.
     assert!((0..3).all(|k| 20 * covered[k] >= 17 * all[k]), "{covered:?} of {all:?}");

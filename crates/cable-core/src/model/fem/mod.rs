@@ -192,6 +192,14 @@ impl FemModel {
         copy
     }
 
+    /// The errors of an answer that neglects so much bending, relative to the greatest tension. Where
+    /// a cable turns by φ under a tension T, its stiffness lowers the tension by T φ²/8 and moves it
+    /// aside by ½φ √(EI/T).
+    fn error_of_neglected_bending(&self, answer: &CableSolution, part: f64) -> ErrorEstimates {
+        let aside_m = elastica::bend_length(&self.problem, answer) * (2.0 * part).sqrt();
+        ErrorEstimates { position_m: Some(aside_m), ..ErrorEstimates::of_forces(answer, Some(part)) }
+    }
+
     /// Makes `part` the part that holds the present state.
     fn make_present(&mut self, part: PresentPart) -> Result<(), SolveError> {
         if self.present != part {
@@ -426,7 +434,7 @@ impl Mechanics for FemModel {
                 let meshes = self.meshes.errors;
                 let estimates = [self.bending_error, meshes.relative(&answer)].into_iter().flatten();
                 let errors = match self.bending_error {
-                    Some(part) => meshes.plus(&ErrorEstimates::of_forces(&answer, Some(part))),
+                    Some(part) => meshes.plus(&self.error_of_neglected_bending(&answer, part)),
                     None => meshes,
                 };
                 CableSolution { error_estimate: estimates.reduce(larger), errors, ..answer }

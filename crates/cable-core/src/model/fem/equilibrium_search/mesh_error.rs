@@ -72,7 +72,7 @@ impl TwoMeshes {
         if problem.cable.self_contact {
             if let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
                 self.errors = errors;
-                self.coarse = fine.cable.mesh.is_flexible().then(|| Box::new(coarse));
+                self.coarse = Some(Box::new(coarse));
             }
             // At rest a cable that does not touch itself is like one that cannot; in motion it may.
             if let Some(exact) = exact.filter(|_| !fine.cable.touches_itself()) {
@@ -151,8 +151,8 @@ impl TwoMeshes {
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
-        // Coarse bars are no measure of the bends of a cable that touches itself or a robot.
-        if problem.outline.is_some() || problem.cable.self_contact {
+        // Coarse bars are no measure of the bends of a cable that touches a robot.
+        if problem.outline.is_some() {
             return;
         }
         while let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
@@ -194,7 +194,7 @@ impl TwoMeshes {
     ) {
         *self = Self::default();
         let bars = fine.cable.meshing.even_bars;
-        if bars < LEAST_BARS || (problem.cable.self_contact && !fine.cable.mesh.is_flexible()) {
+        if bars < LEAST_BARS {
             return;
         }
         if let Some(coarse) = at_rest_with_bars(problem, settings, fine, bars / 2, answer, dragged) {
@@ -262,8 +262,7 @@ impl TwoMeshes {
             (None, None) if before.resumes => {
                 let bars = fine.cable.meshing.even_bars;
                 let coarse = || at_rest_with_bars(problem, settings, fine, bars / 2, &answer, dragged);
-                let may = bars >= LEAST_BARS && (!problem.cable.self_contact || fine.cable.mesh.is_flexible());
-                if may { coarse().map(Box::new) } else { None }
+                if bars >= LEAST_BARS { coarse().map(Box::new) } else { None }
             }
             (None, None) => None,
         };
