@@ -222,11 +222,7 @@ fn driven_slowly(scene: &Scene, segments: usize, speed_m_per_s: f64, seconds: f6
     let mut scene = scene.clone();
     scene.cables[0].segments = Some(segments);
     let mut simulation = Simulation::new(scene, Model::Fem).ok()?;
-    if let Err(why) = simulation.settle() {
-        println!("{segments} segments: {why}");
-        if let Ok(f) = std::env::var("DUMP") { std::fs::write(f, simulation.scene().to_toml()).unwrap(); }
-        return None;
-    }
+    simulation.settle().ok()?;
     simulation.command_robot(Some(speed_m_per_s));
     for _ in 0..(seconds / FRAME_S) as usize {
         simulation.step_quasi_static(FRAME_S).ok()?;
@@ -282,6 +278,21 @@ fn issue_016_errors_beside_a_robot_are_stated_and_cover_those_on_a_finer_mesh() 
     let [all, covered] = errors_beside_robots(&preset::map_presets()[..3], 2..=2, Bending::None);
     assert!(all[0] >= 4, "{all:?}");
     assert!((0..3).all(|k| 10 * covered[k] >= 8 * all[k]), "{covered:?} of {all:?}");
+}
+
+/// A slack stiff cable beside a robot came to rest on 60 and 120 segments and on 240 no more: its
+/// own search gave up, though the rest of the coarser mesh is one of the finer one.
+#[test]
+fn issue_016_slack_of_a_stiff_cable_beside_a_robot_rests_on_every_mesh() {
+    for map in &preset::map_presets()[1..4] {
+        let scene = scene(map, &mut (7919 + 13), Bending::Likely);
+        let greatest = [120, 240, 480].map(|segments| {
+            let answer = driven_slowly(&scene, segments, 0.0, 0.0);
+            answer.unwrap_or_else(|| panic!("{} on {segments}", map.name)).peaks_at(0.0).greatest.tension_n
+        });
+        let [coarse, middle, fine] = greatest;
+        assert!((coarse / fine - 1.0).abs() < 0.05 && (middle / fine - 1.0).abs() < 0.02, "{}: {greatest:?}", map.name);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! This module starts the search for an equilibrium in contact from one that is easier to find:
-//! that of `spans`, of the cable without obstacles, of a coarser mesh, or of a cable that stretches
-//! more.
+//! that of `spans`, on a coarser mesh, of the cable without obstacles, or of a cable that stretches
+//! more or bends more easily.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
-use crate::model::{Mechanics, Settings, StepReport};
+use crate::model::{Mechanics, StepReport};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Warning};
 
@@ -31,7 +31,43 @@ pub(in crate::model::fem) enum SpansStart {
 /// found nowhere.
 const STIFFENING_FRACTIONS: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 
+/// Least number of bars of the mesh on which a cable first comes to rest, which has up to twice as
+/// many. Smaller: shapes of the coarse mesh lie elsewhere among obstacles than those of finer ones;
+/// larger: the search on the coarse mesh takes longer.
+const COARSEST_BARS: usize = 40;
+
 impl FemModel {
+    /// Finds the first equilibrium from that on a mesh of few bars (nested iteration): slack travels
+    /// along the bars in waves, which takes as many steps as there are bars, and how it comes to
+    /// rest should not depend on their number. The coarse mesh may take as many iterations as this
+    /// one. Returns None, without a change, if it has no equilibrium near by or is not coarser.
+    pub(in crate::model::fem) fn rest_on_coarser_mesh(&mut self) -> Option<StepReport> {
+        let bars = self.stepper.cable.meshing.even_bars;
+        let halvings = (bars / COARSEST_BARS).checked_ilog2().filter(|halvings| *halvings > 0)?;
+        let max_work = self.tuning().equilibrium.max_work;
+        let mut coarse = self.laid_on(bars >> halvings)?;
+        coarse.is_comparison = true;
+        coarse.limit_work(max_work >> halvings);
+        let on_coarse = coarse.find_equilibrium().ok()?;
+        let mut report = self.rest_from(&coarse.solution(), &mut WorkBudget::Left(max_work))?;
+        report.cost.iterations += on_coarse.cost.iterations;
+        Some(report)
+    }
+
+    /// Comes to rest from the equilibrium of an easier cable; without a change if it does not.
+    fn rest_from(&mut self, easier: &CableSolution, work: &mut WorkBudget) -> Option<StepReport> {
+        let before = self.stepper.clone();
+        self.stepper.rested = false;
+        let starts = self.stepper.warm_start_within(easier, before.cable.time(), &self.dragged, work).is_ok();
+        // The search that found no rest has spent the work it had.
+        self.stepper.solver.work_left = *work;
+        let report = if starts { self.settle_unknown().ok() } else { None };
+        if report.is_none() {
+            self.stepper = before;
+        }
+        report
+    }
+
     /// Finds the first equilibrium of a stiff cable from that of a flexible one, which is stiffened
     /// in steps. Slack that falls upon a robot, or beside it, comes to rest as a flexible cable;
     /// all of the stiffness at once keeps it from there. Returns None, without a change, where a
@@ -45,7 +81,7 @@ impl FemModel {
         let mut softer: Option<CableSolution> = None;
         for part in STIFFENING_FRACTIONS {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
-            let mut model = self.of_easier_cable(problem, self.settings)?;
+            let mut model = self.of_easier_cable(problem)?;
             let rests = match &softer {
                 None => model.settle().is_ok(),
                 Some(softer) => model.stepper.rests_from(softer, time_s, &self.dragged, &mut work),
@@ -53,19 +89,12 @@ impl FemModel {
             softer = rests.then(|| model.solution());
             softer.as_ref()?;
         }
-        let before = self.stepper.clone();
-        self.stepper.rested = false;
-        let rests = self.stepper.rests_from(&softer?, time_s, &self.dragged, &mut work);
-        let report = if rests { self.settle_unknown().ok() } else { None };
-        if report.is_none() {
-            self.stepper = before;
-        }
-        report
+        self.rest_from(&softer?, &mut work)
     }
 
     /// The model of an easier cable at the same supports; None if there is none.
-    fn of_easier_cable(&self, problem: Problem, settings: Settings) -> Option<Self> {
-        let model = Self::with_tuning(Arc::new(problem), settings, self.tuning().clone()).ok()?;
+    fn of_easier_cable(&self, problem: Problem) -> Option<Self> {
+        let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
         // Nobody reads its errors.
         let dragged = self.dragged.clone();
         let mut model = Self { dragged, present: PresentPart::Stepper, is_comparison: true, ..model };
@@ -106,25 +135,18 @@ impl FemModel {
         (outcome, is_flexible.then_some(first))
     }
 
-    /// Starts from the equilibrium of an easier cable: on a coarser mesh (nested iteration),
-    /// because slack travels along the bars in waves and relaxation takes as many steps as there
-    /// are bars; and with less axial stiffness (continuation), because the search with nearly
-    /// inextensible bars is ill-conditioned although the equilibrium hardly differs. That search
-    /// may itself start from an easier one. Cables with an axial stiffness below `eased_loads`, in
-    /// whole loads, are not eased like this. All searches share the `work`.
+    /// Starts from the equilibrium of an easier cable, with less axial stiffness (continuation): the
+    /// search with nearly inextensible bars is ill-conditioned although the equilibrium hardly
+    /// differs. That search may itself start from an easier one. Cables with an axial stiffness
+    /// below `eased_loads`, in whole loads, are not eased like this. All searches share the `work`.
     pub(in crate::model::fem) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
-        let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let start = self.tuning().start;
-        let segments = if fine > start.two_mesh_bars { Some(fine / start.mesh_ratio) } else { self.settings.segments };
         let (own, load) = (self.problem.axial_stiffness, self.problem.whole_load());
-        let is_eased = load > 0.0 && own >= eased_loads * load;
-        let axial_stiffness = if is_eased { own / start.stiffness_ratio } else { own };
-        if segments == self.settings.segments && axial_stiffness == own {
+        if !(load > 0.0 && own >= eased_loads * load) {
             return;
         }
-        let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
-        let settings = Settings { segments, ..self.settings };
-        let Some(mut easier) = self.of_easier_cable(problem, settings) else { return };
+        let problem = Problem { axial_stiffness: own / start.stiffness_ratio, ..Problem::clone(&self.problem) };
+        let Some(mut easier) = self.of_easier_cable(problem) else { return };
         easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
         easier.stepper.solver.work_left = *work;
