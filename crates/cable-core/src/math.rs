@@ -90,7 +90,7 @@ const QUARTER_TURN: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10
 #[inline]
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     if !(angle.abs() <= MAX_SHORT_SERIES_ANGLE) {
-        return sin_cos_of_more(angle);
+        return sin_cos_beyond_short_series(angle);
     }
     let s = angle * angle;
     let sin = 1.0 / 362_880.0 - s / 39_916_800.0;
@@ -100,7 +100,9 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     (angle * sin, cos)
 }
 
-fn sin_cos_of_more(angle: f64) -> (f64, f64) {
+/// Sine and cosine of an angle (rad) beyond the short series, reduced to an eighth of a turn if it
+/// is longer.
+fn sin_cos_beyond_short_series(angle: f64) -> (f64, f64) {
     if angle.abs() <= MAX_SERIES_ANGLE {
         return long_series(angle);
     }
@@ -117,6 +119,8 @@ fn sin_cos_of_more(angle: f64) -> (f64, f64) {
     }
 }
 
+/// Sine and cosine of an angle (rad) by the first eight and nine terms of their Taylor series; the
+/// divisors are factorials.
 fn long_series(angle: f64) -> (f64, f64) {
     let s = angle * angle;
     let sin = 1.0 / 6_227_020_800.0 - s * (1.0 / 1_307_674_368_000.0 - s / 355_687_428_096_000.0);

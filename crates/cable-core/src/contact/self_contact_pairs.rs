@@ -14,7 +14,7 @@
 //! of the cable. But they begin at the same point, without a gap. So a pair across a break that was
 //! no contact of the unbroken cable keeps the distance that it has come to since: what has parted
 //! does not come together again. Its barrier begins where it is, at the reach, where its force is
-//! zero, and moves out with it, until the centre lines are a diameter and the reach apart.
+//! zero, and moves out with it, until the centre lines are a diameter and the reach may_touch.
 
 use super::distance::{from_segment, nearest_fraction, point_segment};
 use super::sweep::{MovingPoint, advance};
@@ -73,7 +73,7 @@ pub struct SelfContact {
     pub diameter: f64,
     /// Breaks: the segments that do not exist.
     breaks: Vec<usize>,
-    /// Pairs across a break that have not come apart by a diameter since.
+    /// Pairs across a break that have not come may_touch by a diameter since.
     parting: Vec<PartingPair>,
 }
 
@@ -204,7 +204,7 @@ impl SelfContact {
 
     /// Returns whether the node `p` may touch segment `e` of a cable with nodes at these arc
     /// lengths, m.
-    fn apart(&self, arc: &[f64], p: usize, e: usize) -> bool {
+    fn may_touch(&self, arc: &[f64], p: usize, e: usize) -> bool {
         if self.breaks.is_empty() {
             return self.is_beyond_bend(arc, p, e);
         }
@@ -237,7 +237,7 @@ impl SelfContact {
         for e in 0..=last {
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
             for p in order.between(x, low.x - near, high.x + near) {
-                if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
+                if x[p].y < low.y - near || x[p].y > high.y + near || !self.may_touch(arc, p, e) {
                     continue;
                 }
                 let fraction = nearest_fraction(x[p], x[e], x[e + 1]);
@@ -256,7 +256,7 @@ impl SelfContact {
                 }
                 // If only the later segment of a joint is far enough along the cable, no other
                 // segment handles that joint.
-                if e > 0 && !self.apart(arc, p, e - 1) {
+                if e > 0 && !self.may_touch(arc, p, e - 1) {
                     let weight = self.joint_weight(x, arc, p, e);
                     if weight != 0.0 {
                         Pairing { node: p, segment: e, fraction: 0.0, weight, diameter }.push(x, reach, out);
@@ -274,7 +274,7 @@ impl SelfContact {
     /// Returns the weight that inclusion and exclusion leave of joint `v` for node `p`.
     fn joint_weight(&self, x: &[Vec2], arc: &[f64], p: usize, v: usize) -> f64 {
         let clamped = |e: usize, end: f64| {
-            (e + 1 < x.len() && self.apart(arc, p, e)).then(|| nearest_fraction(x[p], x[e], x[e + 1]) == end)
+            (e + 1 < x.len() && self.may_touch(arc, p, e)).then(|| nearest_fraction(x[p], x[e], x[e + 1]) == end)
         };
         let before = if v > 0 { clamped(v - 1, 1.0) } else { None };
         let after = clamped(v, 0.0);
@@ -311,7 +311,7 @@ impl SelfContact {
             // still keep the required fraction of the gap.
             let near = self.diameter + 2.0 * widest * limit / (1.0 - keep) + noise;
             for p in order.between(x, low.x - near, high.x + near) {
-                if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
+                if x[p].y < low.y - near || x[p].y > high.y + near || !self.may_touch(arc, p, e) {
                     continue;
                 }
                 free = until_near(x, [p, e], [step(p), a, b], self.diameter, [keep, most, noise], free);
@@ -458,7 +458,7 @@ mod tests {
             assert!(!near.is_empty() && near.iter().all(|p| (p.gap_m - 5e-4).abs() < 1e-12), "{along}: {near:?}");
         }
         // Neighbours of the same piece still do not.
-        assert!(!shape.apart(&s, 5, 5) && !shape.apart(&s, 30, 30) && !shape.apart(&s, 5, 20));
+        assert!(!shape.may_touch(&s, 5, 5) && !shape.may_touch(&s, 30, 30) && !shape.may_touch(&s, 5, 20));
     }
 
     proptest! {

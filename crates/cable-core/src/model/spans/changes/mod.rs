@@ -60,7 +60,7 @@ pub(in crate::model::spans) fn solve(
                 }
                 caught += 1;
                 if caught <= tuned.max_load_releases
-                    && (release_vanishing_contact(section, context)? || point_load::catch(section, context))
+                    && (release_vanishing_contact(section, context)? || point_load::set_down_at_end(section, context))
                 {
                     continue;
                 }

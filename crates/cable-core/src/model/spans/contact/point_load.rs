@@ -218,10 +218,22 @@ fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Res
     Ok(false)
 }
 
-/// If Newton's method stalls, an end of a contact may have come to a load: then the contact ends
-/// there. Sets down the load that is nearest to an end; returns whether there was one.
-pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &SolveContext) -> bool {
-    let mut best: Option<(f64, usize, usize, f64)> = None;
+/// A load that an end of a contact has come to.
+struct LoadAtEnd {
+    /// Material between the load and the end, m.
+    distance: f64,
+    /// Index of the contact.
+    contact: usize,
+    /// Its end, 0 or 1.
+    side: usize,
+    /// Arc length of the load, m.
+    arc_length: f64,
+}
+
+/// The load nearest to an end of a contact, within the distance at which ends are looked for.
+fn nearest_load_at_end(section: &CableSection, context: &SolveContext) -> Option<LoadAtEnd> {
+    let reach = context.settings.changes.catch_distance_fraction * (section.to - section.from);
+    let mut nearest: Option<LoadAtEnd> = None;
     let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.material[0] == s);
     for (j, c) in section.contacts.iter().enumerate() {
         for side in (0..2).filter(|&side| section.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
@@ -229,25 +241,30 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &Solve
             let inside = |l: &&PointForce| l.arc_length > section.from && l.arc_length < section.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !is_contact(l.arc_length);
             for l in context.loads.iter().filter(near) {
-                let off = (l.arc_length - c.ends.material[side]).abs();
+                let distance = (l.arc_length - c.ends.material[side]).abs();
                 let beside = l.arc_length >= from && l.arc_length <= to;
                 let turned = l.arc_length >= c.ends.material[1].min(c.ends.material[0])
                     && l.arc_length <= c.ends.material[0].max(c.ends.material[1]);
-                if (beside || turned)
-                    && off <= context.settings.changes.catch_distance_fraction * (section.to - section.from)
-                    && best.is_none_or(|b| off < b.0)
-                {
-                    best = Some((off, j, side, l.arc_length));
+                if (beside || turned) && distance <= reach && nearest.as_ref().is_none_or(|n| distance < n.distance) {
+                    nearest = Some(LoadAtEnd { distance, contact: j, side, arc_length: l.arc_length });
                 }
             }
         }
     }
-    let Some((_, j, side, s)) = best else { return false };
+    nearest
+}
+
+/// If Newton's method stalls, an end of a contact may have come to a load: then the contact ends
+/// there. Sets down the load that is nearest to an end; returns whether there was one.
+pub(in crate::model::spans) fn set_down_at_end(section: &mut CableSection, context: &SolveContext) -> bool {
+    let Some(LoadAtEnd { contact: j, side, arc_length: s, .. }) = nearest_load_at_end(section, context) else {
+        return false;
+    };
     let c = &section.contacts[j];
     let e = c.ends;
     let p =
         walk(&context.contact_path(c), e.place[side], (s - e.material[side]) * context.law.stretch(e.tension[side]));
-    let load = lying(c, p, [s, s.next_up()], e.tension[side], FrictionPast::None);
+    let load = resting_load(c, p, [s, s.next_up()], e.tension[side], FrictionPast::None);
     let left = if side == 0 { e.place[1] - p } else { p - e.place[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
@@ -315,7 +332,7 @@ fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> boo
         || !breakpoints.first().zip(breakpoints.last()).is_some_and(|(a, b)| q >= a.coordinate && q <= b.coordinate);
     let (first, second) = c.history.split(&contact_path, q);
     let after = s.next_up();
-    let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
+    let mut load = resting_load(c, q, [s, after], tension, FrictionPast::of(fresh));
     (load.next, load.smooth) = (Connection::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.place[0], rest.ends.material[0], rest.ends.tension[0], rest.history) = (q, after, tension, second);
@@ -341,7 +358,7 @@ fn press_end(section: &mut CableSection, context: &SolveContext, j: usize) -> bo
             continue;
         }
         let (p, s, tension) = (c.ends.place[side], c.ends.material[side], c.ends.tension[side]);
-        let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
+        let load = resting_load(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
         section.contacts.insert(k, load);
         section.contacts[j].next = Connection::Joined;
@@ -366,8 +383,9 @@ impl FrictionPast {
     }
 }
 
-/// A load on the boundary of a contact.
-fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
+/// A load at the coordinate `p` on the boundary of a contact, with material from `s[0]` to `s[1]`
+/// (m) and a tension (N).
+fn resting_load(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
     let fresh = past == FrictionPast::None;
     let ends = Ends { place: [p; 2], material: s, tension: [tension; 2] };
     Contact {

@@ -6,6 +6,8 @@
 //! the tensions of bars jump at the nodes. Two neighbouring tensions are connected by a single
 //! mobilised friction coefficient m, limited to the friction cone.
 
+use std::f64::consts::TAU;
+
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::{
     Breakpoint, ChainRange, Curve, Ends, Mode, SUPPORT_CONTACT_DISTANCE_M, SweepDirection, TensionProfile,
@@ -22,14 +24,28 @@ const SAME_POINT_FRACTION: f64 = 1e-9;
 /// Least material between two contacts, as a fraction of the section.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
+/// A place on a boundary.
+#[derive(Clone, Copy, Debug)]
+struct BoundaryPlace {
+    /// Index of the boundary.
+    curve: usize,
+    chain_range: ChainRange,
+    /// Boundary coordinate p.
+    coordinate: f64,
+}
+
 /// A point of the cable, with the tensions before and after it.
 #[derive(Clone, Copy, Debug)]
 struct AnswerStation {
+    /// Arc length, m.
     arc_length: f64,
+    /// Position, m.
     at: Vec2,
+    /// Tension before and after it, N.
     tension: [f64; 2],
-    /// Boundary, chain and p, if it lies on one.
-    boundary_point: Option<(usize, ChainRange, f64)>,
+    /// Where it lies, if it is on a boundary.
+    boundary: Option<BoundaryPlace>,
+    /// Index of the support that is a pulley here.
     wheel: Option<usize>,
 }
 
@@ -72,7 +88,7 @@ fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<AnswerStation> {
                 arc_length: n.arc_length_m,
                 at: n.at(),
                 tension: [n.tension_n; 2],
-                boundary_point: None,
+                boundary: None,
                 wheel: None,
             }),
         }
@@ -93,8 +109,8 @@ fn pulleys(part: &SectionBounds, context: &SolveContext, instant: &BoundaryCondi
         let curve = q.curve + usize::from(back);
         let chain_range = ChainRange { first: 0, last: 0 };
         let middle = before.normalize() + after.normalize();
-        let p = context.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
-        stations[k].boundary_point = Some((curve, chain_range, p));
+        let coordinate = context.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
+        stations[k].boundary = Some(BoundaryPlace { curve, chain_range, coordinate });
         stations[k].wheel = Some(q.support);
     }
 }
@@ -104,7 +120,7 @@ fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations:
     let near = layout.settings.initial.adopted_contact_distance_m;
     let world = &layout.problem.world;
     let n = stations.len();
-    let mut before: Option<(usize, ChainRange, f64)> = None;
+    let mut before: Option<BoundaryPlace> = None;
     for k in 0..n {
         let along = stations[(k + 1).min(n - 1)].at - stations[k.saturating_sub(1)].at;
         let station = &mut stations[k];
@@ -112,23 +128,24 @@ fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations:
             before = None;
             continue;
         }
-        station.boundary_point = world.signed_gap(station.at, near).filter(|g| g.gap_m.abs() <= near).and_then(|gap| {
+        station.boundary = world.signed_gap(station.at, near).filter(|g| g.gap_m.abs() <= near).and_then(|gap| {
             let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
             let back = cross(along, gap.normal) < 0.0;
             let index = 2 * body + usize::from(back);
             let curve = context.curves.get(index)?;
             let (i, chain_range) = curve.chain(curve.piece_of(gap.feature, station.at)?, context.law.load)?;
             let mut p = curve.project(i, station.at);
-            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
-                p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
+            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.curve == index)) {
+                p += TAU * ((b.coordinate - p) / TAU).ceil().max(0.0);
             }
-            Some((index, chain_range, p))
+            Some(BoundaryPlace { curve: index, chain_range, coordinate: p })
         });
-        before = station.boundary_point;
+        before = station.boundary;
     }
 }
 
-/// A section with contacts where its stations lie.
+/// A section with contacts where its stations lie on boundaries; None if its material does not
+/// suffice for a span, or a span is not solved.
 fn section_of(
     layout: &SectionLayout,
     part: &SectionBounds,
@@ -146,17 +163,17 @@ fn section_of(
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
-        let Some((index, chain_range, p)) = stations[k].boundary_point else {
+        let Some(BoundaryPlace { curve: index, chain_range, coordinate }) = stations[k].boundary else {
             k += 1;
             continue;
         };
-        let (first, mut reached) = (k, p);
+        let (first, mut reached) = (k, coordinate);
         while stations[k].wheel.is_none()
-            && let Some((i, h, p)) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.boundary_point)
-            && (i, h) == (index, chain_range)
-            && p >= reached
+            && let Some(next) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.boundary)
+            && (next.curve, next.chain_range) == (index, chain_range)
+            && next.coordinate >= reached
         {
-            (k, reached) = (k + 1, p);
+            (k, reached) = (k + 1, next.coordinate);
         }
         let curve = &context.curves[index];
         let run = TouchingRun { stations, curve, index, chain_range, first, last: k, within };
@@ -165,7 +182,7 @@ fn section_of(
         }
         k += 1;
     }
-    keep_apart(&mut section)?;
+    separate_contacts(&mut section)?;
     section.forces = vec![Vec2::zeros(); section.contacts.len() + 1];
     for k in 0..section.spans() {
         if section.has_span(k) {
@@ -176,8 +193,9 @@ fn section_of(
     Some(section)
 }
 
-/// Keeps material in order, with some of it in every span.
-fn keep_apart(section: &mut CableSection) -> Option<()> {
+/// Brings the material of the contacts in order, with some of it in every span; None if the section
+/// has too little.
+fn separate_contacts(section: &mut CableSection) -> Option<()> {
     let least = CONTACT_SPACING_FRACTION * (section.to - section.from);
     let mut before = section.from;
     let mut spanned = section.end_conditions[0].has_span();
@@ -207,7 +225,8 @@ struct TouchingRun<'a> {
 }
 
 impl TouchingRun<'_> {
-    /// Makes the contact; the end conditions of the section on it become lying ends.
+    /// The contact with its friction memory; the end conditions of the section on it become lying
+    /// ends. None if a held end is above the boundary and nothing else touches it.
     fn contact(&self, section: &mut CableSection, context: &SolveContext) -> Option<Contact> {
         let mut ends = Ends::at([self.end(section, context, 0)?, self.end(section, context, 1)?]);
         if ends.place[1] < ends.place[0] {
@@ -269,7 +288,8 @@ impl TouchingRun<'_> {
         let mut breakpoints = vec![ends.breakpoint(0)];
         for pair in self.stations[self.first..=self.last].windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
-            let (Some((_, _, p)), Some((_, _, q))) = (a.boundary_point, b.boundary_point) else { continue };
+            let (Some(a_place), Some(b_place)) = (a.boundary, b.boundary) else { continue };
+            let (p, q) = (a_place.coordinate, b_place.coordinate);
             if a.jumps() || b.jumps() {
                 let (middle, arc_length) = (0.5 * (p + q), 0.5 * (a.arc_length + b.arc_length));
                 breakpoints.push(Breakpoint::frictionless(middle, arc_length, 0.5 * (a.tension[1] + b.tension[0])));
@@ -289,7 +309,7 @@ impl TouchingRun<'_> {
         }
         let k = if side == 0 { self.first } else { self.last };
         let station = &self.stations[k];
-        let (_, _, p) = station.boundary_point?;
+        let p = station.boundary?.coordinate;
         let tension = station.tension[side];
         let at_node = Breakpoint::frictionless(p, station.arc_length, tension);
         if self.curve.place(p, self.chain_range).turn == 0.0 {
@@ -299,7 +319,7 @@ impl TouchingRun<'_> {
         let tangent = self.tangent_from(beside, p, side)?;
         let mut q = self.curve.with_tangent(self.curve.locate(p, self.chain_range), tangent);
         if self.curve.is_round() {
-            q += std::f64::consts::TAU * ((p - q) / std::f64::consts::TAU).round();
+            q += TAU * ((p - q) / TAU).round();
         }
         let beyond = if side == 0 { q < p } else { q > p };
         if !beyond {
@@ -313,7 +333,7 @@ impl TouchingRun<'_> {
     /// held above the boundary and nothing else lies.
     fn tip(&self, section: &mut CableSection, side: usize) -> Option<Breakpoint> {
         let k = if side == 0 { self.first } else { self.last };
-        let (_, _, p) = self.stations[k].boundary_point?;
+        let p = self.stations[k].boundary?.coordinate;
         let tension = self.stations[k].tension[side];
         let s = if side == 0 { section.from } else { section.to };
         match section.end_conditions[side] {
@@ -325,7 +345,7 @@ impl TouchingRun<'_> {
                 // The end is held just above the boundary, so the next node is the first that lies.
                 None if self.first < self.last => {
                     let next = &self.stations[if side == 0 { k + 1 } else { k - 1 }];
-                    Some(Breakpoint::frictionless(next.boundary_point?.2, next.arc_length, next.tension[side]))
+                    Some(Breakpoint::frictionless(next.boundary?.coordinate, next.arc_length, next.tension[side]))
                 }
                 None => None,
             },

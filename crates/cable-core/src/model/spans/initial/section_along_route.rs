@@ -64,19 +64,19 @@ impl FirstGuess<'_> {
     fn section(&self) -> Option<CableSection> {
         let Self { layout, part, context, instant, way, .. } = *self;
         if !(way.total() > 0.0) {
-            return bare(part, instant);
+            return single_span(part, instant);
         }
         let end_conditions = [0, 1].map(|side| match part.supports[side] {
             Some(k) => EndCondition::Fixed(instant.places[k]),
             None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
         });
-        let heads = self.lying_ends(end_conditions);
-        let mut material = SpreadAlongRoute::of(self, end_conditions, &heads);
+        let end_contacts = self.lying_ends(end_conditions);
+        let mut material = SpreadAlongRoute::of(self, end_conditions, &end_contacts);
         let [from, to] = part.material;
         let mut section = CableSection { from, to, end_conditions, ..CableSection::default() };
-        if let [Some(a), Some(b)] = &heads {
+        if let [Some(a), Some(b)] = &end_contacts {
             if a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range {
-                return Some(lies_whole(section, context, [a, b], material.tension));
+                return Some(section_on_one_boundary(section, context, [a, b], material.tension));
             }
             // A span from one lying stretch to the next needs some tension.
             let least = layout.settings.initial.laid_tension_weights * context.law.load.norm() * (to - from);
@@ -84,17 +84,18 @@ impl FirstGuess<'_> {
                 material.tension = least;
             }
         }
-        let first = heads[0].as_ref().map_or(0, |h| h.inner_point(way));
-        let last = heads[1].as_ref().map_or(way.points.len() - 1, |h| h.inner_point(way));
+        let first = end_contacts[0].as_ref().map_or(0, |h| h.inner_point(way));
+        let last = end_contacts[1].as_ref().map_or(way.points.len() - 1, |h| h.inner_point(way));
         if first > last {
             return None;
         }
         section.contacts = self.bends(TautString { first, last }, &material)?;
-        let join = if first == last { half_joint(context, &heads, material.tension) } else { 0.0 };
-        for head in heads.iter().flatten() {
-            let contact = self.lying_end_contact(head, join, &material);
-            section.contacts.insert(if head.side == 0 { 0 } else { section.contacts.len() }, contact);
-            section.end_conditions[head.side] = end_tie(end_conditions[head.side], head.coordinates[head.side]);
+        let join = if first == last { half_kink_span(context, &end_contacts, material.tension) } else { 0.0 };
+        for end_contact in end_contacts.iter().flatten() {
+            let contact = self.lying_end_contact(end_contact, join, &material);
+            section.contacts.insert(if end_contact.side == 0 { 0 } else { section.contacts.len() }, contact);
+            section.end_conditions[end_contact.side] =
+                resting_end_condition(end_conditions[end_contact.side], end_contact.coordinates[end_contact.side]);
         }
         section.forces = vec![Vec2::zeros(); section.contacts.len() + 1];
         if join == 0.0 && material.has_free_end() {
@@ -102,7 +103,7 @@ impl FirstGuess<'_> {
         }
         spread(&mut section, context);
         solve_spans(&mut section, context)?;
-        if self.strains_unevenly(&material) && heads.iter().all(Option::is_none) && !material.has_free_end() {
+        if self.strains_unevenly(&material) && end_contacts.iter().all(Option::is_none) && !material.has_free_end() {
             tightening::equalise_tensions(&mut section, context);
         }
         Some(section)
@@ -110,17 +111,17 @@ impl FirstGuess<'_> {
 
     /// The contact at a lying end of the section; `join` is the length of the boundary (m) that it
     /// leaves to a span beyond it.
-    fn lying_end_contact(&self, head: &EndContact, join: f64, material: &SpreadAlongRoute) -> Contact {
+    fn lying_end_contact(&self, end_contact: &EndContact, join: f64, material: &SpreadAlongRoute) -> Contact {
         let [from, to] = self.part.material;
-        let [first, last] = head.coordinates;
-        let inner = material.at(self.way.along[head.inner_point(self.way)]);
+        let [first, last] = end_contact.coordinates;
+        let inner = material.at(self.way.along[end_contact.inner_point(self.way)]);
         let join = smaller(join, 0.5 * (last - first));
-        let (p, s) = if head.side == 0 {
+        let (p, s) = if end_contact.side == 0 {
             ([first, last - join], [from, inner - join])
         } else {
             ([first + join, last], [inner + join, to])
         };
-        contact(self.context, head.curve, head.chain_range, p, s, material.tension)
+        contact(self.context, end_contact.curve, end_contact.chain_range, p, s, material.tension)
     }
 
     /// True if the material that is spread evenly along the route has uneven tensions: if the route
@@ -144,22 +145,25 @@ impl FirstGuess<'_> {
                 [tuned.lying_end_radii, tuned.route_contact_radii]
             };
             let near = near.map(|n| n * layout.problem.radius);
-            lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
-                EndCondition::Hangs(force) => {
-                    let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
-                    force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
+            end_contact_on(context, &layout.problem.world, near, &way.points, side).filter(|h| {
+                match end_conditions[side] {
+                    EndCondition::Hangs(force) => {
+                        let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
+                        force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
+                    }
+                    _ => true,
                 }
-                _ => true,
             })
         })
     }
 
-    /// Contacts where the taut string of the route bends.
+    /// Contacts where the taut string of the route bends; None if the string is not found.
     fn bends(&self, string: TautString, material: &SpreadAlongRoute) -> Option<Vec<Contact>> {
         let Self { context, way, .. } = *self;
         let mut wraps = self.wraps(string)?;
         let mut contacts = Vec::with_capacity(wraps.len() + 2);
-        let rounds = stretched(context, &mut wraps, [way.points[string.first], way.points[string.last]]);
+        let rounds =
+            extend_to_neighbouring_corners(context, &mut wraps, [way.points[string.first], way.points[string.last]]);
         for (k, wrap) in wraps.iter().enumerate() {
             let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
             let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
@@ -167,8 +171,8 @@ impl FirstGuess<'_> {
             // The turn at a wheel is known from the rounds beside it; an eye turns the cable either
             // way.
             let turn = match (wrap.wheel, rounds[k + 1][0]) {
-                (Some(_), (centre, radius, sense)) if radius > 0.0 => {
-                    turn_through_centre(sense, centre - rounds[k][1].0, rounds[k + 2][0].0 - centre)
+                (Some(_), Round { centre, radius, sense }) if radius > 0.0 => {
+                    turn_through_centre(sense, centre - rounds[k][1].centre, rounds[k + 2][0].centre - centre)
                 }
                 _ => wrap.turn,
             };
@@ -232,7 +236,7 @@ impl FirstGuess<'_> {
                 let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
                 let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
                 let (u, v) = (b.corner.at - before, after - b.corner.at);
-                push(&mut out, context, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
+                add_bend(&mut out, context, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
             }
             if let Some(q) = pulley {
                 let curve = q.curve + usize::from(q.facing < 0.0);
@@ -273,11 +277,12 @@ struct SpreadAlongRoute {
 }
 
 impl SpreadAlongRoute {
-    fn of(guess: &FirstGuess<'_>, end_conditions: [EndCondition; 2], heads: &[Option<EndContact>; 2]) -> Self {
+    /// The spread of a guess's material, with the tension that its length or its free end gives.
+    fn of(guess: &FirstGuess<'_>, end_conditions: [EndCondition; 2], end_contacts: &[Option<EndContact>; 2]) -> Self {
         let FirstGuess { part, context, instant, way, .. } = *guess;
         let ([from, to], total) = (part.material, way.total());
         let loose = part.supports.map(|support| support.is_none());
-        let drawn = |side: usize| match (&heads[side], end_conditions[side]) {
+        let drawn = |side: usize| match (&end_contacts[side], end_conditions[side]) {
             (None, EndCondition::Hangs(force)) => (force + context.law.load * tail(part, instant, way, side)).norm(),
             _ => 0.0,
         };
@@ -320,7 +325,7 @@ pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, context: 
 }
 
 /// A section that lies on one boundary from end to end.
-fn lies_whole(
+fn section_on_one_boundary(
     mut section: CableSection,
     context: &SolveContext,
     [a, b]: [&EndContact; 2],
@@ -335,8 +340,9 @@ fn lies_whole(
         tension,
     );
     c.wheel = None;
-    section.end_conditions = [0, 1]
-        .map(|side| end_tie(section.end_conditions[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
+    section.end_conditions = [0, 1].map(|side| {
+        resting_end_condition(section.end_conditions[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] })
+    });
     section.contacts.push(c);
     section.forces = vec![Vec2::zeros(); 2];
     spread(&mut section, context);
@@ -350,24 +356,22 @@ fn lies_whole(
     section
 }
 
-/// Half of the length Tδ/w of the span that joins two stretches that meet at a kink of δ, m; 0 if
-/// there is only one.
-fn half_joint(context: &SolveContext, heads: &[Option<EndContact>; 2], tension: f64) -> f64 {
-    match heads {
+/// Half of the length (m) of the span that joins two stretches which meet at a kink of δ (rad): the
+/// tension T over the weight w per length gives its length Tδ/w. 0 if there is only one stretch.
+fn half_kink_span(context: &SolveContext, end_contacts: &[Option<EndContact>; 2], tension: f64) -> f64 {
+    match end_contacts {
         [Some(a), Some(b)] => {
-            let (u, v) = (
-                context.curves[a.curve].place(a.coordinates[1], a.chain_range),
-                context.curves[b.curve].place(b.coordinates[0], b.chain_range),
-            );
-            let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-            0.5 * tension * turn / context.law.load.norm()
+            let before = context.curves[a.curve].place(a.coordinates[1], a.chain_range).tangent;
+            let after = context.curves[b.curve].place(b.coordinates[0], b.chain_range).tangent;
+            let kink = cross(before, after).atan2(before.dot(&after)).abs();
+            0.5 * tension * kink / context.law.load.norm()
         }
         _ => 0.0,
     }
 }
 
 /// A section whose ends are in one place: a single span.
-fn bare(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSection> {
+fn single_span(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSection> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
     let end_conditions = [EndCondition::Fixed(instant.places[a?]), EndCondition::Fixed(instant.places[b?])];
@@ -398,15 +402,17 @@ fn tail(part: &SectionBounds, instant: &BoundaryConditions, way: &RoutePolyline,
     if length < whole { length } else { whole }
 }
 
-/// The end condition of an end that lies at p.
-fn end_tie(tie: EndCondition, p: f64) -> EndCondition {
-    match tie {
+/// The end condition of an end that lies at the boundary coordinate p.
+fn resting_end_condition(end: EndCondition, p: f64) -> EndCondition {
+    match end {
         EndCondition::Fixed(_) => EndCondition::Lies(p),
         EndCondition::Hangs(force) => EndCondition::Loose(force),
         other => other,
     }
 }
 
+/// A contact between two boundary coordinates with material from `s[0]` to `s[1]` (m) under one
+/// tension (N); it sticks where there is friction.
 fn contact(
     context: &SolveContext,
     curve: usize,
@@ -440,9 +446,15 @@ impl EndContact {
     }
 }
 
-/// The first points of a route (the last ones for side 1) that lie on one chain, within the
-/// distances `near` (m) for the end and the others; None if the end does not lie.
-fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<EndContact> {
+/// The contact of an end of a route (side 0 or 1): its outermost points on one chain, within the
+/// distances `near` (m) for the end and for the others. None if the end does not lie.
+fn end_contact_on(
+    context: &SolveContext,
+    world: &World,
+    near: [f64; 2],
+    points: &[Vec2],
+    side: usize,
+) -> Option<EndContact> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
     let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
@@ -466,8 +478,9 @@ fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2],
     })
 }
 
-/// Adds a bend to the last wrap if it continues that, else as a new wrap.
-fn push(out: &mut Vec<RouteWrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
+/// Adds a bend, at the length `w` (m) of the route with a `turn` (rad), to the last wrap if it
+/// continues that, else as a new wrap. None if no boundary has the corner.
+fn add_bend(out: &mut Vec<RouteWrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = context.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
@@ -490,7 +503,7 @@ fn push(out: &mut Vec<RouteWrap>, context: &SolveContext, b: &PathCorner, w: f64
 ///
 /// A string without thickness just passes such a corner, whereas a cable with a radius bends round
 /// it: along the edge the direction is constant, so Newton's method cannot move an end across it.
-fn stretched(context: &SolveContext, wraps: &mut [RouteWrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+fn extend_to_neighbouring_corners(context: &SolveContext, wraps: &mut [RouteWrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
     let mut found = rounds(context, wraps, ends[0], ends[1]);
     // The loop terminates: every pass but the last extends a wrap within its chain.
     loop {
@@ -517,32 +530,47 @@ fn stretched(context: &SolveContext, wraps: &mut [RouteWrap], ends: [Vec2; 2]) -
     found
 }
 
-/// A circle: centre, radius, sense.
-type Round = (Vec2, f64, f64);
+/// A circle on which a string turns, or a point if its radius is 0.
+#[derive(Clone, Copy)]
+struct Round {
+    centre: Vec2,
+    /// Radius, m.
+    radius: f64,
+    /// 1 or −1: the side on which the string passes it, as in
+    /// [`crate::model::spans::boundary::Curve`].
+    sense: f64,
+}
+
+impl Round {
+    fn point(at: Vec2) -> Self {
+        Self { centre: at, radius: 0.0, sense: 1.0 }
+    }
+}
 
 /// The circles on which the string arrives at each wrap and leaves it; points at both ends.
 fn rounds(context: &SolveContext, wraps: &[RouteWrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
-    let mut out = vec![[(start, 0.0, 1.0); 2]];
+    let mut out = vec![[Round::point(start); 2]];
     for s in wraps {
         let curve = &context.curves[s.curve];
         out.push(s.pieces.map(|i| {
             let place = curve.place_on(i, 0.0);
-            (place.at - place.normal * place.stretch, place.stretch, curve.sense)
+            let radius = place.stretch;
+            Round { centre: place.at - place.normal * radius, radius, sense: curve.sense }
         }));
     }
-    out.push([(end, 0.0, 1.0); 2]);
+    out.push([Round::point(end); 2]);
     out
 }
 
 /// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ −
 /// σ₂r₂.
 fn tangent(a: Round, b: Round) -> Vec2 {
-    let d = b.0 - a.0;
-    let far = d.norm();
-    if far == 0.0 {
+    let d = b.centre - a.centre;
+    let distance = d.norm();
+    if distance == 0.0 {
         return Vec2::x();
     }
-    let aside = ((b.2 * b.1 - a.2 * a.1) / far).clamp(-1.0, 1.0).asin();
-    let (sin, cos) = aside.sin_cos();
-    Vec2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y) / far
+    let tilt = ((b.sense * b.radius - a.sense * a.radius) / distance).clamp(-1.0, 1.0).asin();
+    let (sin, cos) = tilt.sin_cos();
+    Vec2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y) / distance
 }

@@ -57,14 +57,14 @@ impl DrainedRoute {
         for pair in points.windows(2) {
             draining.fall(pair[0], pair[1])?;
         }
-        draining.hang(last.x, last.y);
+        draining.add_plumb_leg(last.x, last.y);
         if !draining.legs.iter().any(|leg| matches!(leg, RouteLeg::Lies { .. })) {
             // The ends are plumb above each other, or in one place: the route goes down to the
             // surface below both. Down and up do not cancel here, because the surplus lies there.
             (draining.height, draining.legs) = (first.y, Vec::new());
-            draining.down(first.x, smaller(first.y, last.y))?;
+            draining.slide_down(first.x, smaller(first.y, last.y))?;
             let down = draining.legs.clone();
-            draining.hang(last.x, last.y);
+            draining.add_plumb_leg(last.x, last.y);
             // It goes up again over the surface on which it came down.
             let last_lying = down.iter().rposition(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
             let from = down.iter().position(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
@@ -72,7 +72,7 @@ impl DrainedRoute {
                 draining.legs.truncate(down.len());
                 draining.legs.extend(down[from..last_lying].iter().rev().map(|leg| leg.back()));
                 draining.height = draining.start_of(&down[from]);
-                draining.rise(last.x, last.y);
+                draining.add_plumb_leg_up(last.x, last.y);
             }
         }
         Some(Self { legs: draining.legs })
@@ -82,7 +82,7 @@ impl DrainedRoute {
     pub fn plumb_down(surfaces: &UpperSurfaces, bodies: &[Body], frame: LoadFrame, from: Vec2) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: at.y };
-        draining.down(at.x, at.y)?;
+        draining.slide_down(at.x, at.y)?;
         Some(Self { legs: draining.legs })
     }
 
@@ -91,9 +91,8 @@ impl DrainedRoute {
         Self { legs: self.legs.iter().rev().map(RouteLeg::back).collect() }
     }
 
-    /// Lays the ends that nothing holds on what is below them: of a route that ends above it no
-    /// cable stays in the air.
-    pub fn lay_free_ends(&mut self, has_support: [bool; 2]) {
+    /// Removes the plumb legs of ends that nothing holds: they fall on what is below them.
+    pub fn drop_free_ends(&mut self, has_support: [bool; 2]) {
         let hangs = |leg: Option<&RouteLeg>| matches!(leg, Some(RouteLeg::Hangs { .. }));
         if !has_support[0] && hangs(self.legs.first()) {
             self.legs.remove(0);
@@ -105,15 +104,16 @@ impl DrainedRoute {
 }
 
 impl RouteDraining<'_> {
-    /// Moves on to the first surface below a point.
-    fn down(&mut self, u: f64, v: f64) -> Option<()> {
+    /// Moves on to the first surface below a point, and down to where friction or a kink stops the
+    /// cable; None if it falls off everything.
+    fn slide_down(&mut self, u: f64, v: f64) -> Option<()> {
         let here = self.surfaces.over(u - NONE_M, u + NONE_M).filter_map(|k| {
             let surface = self.surfaces.all.get(k)?;
             let u = larger(surface.range[0], smaller(u, surface.range[1]));
             Some((k, u, surface.height(u))).filter(|f| f.2 <= v + NONE_M)
         });
         let (mut surface, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
-        self.hang(u, height);
+        self.add_plumb_leg(u, height);
         self.height = height;
         let mut u = on;
         // Cable that does not stick there slides down, to the first place that holds it.
@@ -125,7 +125,7 @@ impl RouteDraining<'_> {
             }
             let end = here.range[usize::from(slope < 0.0)];
             if (end - u).abs() > NONE_M {
-                self.lie(surface, [u, end]);
+                self.add_lying_leg(surface, [u, end]);
             }
             let beyond = end + if slope < 0.0 { 2.0 * NONE_M } else { -2.0 * NONE_M };
             let next = self.surfaces.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
@@ -134,7 +134,7 @@ impl RouteDraining<'_> {
                 Some((k, on, other.height(on))).filter(|f| f.2 <= self.height + NONE_M)
             });
             let (other, on, height) = next.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
-            self.hang(end, height);
+            self.add_plumb_leg(end, height);
             // In a kink it stays.
             let level = (self.height - height).abs() <= NONE_M;
             let rises = self.surfaces.all[other].slope(on) * slope < 0.0;
@@ -155,7 +155,8 @@ impl RouteDraining<'_> {
         }
     }
 
-    /// Lets a leg of the route fall.
+    /// Lets the stretch of the route between two points fall on the surfaces below it; None if
+    /// there is none below a part of it.
     fn fall(&mut self, from: Vec2, to: Vec2) -> Option<()> {
         let (low, high) = (smaller(from.x, to.x), larger(from.x, to.x));
         if high - low <= NONE_M {
@@ -188,8 +189,8 @@ impl RouteDraining<'_> {
         }
         for (surface, [a, b]) in fallen {
             let u = if to.x < from.x { [b, a] } else { [a, b] };
-            self.hang(u[0], self.surfaces.all[surface].height(u[0]));
-            self.lie(surface, u);
+            self.add_plumb_leg(u[0], self.surfaces.all[surface].height(u[0]));
+            self.add_lying_leg(surface, u);
         }
         Some(())
     }
@@ -239,14 +240,15 @@ impl RouteDraining<'_> {
     }
 
     /// Adds a plumb leg upwards.
-    fn rise(&mut self, u: f64, to: f64) {
+    fn add_plumb_leg_up(&mut self, u: f64, to: f64) {
         let v = [self.height, to];
         if v[1] - v[0] > NONE_M {
             self.legs.push(RouteLeg::Hangs { u, v });
         }
     }
 
-    fn hang(&mut self, u: f64, to: f64) {
+    /// Adds a plumb leg to a height, or changes the last leg if that is plumb.
+    fn add_plumb_leg(&mut self, u: f64, to: f64) {
         let v = [self.height, to];
         if (v[1] - v[0]).abs() <= NONE_M {
             return;
@@ -262,7 +264,8 @@ impl RouteDraining<'_> {
         }
     }
 
-    fn lie(&mut self, surface: usize, u: [f64; 2]) {
+    /// Adds a leg on a surface, or changes the last leg if that is on it.
+    fn add_lying_leg(&mut self, surface: usize, u: [f64; 2]) {
         self.height = self.surfaces.all[surface].height(u[1]);
         if let Some(RouteLeg::Lies { surface: before, u: known }) = self.legs.last_mut()
             && *before == surface

@@ -83,7 +83,7 @@ pub(in crate::model::spans) fn loose_section(
     let drawn = drawn[0] + drawn[1];
     let drape = SlackSolver { context, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from), sought };
     let section = |mut drained: DrainedRoute| {
-        drained.lay_free_ends(ends);
+        drained.drop_free_ends(ends);
         let lines = drape.lines(&surfaces, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
         let parts = pay_out(parts, &drape, part.material, drawn, ends)?;

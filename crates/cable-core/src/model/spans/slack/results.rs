@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::results::{Nodes, ShapePoint};
-use crate::model::spans::boundary::{Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::boundary::{BoundaryPoint, Heap, LooseSection, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::SolveContext;
 use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
@@ -21,13 +21,29 @@ struct LooseRun {
     /// Index of the boundary.
     curve: usize,
     samples: Vec<ContactSample>,
-    at: Vec<(f64, Vec2)>,
-    normal: f64,
+    /// Middle of each piece: its arc length (m) and position (m).
+    middles: Vec<(f64, Vec2)>,
+    /// Sum of the normal forces, N.
+    normal_force: f64,
+    /// Sum of the normal forces as vectors, N.
     push: Vec2,
-    along: f64,
-    turned: f64,
+    /// Sum of the forces along the boundary, N.
+    tangential_force: f64,
+    /// Turn of the cable on arcs, rad.
+    turn: f64,
+    /// Arc length of both ends, m.
     ends: [f64; 2],
+    /// Tension at both ends, N.
     tension: [f64; 2],
+}
+
+/// A point of lying cable.
+struct LyingPoint {
+    place: BoundaryPoint,
+    /// Arc length, m.
+    arc_length: f64,
+    /// Tension, N.
+    tension: f64,
 }
 
 impl LooseSection {
@@ -42,7 +58,7 @@ impl LooseSection {
         let mut goes_on = false;
         for part in &self.parts {
             match &part.form {
-                SlackForm::Hangs(ends) => hang(context, part, *ends, nodes),
+                SlackForm::Hangs(ends) => add_plumb_leg(context, part, *ends, nodes),
                 SlackForm::Spans { from, force } => {
                     let chain = context.chain(part.arc_lengths[0], part.arc_lengths[1]);
                     chain.spans(*force, *from).for_each(|(s, at, shape)| nodes.catenary(s, at, &shape));
@@ -52,7 +68,7 @@ impl LooseSection {
                         runs.push(LooseRun::new(s.curve, part));
                     }
                     if let Some(run) = runs.last_mut() {
-                        run.lie(context, part, s, nodes, cable_radius);
+                        run.add_stretch(context, part, s, nodes, cable_radius);
                     }
                 }
                 SlackForm::Heap(heap) => {
@@ -68,7 +84,8 @@ impl LooseSection {
     }
 }
 
-fn hang(context: &SolveContext, part: &SlackPart, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
+/// Adds the nodes of cable that hangs plumb between two points (m), stretched by its own weight.
+fn add_plumb_leg(context: &SolveContext, part: &SlackPart, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
     let (law, whole) = (&context.law, part.arc_lengths[1] - part.arc_lengths[0]);
     let weight = law.load.norm();
     let along = (to - from).normalize();
@@ -118,6 +135,7 @@ impl SlackPart {
 }
 
 impl SlackForm {
+    /// The greatest coefficient of friction of the boundaries that carry it.
     pub(super) fn friction(&self, context: &SolveContext) -> f64 {
         match self {
             Self::Hangs(_) | Self::Spans { .. } => 0.0,
@@ -134,21 +152,24 @@ impl LooseRun {
         Self { curve, ends: part.arc_lengths, tension: part.tension, ..Self::default() }
     }
 
+    /// One run for each edge that carries a heap.
     fn of_heap<'a>(part: &'a SlackPart, heap: &'a Heap) -> impl Iterator<Item = Self> + 'a {
         heap.edges.iter().flatten().map(|b| {
             let middle = 0.5 * (part.arc_lengths[0] + part.arc_lengths[1]);
             Self {
-                at: vec![(middle, heap.at)],
+                middles: vec![(middle, heap.at)],
                 samples: vec![ContactSample::new(middle, b.force())],
-                normal: b.press,
+                normal_force: b.press,
                 push: b.normal,
-                along: b.friction,
+                tangential_force: b.friction,
                 ..Self::new(b.curve, part)
             }
         })
     }
 
-    fn lie(
+    /// Adds a stretch that lies on the boundary of this run: its nodes, and the forces that carry
+    /// it from node to node.
+    fn add_stretch(
         &mut self,
         context: &SolveContext,
         part: &SlackPart,
@@ -165,49 +186,56 @@ impl LooseRun {
             false => NODES,
         };
         (self.ends[1], self.tension[1]) = (part.arc_lengths[1], part.tension[1]);
-        self.turned += start.turn * (p1 - p0);
+        self.turn += start.turn * (p1 - p0);
         // If there is more material than length, it is folded evenly.
         let material = part.arc_lengths[1] - part.arc_lengths[0];
-        let at = |k: usize| {
+        let point = |k: usize| {
             let f = k as f64 / count as f64;
             let place = s.place(context, p0 + (p1 - p0) * f);
             if part.is_loose() {
-                return (place, part.arc_lengths[0] + material * f, 0.0);
+                return LyingPoint { place, arc_length: part.arc_lengths[0] + material * f, tension: 0.0 };
             }
-            let way = s.slide(context, p0, p0 + (p1 - p0) * f, part.tension[0], s.mobilised);
-            match k {
-                0 => (place, part.arc_lengths[0], part.tension[0]),
-                k if k == count => (place, part.arc_lengths[1], part.tension[1]),
-                _ => (place, part.arc_lengths[0] + way.material, way.tension),
-            }
+            let slide = s.slide(context, p0, p0 + (p1 - p0) * f, part.tension[0], s.mobilised);
+            let (arc_length, tension) = match k {
+                0 => (part.arc_lengths[0], part.tension[0]),
+                k if k == count => (part.arc_lengths[1], part.tension[1]),
+                _ => (part.arc_lengths[0] + slide.material, slide.tension),
+            };
+            LyingPoint { place, arc_length, tension }
         };
-        let mut before = at(0);
+        let mut before = point(0);
         for k in 0..=count {
-            let here = at(k);
-            let (place, arc_length, tension) = here;
-            let curvature = if turns { place.turn * law.stretch(tension) / place.stretch } else { 0.0 };
-            nodes.push(ShapePoint { arc_length, at: place.at, force: place.tangent * tension, curvature });
+            let here = point(k);
+            let LyingPoint { place, arc_length, tension } = &here;
+            let curvature = if turns { place.turn * law.stretch(*tension) / place.stretch } else { 0.0 };
+            nodes.push(ShapePoint {
+                arc_length: *arc_length,
+                at: place.at,
+                force: place.tangent * *tension,
+                curvature,
+            });
             if k > 0 {
-                let own = law.load * (arc_length - before.1);
-                let force = before.0.tangent * before.2 - place.tangent * tension - own;
+                let weight = law.load * (arc_length - before.arc_length);
+                let force = before.place.tangent * before.tension - place.tangent * *tension - weight;
                 let f = (k as f64 - 0.5) / count as f64;
                 let middle = s.place(context, p0 + (p1 - p0) * f);
                 let press = force.dot(&middle.normal);
-                self.normal += press;
+                self.normal_force += press;
                 self.push += middle.normal * press;
-                self.along += force.dot(&middle.tangent);
-                let s = 0.5 * (before.1 + arc_length);
-                self.samples.push(ContactSample::new(s, force));
-                self.at.push((s, middle.at));
+                self.tangential_force += force.dot(&middle.tangent);
+                let middle_arc_length = 0.5 * (before.arc_length + arc_length);
+                self.samples.push(ContactSample::new(middle_arc_length, force));
+                self.middles.push((middle_arc_length, middle.at));
             }
             before = here;
         }
     }
 
+    /// The report of the contact, with the index of the obstacle; None for a contact of round-off.
     fn report(self, context: &SolveContext) -> Option<(usize, ContactReport)> {
         let curve = &context.curves[self.curve];
         let middle = 0.5 * (self.ends[0] + self.ends[1]);
-        let nearest = self.at.iter().min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
+        let nearest = self.middles.iter().min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
         let (_, at) = nearest.filter(|_| self.ends[1] - self.ends[0] > NONE_M * LEAST_CONTACT_NONES)?;
         let unit = self.push.try_normalize(0.0)?;
         let mut report = ContactReport {
@@ -215,10 +243,10 @@ impl LooseRun {
             y_m: at.y,
             arc_length_m: middle,
             normal: [unit.x, unit.y],
-            normal_n: self.normal,
-            friction_n: self.along,
+            normal_n: self.normal_force,
+            friction_n: self.tangential_force,
             state: if curve.friction > 0.0 { ContactState::Stick } else { ContactState::Slip },
-            turn_deg: self.turned.to_degrees(),
+            turn_deg: self.turn.to_degrees(),
             tension_before_n: self.tension[0],
             tension_after_n: self.tension[1],
             begins_m: self.ends[0],
