@@ -269,29 +269,11 @@ pub(super) fn minimise(
     }
 }
 
-/// A start for a single piece of unit weight and unit length (w = l = 1) with a chord of dx ≥ 0.
+/// First guess of the horizontal and the vertical force at the start of a single piece, in units of
+/// its weight; `eps` is weight over EA. Lengths are in units of the piece: its chord has dx ≥ 0.
 pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
     let chord = (dx * dx + dz * dz).sqrt();
-    // Nearly taut: elastic stretch + the excess of a flat parabola make up the difference,
-    // εT = (c − 1) + p²/24T², p the load across the chord. One positive root; Newton from above.
-    let p2 = if chord > 0.0 { (dx / chord) * (dx / chord) / 24.0 } else { 0.0 };
-    let slack = 1.0 - chord;
-    let mut t = if slack > 0.0 {
-        let rigid = (p2 / slack).sqrt();
-        if eps > 0.0 { rigid.min((p2 / eps).cbrt()) } else { rigid }
-    } else if eps > 0.0 {
-        -slack / eps + (p2 / eps).cbrt()
-    } else {
-        (p2 / (24.0 * f64::EPSILON)).sqrt()
-    };
-    if eps > 0.0 {
-        for _ in 0..4 {
-            let slope = (3.0 * eps * t + 2.0 * slack) * t;
-            if slope > 0.0 {
-                t -= ((eps * t + slack) * t * t - p2) / slope;
-            }
-        }
-    }
+    let t = parabola_tension([dx, chord], eps);
     if t > LEAST_PARABOLA_TENSION_WEIGHTS {
         return (t * dx / chord, t * dz / chord - 0.5);
     }
@@ -303,7 +285,7 @@ pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
         return (t.max(LEAST_PLUMB_GUESS) * dx / chord.max(f64::MIN_POSITIVE), vertical(dz, eps));
     }
     let y = ((1.0 - z) * (1.0 + z)).sqrt() * l / dx;
-    let lambda = if y < 3.0 {
+    let lambda = if y < MAX_SERIES_SLACK_RATIO {
         (6.0 * (y - 1.0)).max(LEAST_GUESS_SQUARE).sqrt()
     } else {
         let ln = (2.0 * y).ln();
@@ -312,6 +294,38 @@ pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
     (0.5 * dx / (lambda + 0.5 * eps * dx), 0.5 * (z / lambda.tanh() - 1.0))
 }
 
+/// Tension of a nearly taut piece as [`guess`] has it, in units of its weight: elastic stretch and
+/// the excess of a flat parabola make up the difference of length and chord c, εT = (c − 1) +
+/// p²/24T², with p the load across the chord. It has one positive root, found by Newton's method
+/// from above.
+fn parabola_tension([dx, chord]: [f64; 2], eps: f64) -> f64 {
+    let p2 = if chord > 0.0 { (dx / chord) * (dx / chord) / 24.0 } else { 0.0 };
+    let slack = 1.0 - chord;
+    let mut t = if slack > 0.0 {
+        let rigid = (p2 / slack).sqrt();
+        if eps > 0.0 { rigid.min((p2 / eps).cbrt()) } else { rigid }
+    } else if eps > 0.0 {
+        -slack / eps + (p2 / eps).cbrt()
+    } else {
+        (p2 / (24.0 * f64::EPSILON)).sqrt()
+    };
+    if eps > 0.0 {
+        for _ in 0..PARABOLA_ITERATIONS {
+            let slope = (3.0 * eps * t + 2.0 * slack) * t;
+            if slope > 0.0 {
+                t -= ((eps * t + slack) * t * t - p2) / slope;
+            }
+        }
+    }
+    t
+}
+
+/// Newton steps for the tension of a flat parabola. A choice, tuned on nothing: the guess need not
+/// be exact.
+const PARABOLA_ITERATIONS: usize = 4;
+/// Ratio y = sinh λ/λ of a slack guess above which λ is that of large λ, ln 2y + ln ln 2y, and
+/// below which it is that of the series 1 + λ²/6. A choice, tuned on nothing.
+const MAX_SERIES_SLACK_RATIO: f64 = 3.0;
 /// Above this tension (in units of the weight) a span is guessed as a flat parabola. Between 0.3
 /// and 2 the mean number of iterations over the grid changes by less than one.
 const LEAST_PARABOLA_TENSION_WEIGHTS: f64 = 0.6;

@@ -31,7 +31,7 @@ pub(super) fn limits(cable: &Cable, answer: &CableSolution, breaks: &[Break], ou
         Some(peaks) => jerk(cable, answer, &peaks, breaks, out),
         None => {
             if let Some(top) = worst(&answer.nodes, |n| n.tension_n) {
-                tension(cable, top, out);
+                warn_tension(cable, top, out);
             }
         }
     }
@@ -150,7 +150,8 @@ pub(super) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
     }
 }
 
-fn tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
+/// Appends a warning if the node with the greatest tension is above a limit of the cable.
+fn warn_tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
     let (cause, limit) = if top.tension_n > cable.breaking_tension_n {
         (WarningCause::AboveBreaking { mean: None }, cable.breaking_tension_n)
     } else if top.tension_n > cable.service_tension_n {

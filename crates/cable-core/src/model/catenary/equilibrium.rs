@@ -79,7 +79,7 @@ pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>
     let (mut lifted, mut near) = (None, None);
     for _ in 0..layout.settings.max_iterations {
         let slide = SlidingProblem { problem: p, layout, arcs: &arcs };
-        let found = contact(&slide, rest_points, sigma, near, modes)?;
+        let found = solve_with_friction(&slide, rest_points, sigma, near, modes)?;
         iterations += found.iterations;
         let m = |k: usize| required_friction(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
@@ -97,20 +97,20 @@ pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>
     }
 }
 
-/// The mobilised friction m of a pulley: on a sticking wheel the single m of the whole arc that
-/// connects both tensions, with the weight on the arc. With the m of a point, ln(T₂/T₁)/turn, the
-/// material on the wheel would jump when it begins to slip, by 0.1 mm in one of 300 random wheels,
-/// for which neither state was then an equilibrium.
-pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k: usize, mode: PulleyMode) -> f64 {
-    let (Some(b), Some(a)) = SlidingProblem::forces(s, k) else { return 0.0 };
+/// The mobilised friction m of pulley `k`, 0 where the cable does not pass it: on a sticking wheel
+/// the single m of the whole arc that connects both tensions, with the weight on the arc. With the
+/// m of a point, ln(T₂/T₁)/turn, the material on the wheel would jump when it begins to slip, by
+/// 0.1 mm in one of 300 random wheels, for which neither state was then an equilibrium.
+pub(super) fn required_friction(slide: &SlidingProblem<'_>, spans: &SpanSolutions, k: usize, mode: PulleyMode) -> f64 {
+    let (Some(before), Some(after)) = SlidingProblem::forces(spans, k) else { return 0.0 };
     if let PulleyMode::Slip(m) = mode {
         return m;
     }
-    let turn = slide.turn(k, b, a);
+    let turn = slide.turn(k, before, after);
     let mut m = 0.0;
     // The slope of the excess by m is the turn but for the weight.
     for _ in 0..slide.layout.settings.max_iterations {
-        let change = if turn > 0.0 { slide.excess(k, b, a, m).0 / turn } else { 0.0 };
+        let change = if turn > 0.0 { slide.excess(k, before, after, m).0 / turn } else { 0.0 };
         m += change;
         if !(change.abs() > CONE_TOLERANCE) {
             break;
@@ -119,6 +119,8 @@ pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k
     m
 }
 
+/// The error of a solve that found no balance, at an anchor, with the greatest unbalanced tension
+/// (N).
 fn not_converged(p: &Problem, layout: &SupportLayout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
     let place = layout.anchors.get(anchor).map(|a| Place {
         arc_length_m: a.material_point.unwrap_or(f64::NAN),
@@ -135,7 +137,7 @@ fn not_converged(p: &Problem, layout: &SupportLayout, anchor: usize, iterations:
 
 /// Finds the equilibrium with friction: each pulley sticks or slips as its friction cone and its
 /// slip direction require.
-fn contact(
+fn solve_with_friction(
     slide: &SlidingProblem<'_>,
     rest_points: &[f64],
     mut sigma: Vec<f64>,
@@ -213,17 +215,29 @@ fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[PulleyMode]
     Err(not_converged(slide.problem, slide.layout, 0, iterations, f64::NAN))
 }
 
-/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative
-/// residual.
-fn rows(
+/// The balance of every anchor.
+struct BalanceRows {
+    /// Residual of each; zero where nothing slides.
+    residuals: Vec<f64>,
+    /// Slopes of each by the material at the anchors before, here and after; 0, 1, 0 where nothing
+    /// slides.
+    slopes: Vec<Row>,
+    /// Greatest residual as a fraction of the tension.
+    worst_fraction: f64,
+    /// Greatest unbalanced tension, N.
+    worst_n: f64,
+}
+
+/// The balance with the given modes; None if a span has no force.
+fn balance_rows(
     slide: &SlidingProblem<'_>,
     s: &SpanSolutions,
     modes: &[PulleyMode],
     form: BalanceForm,
-) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
+) -> Option<BalanceRows> {
     let n = modes.len();
     let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
-    let (mut worst, mut newtons) = (0.0f64, 0.0f64);
+    let (mut worst_fraction, mut worst_n) = (0.0f64, 0.0f64);
     for k in 0..n {
         let PulleyMode::Slip(m) = modes[k] else { continue };
         let (rk, mut row) = slide.row(s, k, m, form)?;
@@ -238,11 +252,11 @@ fn rows(
             BalanceForm::Energy => rk.abs() / (slide.problem.thermal_stretch * tension),
             BalanceForm::SlipLaw => rk.abs(),
         };
-        worst = larger(worst, relative);
-        newtons = larger(newtons, relative * tension);
+        worst_fraction = larger(worst_fraction, relative);
+        worst_n = larger(worst_n, relative * tension);
         (r[k], j[k]) = (rk, row);
     }
-    Some((r, j, worst, newtons))
+    Some(BalanceRows { residuals: r, slopes: j, worst_fraction, worst_n })
 }
 
 /// −J⁻¹ r for a three-diagonal J, by elimination; in the form of an energy the pivots are lifted
@@ -354,7 +368,8 @@ fn descend(
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
     let (mut iterations, mut before) = (s.iterations, f64::INFINITY);
     for _ in 0..layout.settings.max_iterations {
-        let (r, j, worst, newtons) = rows(slide, &s, modes, form).ok_or_else(|| lost(iterations))?;
+        let BalanceRows { residuals: r, slopes: j, worst_fraction: worst, worst_n } =
+            balance_rows(slide, &s, modes, form).ok_or_else(|| lost(iterations))?;
         // Newton's method gains far more than a half there, unless what is left is rounding.
         let rounding = worst <= ACCEPTED_BALANCE_FRACTION && worst > 0.5 * before;
         before = worst;
@@ -381,14 +396,14 @@ fn descend(
             continue;
         }
         if !(worst <= ACCEPTED_BALANCE_FRACTION) {
-            return Err(not_converged(slide.problem, layout, 0, iterations, newtons));
+            return Err(not_converged(slide.problem, layout, 0, iterations, worst_n));
         }
-        let Some(way) = runs_away(&j) else { return Ok(end(sigma, s, newtons)) };
+        let Some(way) = runs_away(&j) else { return Ok(end(sigma, s, worst_n)) };
         if form == BalanceForm::SlipLaw {
             return Err(lost(iterations));
         }
         let next = leave_unstable(slide, &sigma, &s, &way, first);
-        *left = Some(Equilibrium { runs_away: true, ..end(sigma, s, newtons) });
+        *left = Some(Equilibrium { runs_away: true, ..end(sigma, s, worst_n) });
         (sigma, s) = next.ok_or_else(|| lost(iterations))?;
         iterations += s.iterations;
     }
@@ -418,7 +433,8 @@ fn search(
         let down = form == BalanceForm::Energy && t.energy - energy <= ARMIJO_FRACTION * alpha * slope;
         let noise = form == BalanceForm::SlipLaw || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
         let closer = noise
-            && rows(slide, &t, modes, form).is_some_and(|(rt, ..)| size(&rt) < (1.0 - ARMIJO_FRACTION * alpha) * norm);
+            && balance_rows(slide, &t, modes, form)
+                .is_some_and(|b| size(&b.residuals) < (1.0 - ARMIJO_FRACTION * alpha) * norm);
         (down || closer).then_some((trial, t))
     });
     (found, spent)

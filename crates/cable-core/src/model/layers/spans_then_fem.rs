@@ -192,6 +192,41 @@ impl SwitchingModel {
         }
     }
 
+    /// Advances `spans` by `dt_s` (s) without inertia. If the cable then meets itself or the robot,
+    /// `spans` is at its state before.
+    fn advance_spans(&mut self, dt_s: f64) -> Result<SpansAdvance, SolveError> {
+        let before = (self.robot_pose.is_some() || self.problem.cable.self_contact).then(|| self.spans.clone());
+        let mut strands = StrandWatch::of(&self.problem);
+        let outcome = match &mut strands {
+            Some(watch) => self.spans.advance_while(dt_s, Some(&mut |nodes| watch.stay_clear(nodes))),
+            None => self.spans.advance_while(dt_s, None),
+        };
+        let mut meets = strands.is_some_and(|watch| watch.met).then_some(ModelReason::SelfContact);
+        if outcome.is_ok() && self.meets_robot(&self.spans.solution()) {
+            meets = Some(ModelReason::TouchesRobot);
+        }
+        match (outcome, meets) {
+            (Ok(_), Some(meets)) => {
+                self.spans = before.unwrap_or_else(|| self.spans.clone());
+                Ok(SpansAdvance::NeedsFem(meets))
+            }
+            (Ok(report), None) => {
+                self.adopted = None;
+                self.remembered = self.remembered.filter(|_| sticks_anywhere(&self.spans.solution()));
+                Ok(SpansAdvance::Done(report))
+            }
+            // The cable goes on without the wheel that it leaves (see `leavable_wheels.rs`).
+            (
+                Err(
+                    error @ (SolveError::TimeStep { .. }
+                    | SolveError::Unsupported { feature: Unsupported::OffWheel { .. }, .. }),
+                ),
+                _,
+            ) => Err(error),
+            (Err(error), _) => Ok(SpansAdvance::NeedsFem(ModelReason::NoAnswer(Box::new(error)))),
+        }
+    }
+
     fn is_dragged(&self, support: usize) -> bool {
         self.dragged.get(support).is_some_and(Option::is_some)
     }
@@ -210,8 +245,8 @@ impl SwitchingModel {
             return None;
         }
         let before = self.spans.clone();
-        let taken = self.spans.warm_start(&answer, fem.time_s()).is_ok();
-        if taken && indistinguishable(self.spans.problem(), &answer, &self.spans.solution()) {
+        let started = self.spans.warm_start(&answer, fem.time_s()).is_ok();
+        if started && indistinguishable(self.spans.problem(), &answer, &self.spans.solution()) {
             self.fem = None;
             self.reason = None;
             self.remembered = Some(answer.errors);
@@ -223,6 +258,13 @@ impl SwitchingModel {
             None
         }
     }
+}
+
+/// The outcome of a step of `spans`.
+enum SpansAdvance {
+    Done(StepReport),
+    /// `spans` cannot answer, for this reason.
+    NeedsFem(ModelReason),
 }
 
 /// Returns whether some contact sticks, so that friction is what it was.
@@ -338,32 +380,9 @@ impl Mechanics for SwitchingModel {
         let end_s = self.time_s() + dt_s;
         let mut why = None;
         if self.fem.is_none() {
-            let before = (self.robot_pose.is_some() || self.problem.cable.self_contact).then(|| self.spans.clone());
-            let mut strands = StrandWatch::of(&self.problem);
-            let outcome = match &mut strands {
-                Some(watch) => self.spans.advance_while(dt_s, Some(&mut |nodes| watch.stay_clear(nodes))),
-                None => self.spans.advance_while(dt_s, None),
-            };
-            let mut meets = strands.is_some_and(|watch| watch.met).then_some(ModelReason::SelfContact);
-            if outcome.is_ok() && self.meets_robot(&self.spans.solution()) {
-                meets = Some(ModelReason::TouchesRobot);
-            }
-            match outcome {
-                Ok(_) if meets.is_some() => {
-                    why = meets;
-                    self.spans = before.unwrap_or_else(|| self.spans.clone());
-                }
-                Ok(report) => {
-                    self.adopted = None;
-                    self.remembered = self.remembered.filter(|_| sticks_anywhere(&self.spans.solution()));
-                    return Ok(report);
-                }
-                Err(error @ SolveError::TimeStep { .. }) => return Err(error),
-                // The cable goes on without that wheel (see `leavable_wheels.rs`).
-                Err(error @ SolveError::Unsupported { feature: Unsupported::OffWheel { .. }, .. }) => {
-                    return Err(error);
-                }
-                Err(error) => why = Some(ModelReason::NoAnswer(Box::new(error))),
+            match self.advance_spans(dt_s)? {
+                SpansAdvance::Done(report) => return Ok(report),
+                SpansAdvance::NeedsFem(reason) => why = Some(reason),
             }
         }
         let fem = self.fem(why)?;
@@ -420,12 +439,12 @@ impl Mechanics for SwitchingModel {
         self.remembered = Some(answer.errors).filter(|_| sticks_anywhere(answer));
         self.fem = None;
         self.reason = None;
-        let taken = match self.meets_robot(answer) {
+        let started = match self.meets_robot(answer) {
             true => Err(ModelReason::TouchesRobot),
             false if meets_itself(&self.problem, &answer.nodes) => Err(ModelReason::SelfContact),
             false => self.spans.warm_start(answer, time_s).map_err(|e| ModelReason::NoAnswer(Box::new(e))),
         };
-        if let Err(why) = taken {
+        if let Err(why) = started {
             let mut fem = self.new_fem()?;
             self.draw_supports(&mut fem);
             fem.warm_start(answer, time_s)?;
@@ -475,17 +494,17 @@ impl Mechanics for SwitchingModel {
 
     fn change_wheels(&mut self, problem: Arc<Problem>) -> bool {
         let simpler = Problem::without_self_contact(Problem::without_outline(problem.clone()));
-        let lets_go = match &mut self.fem {
+        let changed = match &mut self.fem {
             Some(fem) => {
                 let spans = SpansModel::new(simpler, self.settings).ok();
                 spans.filter(|_| fem.change_wheels(problem.clone())).map(|spans| self.spans = spans).is_some()
             }
             None => simpler.moving_posts.is_empty() && self.spans.change_wheels(simpler),
         };
-        if lets_go {
+        if changed {
             self.problem = problem;
         }
-        lets_go
+        changed
     }
 
     fn stored_energy(&self) -> Option<Energy> {

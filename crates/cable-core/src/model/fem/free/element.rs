@@ -82,7 +82,7 @@ impl Material {
         }
     }
 
-    /// ∂chord/∂(ds) at a constant middle force.
+    /// ∂chord/∂(ds), m/m, at a constant tension force in the middle (N).
     #[must_use]
     pub fn chord_rate(&self, ds: f64, force: Vec2) -> Vec2 {
         let g = self.body * GAUSS_2_HALF_DISTANCE;

@@ -140,6 +140,7 @@ impl Workspace {
         unknowns.slides.clone_from(&self.mixed.begun.slides);
     }
 
+    /// Sets the force of each bar (N) and its branch to those at `unknowns`.
     fn init_bar_iterates(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &Unknowns) {
         self.mixed.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
@@ -153,7 +154,7 @@ impl Workspace {
 
     /// Moves `unknowns` from the start of the step to the positions that its velocities predict, as
     /// far as the way is free.
-    fn move_on(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns) {
+    fn start_from_prediction(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns) {
         let StepContext { mesh, input, .. } = *step;
         if unknowns.positions != input.begins() {
             return;
@@ -169,9 +170,11 @@ impl Workspace {
         self.predicted_contacts.stop(step, &unknowns.positions, &mut self.direction);
         let whole = self.max_step_fraction(input);
         let free = self.ccd_step_bound(step, unknowns, whole);
-        self.place(mesh, unknowns, free);
+        self.move_unknowns(mesh, unknowns, free);
     }
 
+    /// Takes full Newton steps until the residual is within tolerance and every branch is as
+    /// assumed; None if that fails or is given up.
     fn iterate_undamped(
         &mut self,
         step: &StepContext<'_>,
@@ -179,7 +182,7 @@ impl Workspace {
         unknowns: &mut Unknowns,
     ) -> Option<Converged> {
         let StepContext { mesh, contacts, input, .. } = *step;
-        self.move_on(step, unknowns);
+        self.start_from_prediction(step, unknowns);
         self.mixed.branches.clear();
         self.mixed.branches.extend(
             contacts.friction_contacts.iter().map(|r| Branch::at(r.sliding(&unknowns.positions), contacts.slip)),
@@ -202,7 +205,7 @@ impl Workspace {
             if sound
                 && residual <= input.stopping.tolerance
                 && !left
-                && self.flags_hold(mesh, input, contacts, &unknowns.positions)
+                && self.branches_hold(mesh, input, contacts, &unknowns.positions)
             {
                 return Some(Converged { iterations, residual });
             }
@@ -223,7 +226,7 @@ impl Workspace {
             let whole = self.max_step_fraction(input);
             self.mixed.slid.clear();
             self.mixed.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.positions)));
-            self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
+            self.move_with_bar_forces(mesh, input, unknowns, if free < whole { free } else { whole });
             for (b, (from, r)) in
                 self.mixed.branches.iter_mut().zip(self.mixed.slid.iter().zip(&contacts.friction_contacts))
             {
@@ -241,30 +244,10 @@ impl Workspace {
         if !self.self_contact.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
         }
-        let mut counted = 1.0;
+        let mut kept = 1.0;
         for part in mesh.tuning.newton.push_fractions {
-            for (e, carried) in self.mixed.carried.iter().enumerate().filter(|(_, c)| c.pull < 0.0) {
-                let d = x[e + 1] - x[e];
-                let p = d.norm();
-                if !(p > 0.0) || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-                    continue;
-                }
-                let (t, less) = (d / p, input.scale[e] * (part - counted) * carried.pull / p);
-                let across = [less * (1.0 - t.x * t.x), -less * t.x * t.y, less * (1.0 - t.y * t.y)];
-                match [mesh.fixity[e], mesh.fixity[e + 1]] {
-                    [false, false] => self.system.hessian.add_spring(2 * e, across),
-                    [true, true] => {}
-                    [first, _] => {
-                        let (free, fixed_node) = if first { (e + 1, e) } else { (e, e + 1) };
-                        let block = Mat2::new(across[0], across[1], across[1], across[2]);
-                        let go = block * (self.goal[fixed_node] - x[fixed_node]);
-                        self.system.add_block(free, free, &block);
-                        self.direction[2 * free] += go.x;
-                        self.direction[2 * free + 1] += go.y;
-                    }
-                }
-            }
-            counted = part;
+            self.change_compression(mesh, input, x, part - kept);
+            kept = part;
             self.predicted_contacts.keep(&self.direction);
             if self.factor.factor_and_solve(&self.system.hessian, &mut self.direction).is_ok() {
                 return self.direction.iter().all(|d| d.is_finite());
@@ -274,20 +257,46 @@ impl Workspace {
         false
     }
 
+    /// Changes the geometric stiffness of all compressed bars by a fraction of it; the motion of
+    /// fixed nodes goes to the right-hand side.
+    fn change_compression(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], change: f64) {
+        for (e, carried) in self.mixed.carried.iter().enumerate().filter(|(_, c)| c.pull < 0.0) {
+            let d = x[e + 1] - x[e];
+            let p = d.norm();
+            if !(p > 0.0) || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+                continue;
+            }
+            let (t, stiffness) = (d / p, input.scale[e] * change * carried.pull / p);
+            let across = [stiffness * (1.0 - t.x * t.x), -stiffness * t.x * t.y, stiffness * (1.0 - t.y * t.y)];
+            match [mesh.fixity[e], mesh.fixity[e + 1]] {
+                [false, false] => self.system.hessian.add_spring(2 * e, across),
+                [true, true] => {}
+                [first, _] => {
+                    let (free, fixed_node) = if first { (e + 1, e) } else { (e, e + 1) };
+                    let block = Mat2::new(across[0], across[1], across[1], across[2]);
+                    let force = block * (self.goal[fixed_node] - x[fixed_node]);
+                    self.system.add_block(free, free, &block);
+                    self.direction[2 * free] += force.x;
+                    self.direction[2 * free + 1] += force.y;
+                }
+            }
+        }
+    }
+
     /// True if every bar and every friction contact is on the branch (taut or slack, stick or slip)
     /// that the step assumed.
-    fn flags_hold(&self, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, x: &[Vec2]) -> bool {
-        let rubs = contacts.friction_contacts.iter().zip(&self.mixed.branches);
+    fn branches_hold(&self, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, x: &[Vec2]) -> bool {
+        let frictions = contacts.friction_contacts.iter().zip(&self.mixed.branches);
         let slip = contacts.slip;
         let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
-        rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
+        frictions.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
             && self.mixed.carried.iter().enumerate().all(|(e, carried)| {
                 PlainBar::of(mesh, input, e).is_on(carried.branch, (x[e + 1] - x[e]).norm(), UNSTRETCHED_STRAIN)
             })
     }
 
     /// Moves unknowns and bar forces by a fraction of the direction.
-    fn walk(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns, part: f64) {
+    fn move_with_bar_forces(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns, part: f64) {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
         for (e, carried) in self.mixed.carried.iter_mut().enumerate() {
@@ -298,11 +307,11 @@ impl Workspace {
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
             *carried = bar_energy::BarIterate { pull: now + slope * along, branch: bar.branch(p + along) };
         }
-        self.place(mesh, unknowns, part);
+        self.move_unknowns(mesh, unknowns, part);
     }
 
     /// Moves unknowns by a fraction of the direction.
-    fn place(&self, mesh: &Mesh, unknowns: &mut Unknowns, part: f64) {
+    fn move_unknowns(&self, mesh: &Mesh, unknowns: &mut Unknowns, part: f64) {
         for k in 0..mesh.nodes() {
             let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
             if mesh.sliding[k].is_some() {

@@ -17,9 +17,9 @@ use crate::math::{Vec2, perp};
 use crate::model::Inertia;
 use crate::model::fem::mesh::{SlideOver, SlidingNode};
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::arc_marks::{move_marks, wind};
+use crate::model::fem::remesh::arc_marks::{adapt_marks, move_marks};
 use crate::model::fem::remesh::edit::{insert, remove};
-use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
+use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare, NewSlidingNode};
 use crate::model::fem::remesh::loads_over_rounds::{give_nodes, pass_loads};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, LoadNode, MovingMass, attribute_to, renew_input};
@@ -60,6 +60,7 @@ enum LoadPassage {
     Some,
 }
 
+/// Adds and removes sliding nodes, marks and bars; returns what it changed.
 fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Remeshed {
     if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
@@ -75,9 +76,9 @@ fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Reme
         changed = true;
     }
     let moved = move_marks(cable, inertia);
-    let wound = wind(cable, inertia);
+    let marks_changed = adapt_marks(cable, inertia);
     let evened = even_out(cable);
-    let bars = passage == LoadPassage::Some || changed || wound || evened;
+    let bars = passage == LoadPassage::Some || changed || marks_changed || evened;
     if bars || moved {
         let x = std::mem::take(&mut cable.motion.positions);
         cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
@@ -111,7 +112,7 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
         let is_spare = has_let_go && this == next;
         // A load that it carries needs a node: a corner keeps it until the load has run over.
         if leaves && !is_spare && cable.meshing.loads.iter().any(|load| load.node == k) {
-            changed |= has_let_go && settle_down(cable, k);
+            changed |= has_let_go && make_material_at_tangents(cable, k);
             k += 1;
             continue;
         }
@@ -121,7 +122,9 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
         if is_spare || runs_straight {
             remove(cable, k);
             changed = true;
-        } else if leaves && (rests || has_let_go || Criteria::of(cable).settles_unstretched(k)) && settle_down(cable, k)
+        } else if leaves
+            && (rests || has_let_go || Criteria::of(cable).settles_unstretched(k))
+            && make_material_at_tangents(cable, k)
         {
             changed = true;
             k += 1;
@@ -142,11 +145,12 @@ fn has_let_go(cable: &CableState, slide_over: SlideOver) -> bool {
 }
 
 /// Turns a material node into a sliding node.
-fn pin_down(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
-    attribute_to(cable, sliding.slide_over, |d| make_sliding(d, k, arc_length, sliding));
+fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
+    attribute_to(cable, sliding.slide_over, |d| change_to_sliding(d, k, arc_length, sliding));
 }
 
-fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
+/// As [`make_sliding`], without the account of momentum.
+fn change_to_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
     keep_answer(cable);
     let along = cable.mesh.direction(k - 1, &cable.motion.positions);
     let (mesh, m) = (&mut cable.mesh, &mut cable.motion);
@@ -181,16 +185,18 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
 /// of 2 MN 2000 N there, and broke it.) Where the wheel of a pulley let go it is placed nearer, so
 /// that its bars are as long together as the path over the wheel: the cable may hold there at a
 /// large angle.
-pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bool {
-    let Some(node) = cable.mesh.sliding.get(k).copied().flatten() else { return make_material(cable, k) };
-    let settles = attribute_to(cable, node.slide_over, |d| make_material(d, k));
+pub(in crate::model::fem) fn make_material_at_tangents(cable: &mut CableState, k: usize) -> bool {
+    let Some(node) = cable.mesh.sliding.get(k).copied().flatten() else { return change_to_material(cable, k) };
+    let settles = attribute_to(cable, node.slide_over, |d| change_to_material(d, k));
     if settles {
         give_nodes(cable, k);
     }
     settles
 }
 
-fn make_material(cable: &mut CableState, k: usize) -> bool {
+/// As [`make_material_at_tangents`], without the account of momentum; returns false, and changes
+/// nothing, if a bar would meet an obstacle there, too.
+fn change_to_material(cable: &mut CableState, k: usize) -> bool {
     keep_answer(cable);
     let had = MovingMass::of(cable).momenta();
     let before = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length / cable.mesh.rest_length[e]);
@@ -272,13 +278,14 @@ fn add_sliding_nodes(cable: &mut CableState, inertia: Inertia) -> Vec<SlideOver>
         let criteria = Criteria::of(cable);
         let found = touches.iter().find_map(|t| {
             let pressed = t.pair.weight > 0.0 && t.load(&cable.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
-            let (bar, arc_length, sliding) = if pressed { criteria.sliding_node_for(t)? } else { return None };
+            let NewSlidingNode { bar, arc_length, sliding } =
+                if pressed { criteria.sliding_node_for(t)? } else { return None };
             let near = cable.mesh.tuning.remesh.removed_distance * cable.even();
             let node = [bar, bar + 1].into_iter().find(|&k| {
                 cable.meshing.removable(&cable.mesh, k) && (cable.mesh.arc_length[k] - arc_length).abs() < near
             });
             let beside = node.map_or([bar, bar + 1], |k| [k - 1, k + 1]);
-            if !criteria.fits(beside, &sliding) {
+            if !criteria.may_insert(beside, &sliding) {
                 return None;
             }
             let s = beside.map(|k| cable.mesh.arc_length[k]);
@@ -290,7 +297,7 @@ fn add_sliding_nodes(cable: &mut CableState, inertia: Inertia) -> Vec<SlideOver>
         });
         let Some((bar, node, arc_length, sliding)) = found else { break };
         match node {
-            Some(k) => pin_down(cable, k, arc_length, sliding),
+            Some(k) => make_sliding(cable, k, arc_length, sliding),
             None => insert(cable, bar + 1, arc_length, Some(sliding)),
         }
         clear_around(cable, node.unwrap_or(bar + 1));

@@ -18,7 +18,7 @@ const SERIES_LOG_RATIO: f64 = 1e-4;
 /// Moves the mark of a round with one node to the place where the arc has the same total strain as
 /// under evenly mobilised friction: its middle if there is no friction. In motion the material
 /// between the old and the new mark comes from the bar that the mark leaves, whose strain does not
-/// change.
+/// change. Returns whether any mark moved.
 pub(in crate::model::fem) fn move_marks(cable: &mut CableState, inertia: Inertia) -> bool {
     let mut moved = false;
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
@@ -78,8 +78,9 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     cable.motion.previous_positions[k] = cable.motion.positions[k];
 }
 
-/// Gives long arcs more marks and removes those that the tangent has passed.
-pub(in crate::model::fem) fn wind(cable: &mut CableState, inertia: Inertia) -> bool {
+/// Adds marks on long arcs and removes those that the tangent has passed; returns whether it
+/// changed any.
+pub(in crate::model::fem) fn adapt_marks(cable: &mut CableState, inertia: Inertia) -> bool {
     let even = cable.even();
     let mut changed = false;
     let mut k = 1;
@@ -92,23 +93,24 @@ pub(in crate::model::fem) fn wind(cable: &mut CableState, inertia: Inertia) -> b
         let shared = [k - 1, k + 1].map(|j| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
         let x = &cable.motion.positions;
         let arcs = [cable.mesh.path(k - 1, x).arcs[1], cable.mesh.path(k, x).arcs[0]];
+        let tuned = &cable.mesh.tuning.remesh;
         // On a large round the marks of a cable at rest are as far apart as nodes elsewhere,
         // because friction is resolved only from mark to mark.
         let spacing = if inertia == Inertia::QuasiStatic {
-            smaller(0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
+            smaller(0.5 * tuned.max_marked_arc_rad, even / node.end.radius)
         } else {
-            0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad
+            0.5 * tuned.max_marked_arc_rad
         };
-        let big =
-            |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > cable.mesh.tuning.remesh.one_mark_bars * even;
+        let is_long = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > tuned.one_mark_bars * even;
+        let long = arcs.map(is_long);
         changes += 1;
         if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
             remove(cable, k);
             changed = true;
-        } else if !shared[0] && big(arcs[0]) {
+        } else if !shared[0] && long[0] {
             add_mark(cable, k, 0, arcs[0] - spacing);
             changed = true;
-        } else if !shared[1] && big(arcs[1]) {
+        } else if !shared[1] && long[1] {
             add_mark(cable, k, 1, arcs[1] - spacing);
             changed = true;
             k += 1;

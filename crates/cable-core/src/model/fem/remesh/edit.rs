@@ -11,20 +11,21 @@ use crate::model::fem::system::contact::floor_friction;
 pub(in crate::model::fem) fn insert(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
     let beside = [k - 1, k].into_iter().find_map(|j| cable.mesh.sliding.get(j).copied().flatten());
     match sliding.or(beside) {
-        Some(node) => attribute_to(cable, node.slide_over, |d| put_in(d, k, arc_length, sliding)),
-        None => put_in(cable, k, arc_length, None),
+        Some(node) => attribute_to(cable, node.slide_over, |d| insert_unaccounted(d, k, arc_length, sliding)),
+        None => insert_unaccounted(cable, k, arc_length, None),
     }
 }
 
-fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
+/// As [`insert`], without the account of momentum.
+fn insert_unaccounted(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
     keep_answer(cable);
     let mesh = &mut cable.mesh;
     let path = mesh.path(k - 1, &cable.motion.positions);
     let (a, b) = (mesh.arc_length[k - 1], mesh.arc_length[k]);
     let part = (arc_length - a) / (b - a);
-    let lead = path.arcs[0] * mesh.end(k - 1, &cable.motion.positions).radius;
+    let first_arc = path.arcs[0] * mesh.end(k - 1, &cable.motion.positions).radius;
     let fraction =
-        if path.straight > 0.0 { ((part * path.length - lead) / path.straight).clamp(0.0, 1.0) } else { 0.5 };
+        if path.straight > 0.0 { ((part * path.length - first_arc) / path.straight).clamp(0.0, 1.0) } else { 0.5 };
     let at = path.ends[0] + (path.ends[1] - path.ends[0]) * fraction;
     let m = &mut cable.motion;
     let t = path.direction;
@@ -106,13 +107,14 @@ fn remove_plain(cable: &mut CableState, k: usize) {
         let has = history(cable);
         cable.motion.account.take_history(round.slide_over, had - has);
     } else {
-        attribute_to(cable, round.slide_over, |d| take_out(d, k));
+        attribute_to(cable, round.slide_over, |d| delete(d, k));
     }
 }
 
+/// Removes node `k` and gives its momentum to its free neighbours.
 fn merge(cable: &mut CableState, k: usize) {
     let had = MovingMass::of(cable).momenta();
-    take_out(cable, k);
+    delete(cable, k);
     let have = MovingMass::of(cable).momenta();
     let free = [k - 1, k].map(|j| cable.mesh.is_free(j));
     let node_mass = |j: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, j);
@@ -130,7 +132,8 @@ fn merge(cable: &mut CableState, k: usize) {
     }
 }
 
-fn take_out(cable: &mut CableState, k: usize) {
+/// Removes node `k` from every list of nodes.
+fn delete(cable: &mut CableState, k: usize) {
     keep_answer(cable);
     cable.mesh.remove_node(k);
     cable.motion.remove_node(k);

@@ -35,6 +35,16 @@ impl MaterialShare {
     }
 }
 
+/// A sliding node and where it is inserted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NewSlidingNode {
+    /// Bar that it divides.
+    pub(super) bar: usize,
+    /// Arc length of its material, m.
+    pub(super) arc_length: f64,
+    pub(super) sliding: SlidingNode,
+}
+
 /// The parts of a cable that the criteria read: its mesh among obstacles, its division, and its
 /// motion.
 #[derive(Clone, Copy, Debug)]
@@ -139,7 +149,7 @@ impl<'a> Criteria<'a> {
 
     /// True if a sliding node between two nodes would bend the cable in the right sense and its
     /// bars would meet nothing.
-    pub(super) fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
+    pub(super) fn may_insert(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
         let paths = [
             TangentPath::between(&mesh.end(before, x), &sliding.end),
@@ -152,24 +162,22 @@ impl<'a> Criteria<'a> {
         } else {
             sliding.end.sense * angle_between(paths[0].direction, paths[1].direction)
         };
-        // It must not turn a neighbour the wrong way either.
-        let beside = |k: usize, arc: f64, e: usize, j: usize| {
+        let least_turn = -mesh.tuning.remesh.max_reverse_turn_rad;
+        // A neighbour turns by the `arc` towards the new node and that of its other bar at its
+        // `end`.
+        let keeps_its_turn = |k: usize, arc: f64, other_bar: usize, end: usize| {
             mesh.sliding[k].is_none_or(|s| {
-                s.feature().is_none()
-                    || s.shares_round(sliding)
-                    || arc + mesh.path(e, x).arcs[j] > -mesh.tuning.remesh.max_reverse_turn_rad
+                s.feature().is_none() || s.shares_round(sliding) || arc + mesh.path(other_bar, x).arcs[end] > least_turn
             })
         };
-        let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
-            && (after + 1 == mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-        turn > -mesh.tuning.remesh.max_reverse_turn_rad
-            && sides
-            && (0..2).all(|j| self.intersections().way_is_clear(&paths[j], nodes[j]))
+        let neighbours_keep = (before == 0 || keeps_its_turn(before, paths[0].arcs[0], before - 1, 1))
+            && (after + 1 == mesh.nodes() || keeps_its_turn(after, paths[1].arcs[1], after, 0));
+        turn > least_turn && neighbours_keep && (0..2).all(|j| self.intersections().way_is_clear(&paths[j], nodes[j]))
     }
 
-    /// The sliding node that is needed where a corner or circle presses on a bar or node, with its
-    /// bar and its arc length (m).
-    pub(super) fn sliding_node_for(&self, touch: &ContactPair) -> Option<(usize, f64, SlidingNode)> {
+    /// The sliding node that is needed where a corner or circle presses on a bar or node; None if
+    /// the cable does not bend round it there, or is slack or stiff.
+    pub(super) fn sliding_node_for(&self, touch: &ContactPair) -> Option<NewSlidingNode> {
         let ContactPair { node, on_segment, pair } = *touch;
         let gap = &pair.gap;
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
@@ -221,6 +229,6 @@ impl<'a> Criteria<'a> {
         let end = BarEnd { center, radius, mark: gap.normal, sense };
         let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
         let sliding = SlidingNode::new(end, gap.friction, slide_over);
-        Some((bar, arc_length, sliding))
+        Some(NewSlidingNode { bar, arc_length, sliding })
     }
 }

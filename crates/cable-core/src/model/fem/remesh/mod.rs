@@ -20,7 +20,7 @@ mod loads_over_rounds;
 mod stretched_bars;
 mod wheels;
 
-pub(in crate::model::fem) use adapt::{Remeshed, even_out, remesh, remesh_after_step, settle_down};
+pub(in crate::model::fem) use adapt::{Remeshed, even_out, make_material_at_tangents, remesh, remesh_after_step};
 pub(in crate::model::fem) use break_cable::break_cable;
 pub(in crate::model::fem) use edit::{clear_of_nodes, insert, remove};
 pub(in crate::model::fem) use stretched_bars::StretchedBars;

@@ -27,7 +27,7 @@ pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let tension = d.mesh.tension(e, path.length);
     if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-        return Weight::of(&d.mesh, e, &path, d.input.loads.body).in_the_middle(
+        return Weight::of(&d.mesh, e, &path, d.input.loads.body).tension_in_middle(
             tension,
             material,
             d.mesh.is_flexible(),
@@ -41,7 +41,7 @@ pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
 pub(super) fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.loads.body).carried(material)[1 - side]
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.loads.body).carried_material(material)[1 - side]
 }
 
 /// Tension (N) where the cable comes to the round of a sliding node (`side` 0) or leaves it (1).
@@ -225,7 +225,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
                 let path = d.mesh.path(e, x);
                 path.direction * d.mesh.tension(e, path.length)
             });
-            sum += before - after - bar_weight::on_node(&d.mesh, k, x, problem.body_force(time_s));
+            sum += before - after - bar_weight::force_on_node(&d.mesh, k, x, problem.body_force(time_s));
             sum -= d.input.loads.on_round(k);
         } else {
             sum -= floor.unwrap_or_default();

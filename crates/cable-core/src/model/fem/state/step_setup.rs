@@ -168,7 +168,7 @@ fn set_weight_on_rounds(cable: &mut CableState) {
     floor_friction::renew_limits(limits, &cable.problem, &cable.mesh, &cable.meshing.support_node, &x, None);
     for k in 1..cable.mesh.nodes().saturating_sub(1) {
         if cable.mesh.sliding[k].is_some() {
-            let lying = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.loads.body);
+            let lying = bar_weight::lying_fractions_beside(&cable.mesh, k, &x, cable.input.loads.body);
             if let Some(node) = &mut cable.mesh.sliding[k] {
                 node.lying_fractions = lying;
             }

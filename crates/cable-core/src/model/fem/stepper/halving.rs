@@ -6,7 +6,7 @@
 //! equilibrium instead.
 
 use crate::error::{SolveError, Unsupported};
-use crate::model::fem::remesh::{lifted_wheel, load_at_pulley, settle_down};
+use crate::model::fem::remesh::{lifted_wheel, load_at_pulley, make_material_at_tangents};
 use crate::model::fem::state::{CableState, lay_down_released, renew_input};
 use crate::model::fem::stepper::{StepRequest, Stepper};
 use crate::model::fem::system::{Converged, Failure, FailureCause};
@@ -162,7 +162,10 @@ impl Stepper {
     fn recover(&mut self, failure: Failure, progress: &mut HalvingProgress, inertia: Inertia) -> bool {
         let on_obstacle =
             self.cable.mesh.sliding.get(failure.node).is_some_and(|s| s.is_some_and(|s| s.feature().is_some()));
-        if failure.cause == FailureCause::CornerPulls && on_obstacle && settle_down(&mut self.cable, failure.node) {
+        if failure.cause == FailureCause::CornerPulls
+            && on_obstacle
+            && make_material_at_tangents(&mut self.cable, failure.node)
+        {
             renew_input(&mut self.cable);
             return true;
         }

@@ -339,7 +339,7 @@ fn add_sliding(
             if curvature == Curvature::Exact {
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
-                    block -= Weight::bend(mesh, e, j, &path, unknowns.positions[e + j], input.loads.body)
+                    block -= Weight::second_derivative(mesh, e, j, &path, unknowns.positions[e + j], input.loads.body)
                         * ((material + change) * scale);
                 }
             }

@@ -43,7 +43,7 @@ impl Weight {
         match lying_fraction(mesh, e) {
             0.0 => Self::at_ends(mesh, e, path, body),
             1.0 => Self::spread_evenly(mesh, e, path, body),
-            part => Self::spread_evenly(mesh, e, path, body).lying(part, mesh, e, path, body),
+            part => Self::spread_evenly(mesh, e, path, body).with_lying_fraction(part, mesh, e, path, body),
         }
     }
 
@@ -89,7 +89,7 @@ impl Weight {
 
     /// The weight if only a fraction of the weight on rounds (0 to 1) acts there, and half of the
     /// rest at each end of the bar.
-    fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
+    fn with_lying_fraction(self, part: f64, mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let at = |j: usize| mesh.sliding[e + j].as_ref().map_or(path.ends[j], SlidingNode::position);
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slide.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
@@ -102,9 +102,10 @@ impl Weight {
         }
     }
 
-    /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, N/m².
+    /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, which is at `at` (m), N/m²; b is the
+    /// distributed force `body` (N/m), c the point where it acts.
     #[must_use]
-    pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &TangentPath, at: Vec2, body: Vec2) -> Mat2 {
+    pub fn second_derivative(mesh: &Mesh, e: usize, j: usize, path: &TangentPath, at: Vec2, body: Vec2) -> Mat2 {
         let Some(round) = mesh.sliding[e + 1 - j].as_ref().map(|s| s.end).filter(|end| end.radius > 0.0) else {
             return Mat2::zeros();
         };
@@ -129,7 +130,7 @@ impl Weight {
     /// Tension in the middle of the straight part of a bar of `material` (m) with the tension
     /// `tension` (N) as a whole, N; it is not negative if the bar is `flexible`.
     #[must_use]
-    pub fn in_the_middle(&self, tension: f64, material: f64, flexible: bool) -> f64 {
+    pub fn tension_in_middle(&self, tension: f64, material: f64, flexible: bool) -> f64 {
         let pull = tension - material * self.excess;
         if flexible && !(pull > 0.0) { 0.0 } else { pull }
     }
@@ -137,7 +138,7 @@ impl Weight {
     /// Length of `material` (m) that the first end and the second end carry: half of the straight
     /// part, and the part on its round.
     #[must_use]
-    pub fn carried(&self, material: f64) -> [f64; 2] {
+    pub fn carried_material(&self, material: f64) -> [f64; 2] {
         let [first, straight, second] = self.parts;
         [(first + 0.5 * straight) * material, (second + 0.5 * straight) * material]
     }
@@ -168,7 +169,7 @@ fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
 /// whole has the tension `tension` (N): with more, the middle of its straight part would be
 /// compressed.
 #[must_use]
-pub fn may_lie(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f64) -> f64 {
+pub fn max_lying_fraction(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f64) -> f64 {
     let excess = Weight::spread_evenly(mesh, e, path, body).excess * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
     let pull = larger(tension, 0.0);
     if !mesh.is_flexible() || pull >= excess { 1.0 } else { pull / excess }
@@ -177,7 +178,7 @@ pub fn may_lie(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f
 /// The weight of bar `e` that acts on its first and second end with the slides `slide` (m), N; the
 /// weight that no free end carries acts on rounds.
 #[must_use]
-pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: Vec2) -> [Vec2; 2] {
+pub fn force_on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: Vec2) -> [Vec2; 2] {
     let slid = slide.map_or(0.0, |s| s[e + 1] - s[e]);
     let material = mesh.arc_length[e + 1] - mesh.arc_length[e] + slid;
     match [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()] {
@@ -195,23 +196,23 @@ pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: V
 
 /// The weight that acts on a node, N.
 #[must_use]
-pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
+pub fn force_on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     let last = mesh.nodes() - 1;
     if (k.saturating_sub(1)..=(k + 1).min(last)).all(|j| mesh.sliding[j].is_none()) {
         return body * mesh.tributary_length(k);
     }
-    let before = if k > 0 { on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
-    let after = if k < last { on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
+    let before = if k > 0 { force_on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
+    let after = if k < last { force_on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
     before + after
 }
 
 /// Lying fractions of the bars beside sliding node `k` at positions `x` (m) under a distributed
 /// force `body` (N/m).
-pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
+pub(in crate::model::fem) fn lying_fractions_beside(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
     [k - 1, k].map(|e| {
         let path = mesh.path(e, x);
         let tension = mesh.tension(e, path.length);
-        may_lie(mesh, e, &path, body, tension)
+        max_lying_fraction(mesh, e, &path, body, tension)
     })
 }
 
@@ -296,7 +297,7 @@ mod tests {
                 x[j] += d;
                 (weight(&mesh, &x), BODY.dot(&weight(&mesh, &x).center))
             };
-            let bend = Weight::bend(&mesh, 0, j, &path, x[j], BODY);
+            let bend = Weight::second_derivative(&mesh, 0, j, &path, x[j], BODY);
             for axis in [Vec2::x(), Vec2::y()] {
                 let ((plus, up), (minus, down)) = (at(axis * h), at(-axis * h));
                 prop_assert!(((up - down) / (2.0 * h) - w.slope[j].dot(&axis)).abs() < 1e-6);
@@ -304,8 +305,8 @@ mod tests {
             }
             // The end carries half of the straight part; the rest is the excess of the bar's
             // tension over that of its middle.
-            let [_, carried] = w.carried(1.0);
-            prop_assert!((w.carried(1.0)[0] + carried - 1.0).abs() < 1e-12);
+            let [_, carried] = w.carried_material(1.0);
+            prop_assert!((w.carried_material(1.0)[0] + carried - 1.0).abs() < 1e-12);
         }
 
         #[test]

@@ -64,9 +64,9 @@ impl StepContext<'_> {
         let body = self.input.loads.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
         let material = rest.map(|l| l / mesh.thermal_stretch);
-        let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
+        let share = [0, 1].map(|j| weight[j].carried_material(material[j])[1 - j]);
         let flexible = true;
-        let straight = [0, 1].map(|j| weight[j].in_the_middle(tension[j], material[j], flexible));
+        let straight = [0, 1].map(|j| weight[j].tension_in_middle(tension[j], material[j], flexible));
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
             let slid = self.contacts.floor_slip[k].x + slide.map_or(0.0, |s| s[k]);
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::math::Vec2;
 use crate::model::fem::obstacle::IntersectionCheck;
-use crate::model::fem::remesh::settle_down;
+use crate::model::fem::remesh::make_material_at_tangents;
 use crate::model::fem::stepper::Stepper;
 use crate::model::{Inertia, Settings};
 use crate::problem::problems;
@@ -298,7 +298,7 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
         })
     };
     let before = tensions(&d);
-    assert!(settle_down(&mut d.cable, k));
+    assert!(make_material_at_tangents(&mut d.cable, k));
     let after = tensions(&d);
     // Two tangents are longer than the arc between them; both bars share that.
     let longer = radius * (2.0 * (0.5 * turn).tan() - turn);

@@ -20,7 +20,7 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
     let time = cable.motion.time;
     before
         - after
-        - bar_weight::on_node(mesh, node, x, cable.problem.body_force(time))
+        - bar_weight::force_on_node(mesh, node, x, cable.problem.body_force(time))
         - cable.problem.hung_on(support, time)
 }
 

@@ -33,28 +33,34 @@ struct EndedImpulses<'a> {
     ways: &'a NodalWays,
     a: f64,
     /// Their work beyond force times displacement.
-    more: Works,
+    extra_work: Works,
+}
+
+/// The motion in a step of the body that a contact touches.
+#[derive(Clone, Copy)]
+struct TouchedMotion<'a> {
+    /// Velocity of the touched point, m/s.
+    velocity: Vec2,
+    /// Its displacement in the step, m.
+    way: Vec2,
+    /// None for a body at rest, and for the cable itself.
+    body: Option<&'a BodyMotion>,
+}
+
+impl TouchedMotion<'_> {
+    const NONE: Self = Self { velocity: Vec2::new(0.0, 0.0), way: Vec2::new(0.0, 0.0), body: None };
 }
 
 impl EndedImpulses<'_> {
-    /// Counts an impulse (N s) of a contact with this normal on node `k`, which now has a velocity
-    /// (m/s); `carried` is the velocity (m/s) of the touching body, and `carried_way` its
-    /// displacement in the step (m).
-    fn add(
-        &mut self,
-        k: usize,
-        impulse: Vec2,
-        velocity: Vec2,
-        normal: Vec2,
-        [carried, carried_way]: [Vec2; 2],
-        body: Option<&BodyMotion>,
-    ) {
+    /// Adds the work of an impulse (N s) of a contact with this normal on node `k`, which now has a
+    /// velocity (m/s).
+    fn add(&mut self, k: usize, impulse: Vec2, velocity: Vec2, normal: Vec2, touched: TouchedMotion<'_>) {
         let (Some(way), Some(before)) = (self.ways.ways.get(k), self.ways.velocities.get(k)) else { return };
-        let relative = (velocity + before) * 0.5 - carried - (way - carried_way) * self.a;
-        let pressed = impulse.dot(&normal) * relative.dot(&normal);
-        self.more.impacts += pressed;
-        self.more.friction += impulse.dot(&relative) - pressed;
-        self.more.add_of_body(body, impulse.dot(&(carried - carried_way * self.a)));
+        let relative = (velocity + before) * 0.5 - touched.velocity - (way - touched.way) * self.a;
+        let of_normal_force = impulse.dot(&normal) * relative.dot(&normal);
+        self.extra_work.impacts += of_normal_force;
+        self.extra_work.friction += impulse.dot(&relative) - of_normal_force;
+        self.extra_work.add_of_body(touched.body, impulse.dot(&(touched.velocity - touched.way * self.a)));
     }
 }
 
@@ -62,15 +68,15 @@ impl EndedImpulses<'_> {
 /// (s) and whose nodes moved by `ways`.
 pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a: f64, ways: &NodalWays) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-    let mut ended = EndedImpulses { ways, a, more: Works::default() };
+    let mut ended = EndedImpulses { ways, a, extra_work: Works::default() };
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
     for (touch, load) in cable.contacts.loaded_contacts() {
         let n = touch.pair.gap.normal;
-        let carried = cable.contacts.motion_of(touch);
-        let way_of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)));
-        let of_it = way_of_it / h;
-        let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
+        let body = cable.contacts.motion_of(touch);
+        let way = body.map_or(Vec2::zeros(), |b| b.way(touch.interpolate(&m.positions)));
+        let touched = TouchedMotion { velocity: way / h, way, body };
+        let speed = (touch.interpolate(&m.velocities) - touched.velocity).dot(&n);
         let shares = touch.shares();
         let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
         let free = [0, 1].map(|j| if cable.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
@@ -78,72 +84,72 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
         if sum < LEAST_FREE_SHARE {
             continue;
         }
-        let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
-        let sum = give[0] * shares[0] + give[1] * shares[1];
+        let compliance = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
+        let sum = compliance[0] * shares[0] + compliance[1] * shares[1];
         // These are the impulse of the contact in the step, and the part that is removed.
-        let made = load / a;
-        let taken = taken_speed(speed, made * sum) / sum;
+        let pressed = load / a;
+        let removed = removed_speed(speed, pressed * sum) / sum;
         if speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
             continue;
         }
         let change = touch.interpolate(&m.velocities) - touch.interpolate(&m.previous_velocities);
-        let acted = n * made + touch.tangent() * (cable.contacts.tangential_force(touch, &m.positions) / a);
-        let over = acted - lasting_impulse(acted - change / sum, n, touch.pair.gap.friction);
+        let impulse = n * pressed + touch.tangent() * (cable.contacts.tangential_force(touch, &m.positions) / a);
+        let ended_part = impulse - lasting_impulse(impulse - change / sum, n, touch.pair.gap.friction);
         for j in 0..2 {
             if free[j] > 0.0 {
                 let k = nodes[j];
-                ended.add(k, over * free[j], m.velocities[k], n, [of_it, way_of_it], carried);
-                m.velocities[k] -= n * (taken * give[j]);
-                m.previous_velocities[k] += (over - n * taken) * give[j];
+                ended.add(k, ended_part * free[j], m.velocities[k], n, touched);
+                m.velocities[k] -= n * (removed * compliance[j]);
+                m.previous_velocities[k] += (ended_part - n * removed) * compliance[j];
                 m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
-                given -= n * (taken * free[j]);
-                forgotten += over * free[j];
+                given -= n * (removed * free[j]);
+                forgotten += ended_part * free[j];
             }
         }
     }
     cable.motion.account.land(given, forgotten);
-    cable.motion.energies.correct(&ended.more);
+    cable.motion.energies.correct(&ended.extra_work);
 }
 
 /// Makes the contacts of the cable with itself plastic; its momentum is kept.
 pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f64, ways: &NodalWays) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-    let mut ended = EndedImpulses { ways, a, more: Works::default() };
+    let mut ended = EndedImpulses { ways, a, extra_work: Works::default() };
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
-    for rub in &cable.contacts.self_contacts.friction_contacts {
-        let n = rub.pair.normal;
-        let speed = n.dot(&rub.pair.difference(&m.velocities));
-        let shares = rub.pair.shares();
-        let give = |k: usize| if cable.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
-        let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
-        let made = -cable.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
+    for contact in &cable.contacts.self_contacts.friction_contacts {
+        let n = contact.pair.normal;
+        let speed = n.dot(&contact.pair.difference(&m.velocities));
+        let shares = contact.pair.shares();
+        let compliance = |k: usize| if cable.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
+        let sum: f64 = shares.iter().map(|&(k, part)| part * part * compliance(k)).sum();
+        let pressed = -cable.contacts.barrier.at(contact.pair.gap_m).slope * contact.pair.weight / a;
         if !(sum > 0.0) || speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
             continue;
         }
-        let taken = taken_speed(speed, made * sum) / sum;
-        let change = rub.pair.difference(&m.velocities) - rub.pair.difference(&m.previous_velocities);
-        let (_, rubbing, _) = friction::at(rub.sliding(&m.positions), rub.limit, cable.contacts.tuning.slip_m);
-        let acted = n * made - rub.pair.tangent() * (rubbing / a);
-        let over = acted - lasting_impulse(acted - change / sum, n, cable.contacts.self_contacts.friction);
+        let removed = removed_speed(speed, pressed * sum) / sum;
+        let change = contact.pair.difference(&m.velocities) - contact.pair.difference(&m.previous_velocities);
+        let (_, rubbing, _) = friction::at(contact.sliding(&m.positions), contact.limit, cable.contacts.tuning.slip_m);
+        let impulse = n * pressed - contact.pair.tangent() * (rubbing / a);
+        let ended_part = impulse - lasting_impulse(impulse - change / sum, n, cable.contacts.self_contacts.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
-            ended.add(k, over * part, m.velocities[k], n, [Vec2::zeros(); 2], None);
-            m.velocities[k] -= n * (taken * part * give(k));
-            m.previous_velocities[k] += (over - n * taken) * (part * give(k));
+            ended.add(k, ended_part * part, m.velocities[k], n, TouchedMotion::NONE);
+            m.velocities[k] -= n * (removed * part * compliance(k));
+            m.previous_velocities[k] += (ended_part - n * removed) * (part * compliance(k));
             m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
-            given -= n * (taken * part);
-            forgotten += over * part;
+            given -= n * (removed * part);
+            forgotten += ended_part * part;
         }
     }
     // Both are zero unless a support holds a side of the contact.
     cable.motion.account.land(given, forgotten);
-    cable.motion.energies.correct(&ended.more);
+    cable.motion.energies.correct(&ended.extra_work);
 }
 
 /// The normal speed (m/s) that a plastic contact removes: all of an approaching speed, and at most
-/// the part that its force `made` in the step of a receding one.
-fn taken_speed(speed: f64, made: f64) -> f64 {
-    if speed > made { made } else { speed }
+/// the part that its force `pressed` in the step of a receding one.
+fn removed_speed(speed: f64, pressed: f64) -> f64 {
+    if speed > pressed { pressed } else { speed }
 }
 
 /// Impulse (N s) of a contact that lasts after an impact: it balances the other forces, which are

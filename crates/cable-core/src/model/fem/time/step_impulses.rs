@@ -109,7 +109,7 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
             *round -= mesh.direction(k, x) * bar_energy::pull_on(mesh, input, k, x, l(k));
         }
         for (e, side) in [(k - 1, 1), (k, 0)] {
-            *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slides), input.loads.body)[side];
+            *round -= bar_weight::force_on_ends(mesh, e, x, Some(&unknowns.slides), input.loads.body)[side];
         }
     }
     sum

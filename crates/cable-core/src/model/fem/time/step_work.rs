@@ -20,7 +20,7 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::Mesh;
 use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
-use crate::model::fem::system::bar_weight::{self};
+use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::{
     BarBranch, ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns,
 };
@@ -54,7 +54,7 @@ impl StepWork {
 
 /// Adds the work by the `mean` force in the step to its kind, and the excess of that by the force
 /// at the `end` to the numerical work, J.
-fn note(kind: &mut f64, numerical: &mut f64, [mean, end]: [f64; 2]) {
+fn add_work(kind: &mut f64, numerical: &mut f64, [mean, end]: [f64; 2]) {
     *kind += mean;
     *numerical += end - mean;
 }
@@ -72,19 +72,19 @@ struct BalancedStep<'a> {
 pub(in crate::model::fem) fn work_in_step(cable: &CableState, unknowns: &Unknowns, solver: &SolverMemory) -> StepWork {
     let step = BalancedStep { cable, unknowns, ways: &solver.ways.ways };
     let mut works = Works::default();
-    step.supports(&mut works, &solver.ways.reaction);
-    step.loads(&mut works);
+    step.add_support_work(&mut works, &solver.ways.reaction);
+    step.add_load_work(&mut works);
     if !cable.meshing.was_contact_free {
-        step.contacts(&mut works, solver);
+        step.add_contact_work(&mut works, solver);
     }
-    let (mut balanced, mut stored) = (step.inertia() - step.bends(&mut works), None);
+    let (mut balanced, mut stored) = (step.inertia_work() - step.add_bend_work(&mut works), None);
     if cable.meshing.never_slides {
-        let (work, energy) = step.plain_bars(&mut works);
+        let (work, energy) = step.add_plain_bar_work(&mut works);
         balanced -= work;
         stored = Some(energy);
     } else {
-        step.sliding(&mut works);
-        balanced -= step.gravity() + step.bars(&mut works);
+        step.add_sliding_friction_work(&mut works);
+        balanced -= step.gravity_work() + step.add_bar_work(&mut works);
     }
     StepWork { works, balanced, stored }
 }
@@ -95,7 +95,7 @@ impl BalancedStep<'_> {
     }
 
     /// Work of the inertia forces, J.
-    fn inertia(&self) -> f64 {
+    fn inertia_work(&self) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let mut sum = 0.0;
         for (k, inertia) in input.inertial.stiffness.iter().enumerate() {
@@ -119,7 +119,7 @@ impl BalancedStep<'_> {
     }
 
     /// Work of a distributed force (N/m), J.
-    fn distributed(&self, body: Vec2) -> f64 {
+    fn distributed_work(&self, body: Vec2) -> f64 {
         let (mesh, x, slides) = (self.mesh(), &self.unknowns.positions, &self.unknowns.slides);
         let mut moved = Vec2::zeros();
         let mut sum = 0.0;
@@ -130,7 +130,7 @@ impl BalancedStep<'_> {
                 moved += (self.ways[e] + self.ways[e + 1]) * (0.5 * material);
                 continue;
             }
-            let on = bar_weight::on_ends(mesh, e, x, Some(slides), body);
+            let on = bar_weight::force_on_ends(mesh, e, x, Some(slides), body);
             sum += on[0].dot(&self.ways[e]) + on[1].dot(&self.ways[e + 1]);
             let center = Weight::of(mesh, e, &mesh.path(e, x), body).center;
             for (j, sign) in [-1.0, 1.0].into_iter().enumerate().filter(|(j, _)| sliding[*j]) {
@@ -144,9 +144,9 @@ impl BalancedStep<'_> {
     }
 
     /// Work of the weight at the end of the step, J.
-    fn gravity(&self) -> f64 {
+    fn gravity_work(&self) -> f64 {
         let problem = &self.cable.problem;
-        let mut sum = self.distributed(problem.weight);
+        let mut sum = self.distributed_work(problem.weight);
         for (s, node) in problem.supports.iter().zip(&self.cable.meshing.support_node) {
             if let Some(way) = node.and_then(|k| self.ways.get(k)) {
                 sum += problem.gravity().dot(way) * s.mass;
@@ -156,12 +156,12 @@ impl BalancedStep<'_> {
     }
 
     /// Adds the work of wind, current and loads.
-    fn loads(&self, works: &mut Works) {
+    fn add_load_work(&self, works: &mut Works) {
         let (problem, input) = (&self.cable.problem, &self.cable.input);
         let [from, to] = [self.cable.motion.time, input.loads.time_s];
         let mut both = [[from, to], [to, to]].map(|[from, to]| {
             let wind = (problem.wind.at(from) + problem.wind.at(to)) * 0.5;
-            if wind == Vec2::zeros() { 0.0 } else { self.distributed(wind) }
+            if wind == Vec2::zeros() { 0.0 } else { self.distributed_work(wind) }
         });
         let mut point = |way: Vec2, force: &dyn Fn(f64) -> Vec2| {
             both[0] += (force(from) + force(to)).dot(&way) * 0.5;
@@ -179,18 +179,18 @@ impl BalancedStep<'_> {
                 point(self.ways[k], &|t| s.force.at(t));
             }
         }
-        note(&mut works.loads, &mut works.numerical, both);
+        add_work(&mut works.loads, &mut works.numerical, both);
     }
 
     /// Adds the work of supports and hands, whose forces on the cable were the opposite of `before`
     /// (N) at the start.
-    fn supports(&self, works: &mut Works, before: &[Vec2]) {
+    fn add_support_work(&self, works: &mut Works, before: &[Vec2]) {
         let (mesh, x, cable) = (self.mesh(), &self.unknowns.positions, self.cable);
         let mut support = |k: usize, force: Vec2| {
             let known = cable.motion.step_before > 0.0;
             let was = before.get(k).filter(|_| known).map_or(force, |f| -*f);
             let both = [(force + was) * 0.5, force].map(|f| f.dot(&self.ways[k]));
-            note(&mut works.supports, &mut works.numerical, both);
+            add_work(&mut works.supports, &mut works.numerical, both);
         };
         for k in (0..mesh.nodes()).filter(|&k| mesh.fixity[k]) {
             support(k, -cable.answers.reaction[k]);
@@ -233,7 +233,7 @@ impl BalancedStep<'_> {
     /// Adds the damping work of a bar without sliding nodes. Returns the work of stretch at the end
     /// of the step and the energy that it stores then, J.
     #[inline]
-    fn plain_bar(&self, works: &mut Works, e: usize) -> [f64; 2] {
+    fn add_one_plain_bar_work(&self, works: &mut Works, e: usize) -> [f64; 2] {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let (d, way, l) = (x[e + 1] - x[e], self.ways[e + 1] - self.ways[e], mesh.rest_length[e]);
         if mesh.is_break(e) {
@@ -248,18 +248,18 @@ impl BalancedStep<'_> {
         let lengths = [(d - way).norm(), p];
         let mean = self.loss_work(e, &bar, lengths);
         if loss != 0.0 || mean != 0.0 {
-            note(&mut works.material, &mut works.numerical, [mean, -loss * along]);
+            add_work(&mut works.material, &mut works.numerical, [mean, -loss * along]);
         }
         [-pull * along, 0.5 * pull * (p - l)]
     }
 
     /// Adds the damping work of all bars of a mesh without sliding nodes; returns the work of
     /// stretch at the end of the step (J) and the energy stored then without kinetic energy.
-    fn plain_bars(&self, works: &mut Works) -> (f64, Energy) {
+    fn add_plain_bar_work(&self, works: &mut Works) -> (f64, Energy) {
         let (arc_length, x) = (&self.mesh().arc_length, &self.unknowns.positions);
         let (mut moment, mut sum) = (Vec2::zeros(), [0.0; 2]);
         for e in 0..self.mesh().rest_length.len() {
-            let [work, stretch_j] = self.plain_bar(works, e);
+            let [work, stretch_j] = self.add_one_plain_bar_work(works, e);
             sum = [sum[0] + work, sum[1] + stretch_j];
             moment += (x[e] + x[e + 1]) * (0.5 * (arc_length[e + 1] - arc_length[e]));
         }
@@ -269,12 +269,12 @@ impl BalancedStep<'_> {
     }
 
     /// Adds the damping work of bars; returns the work of stretch at the end of the step, J.
-    fn bars(&self, works: &mut Works) -> f64 {
+    fn add_bar_work(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         let mut stretched = 0.0;
         for e in 0..mesh.rest_length.len() {
             if mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none() {
-                stretched += self.plain_bar(works, e)[0];
+                stretched += self.add_one_plain_bar_work(works, e)[0];
                 continue;
             }
             let way = self.ways[e + 1] - self.ways[e];
@@ -287,7 +287,7 @@ impl BalancedStep<'_> {
             // A moving wheel pulls at both bars.
             for (j, sign) in [1.0, -1.0].into_iter().enumerate().filter(|(j, _)| mesh.sliding[e + j].is_some()) {
                 let pull = path.direction * (sign * (elastic[0] + loss[0]));
-                let on = bar_weight::on_ends(mesh, e, x, Some(&self.unknowns.slides), input.loads.body)[j];
+                let on = bar_weight::force_on_ends(mesh, e, x, Some(&self.unknowns.slides), input.loads.body)[j];
                 works.supports -= (pull + on).dot(&self.ways[e + j]);
             }
         }
@@ -298,7 +298,7 @@ impl BalancedStep<'_> {
     }
 
     /// Adds the damping work of bends; returns the work of bending at the end of the step, J.
-    fn bends(&self, works: &mut Works) -> f64 {
+    fn add_bend_work(&self, works: &mut Works) -> f64 {
         let (mesh, input, x) = (self.mesh(), &self.cable.input, &self.unknowns.positions);
         if mesh.is_flexible() {
             return 0.0;
@@ -316,19 +316,19 @@ impl BalancedStep<'_> {
                 mean += 0.5 * (end + even + mesh.branch_moments.sum(bend.slots)) * turned;
             });
             let end = bends_slope(mesh, stiffness, Some(unbent), x, self.ways);
-            note(&mut works.material, &mut works.numerical, [-mean, -end]);
+            add_work(&mut works.material, &mut works.numerical, [-mean, -end]);
         }
         -bends_slope(mesh, mesh.bending_stiffness, None, x, self.ways)
     }
 
-    /// Adds the work of friction at sliding nodes.
-    fn sliding(&self, works: &mut Works) {
+    /// Adds the work of friction at sliding nodes, on their rounds and on the floor.
+    fn add_sliding_friction_work(&self, works: &mut Works) {
         let (mesh, input, x, slides) =
             (self.mesh(), &self.cable.input, &self.unknowns.positions, &self.unknowns.slides);
         for (k, node) in mesh.sliding.iter().enumerate() {
             let Some(node) = node.filter(|_| slides[k] != 0.0) else { continue };
-            let leaves = bar_energy::pull_at_slide(mesh, input, k, 0, x, slides);
-            works.friction -= (node.factor - 1.0) * (leaves - input.inertial.momentum_flux[k]) * slides[k];
+            let pull_before = bar_energy::pull_at_slide(mesh, input, k, 0, x, slides);
+            works.friction -= (node.factor - 1.0) * (pull_before - input.inertial.momentum_flux[k]) * slides[k];
             if let Some(limit) = input.loads.floor_limit.get(k) {
                 let slid = self.cable.contacts.floor_slip[k].x + slides[k];
                 let (_, slope, _) = friction::at(slid, limit * node.floor_factor, self.cable.contacts.slip);
@@ -351,24 +351,24 @@ impl BalancedStep<'_> {
 
     /// Adds the work of normal forces and friction of obstacles, of the floor and of the cable on
     /// itself.
-    fn contacts(&self, works: &mut Works, solver: &SolverMemory) {
+    fn add_contact_work(&self, works: &mut Works, solver: &SolverMemory) {
         let (cable, x, contacts) = (self.cable, &self.unknowns.positions, &self.cable.contacts);
-        let carried = |touch: &ContactPair, share: f64| {
+        let way_of_body = |touch: &ContactPair, share: f64| {
             contacts.motion_of(touch).map_or(Vec2::zeros(), |c| c.way(touch.interpolate(x)) * share)
         };
         for touch in solver.contacts() {
             let force = touch.pair.gap.normal * touch.load(&contacts.barrier);
             let (way, share) = self.way_at(touch);
-            let with = carried(touch, share);
-            works.add_of_body(contacts.motion_of(touch), force.dot(&with));
-            works.impacts += force.dot(&(way - with));
+            let with_body = way_of_body(touch, share);
+            works.add_of_body(contacts.motion_of(touch), force.dot(&with_body));
+            works.impacts += force.dot(&(way - with_body));
         }
-        for rub in &contacts.friction_contacts {
-            let force = contacts.friction_force(rub, x);
-            let (way, share) = self.way_at(&rub.touch);
-            let with = carried(&rub.touch, share);
-            works.add_of_body(contacts.motion_of(&rub.touch), force.dot(&with));
-            works.friction += force.dot(&(way - with));
+        for contact in &contacts.friction_contacts {
+            let force = contacts.friction_force(contact, x);
+            let (way, share) = self.way_at(&contact.touch);
+            let with_body = way_of_body(&contact.touch, share);
+            works.add_of_body(contacts.motion_of(&contact.touch), force.dot(&with_body));
+            works.friction += force.dot(&(way - with_body));
         }
         for (k, &limit) in cable.input.loads.floor_limit.iter().enumerate() {
             if self.mesh().sliding[k].is_none() {
@@ -382,9 +382,9 @@ impl BalancedStep<'_> {
                 let force = -contacts.barrier.at(pair.gap_m).slope * pair.weight;
                 works.impacts += force * pair.normal.dot(&pair.difference(self.ways));
             }
-            for rub in &own.friction_contacts {
-                let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, contacts.tuning.slip_m);
-                works.friction -= slope * rub.pair.tangent().dot(&rub.pair.difference(self.ways));
+            for contact in &own.friction_contacts {
+                let (_, slope, _) = friction::at(contact.sliding(x), contact.limit, contacts.tuning.slip_m);
+                works.friction -= slope * contact.pair.tangent().dot(&contact.pair.difference(self.ways));
             }
         }
     }

@@ -11,7 +11,7 @@ use crate::model::bending_change::BendingChange;
 use crate::model::fem::first_shape::depenetrate;
 use crate::model::fem::mesh::{BarEnd, PUSHED_OUT_REACHES, SlideOver, SlidingNode, round_of};
 use crate::model::fem::obstacle::{IntersectionCheck, place_bodies};
-use crate::model::fem::remesh::{StretchedBars, even_out, insert, settle_down};
+use crate::model::fem::remesh::{StretchedBars, even_out, insert, make_material_at_tangents};
 use crate::model::fem::state::{CableState, NodalMotion, renew_input};
 use crate::model::length_change::LengthChange;
 use crate::model::material_loss::Rubbing;
@@ -336,7 +336,7 @@ fn resolve_bends(cable: &mut CableState, stiffness: f64, stretched_before: &Stre
     };
     let changed: Vec<usize> = (1..mesh.nodes().max(1) - 1).filter(neglects_bend).collect();
     for k in changed {
-        settle_down(cable, k);
+        make_material_at_tangents(cable, k);
     }
     stretched_before.restore(cable);
 }

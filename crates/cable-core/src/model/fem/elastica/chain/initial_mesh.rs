@@ -143,6 +143,7 @@ impl<'a> BarChain<'a> {
         self.load = vec![Vec2::zeros(); n];
     }
 
+    /// Gives the nodes at the stations their position, their clamps and their force.
     fn apply_stations(&mut self, stations: Vec<MeshStation>) {
         let n = self.arc.len();
         for station in stations {
