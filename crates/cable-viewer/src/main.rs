@@ -72,6 +72,7 @@ fn main() -> ExitCode {
     }
 }
 
+/// Saves the pictures asked for, or runs the window.
 fn run(arguments: WindowArguments) -> Result<(), String> {
     if let Some(folder) = arguments.gallery {
         return documentation_pictures::save(&folder);
@@ -113,6 +114,7 @@ fn run(arguments: WindowArguments) -> Result<(), String> {
     eframe::run_native("cable-viewer", options, create).map_err(|e| explain(&e))
 }
 
+/// The scene of a file, or the first of the catalogue.
 fn first_scene(path: Option<PathBuf>) -> Result<(Scene, Option<PathBuf>), String> {
     match path {
         Some(path) => {

@@ -52,6 +52,7 @@ pub fn save(state: &mut AppState, theme: Theme, path: &Path) -> Result<(), Strin
     }
 }
 
+/// Draws the canvas as it is in view, with its caption above, off screen.
 fn draw(state: &mut AppState, theme: Theme) -> Offscreen {
     let [low, high] = state.view.visible_m;
     let side = |k: usize| (high[k] - low[k]).abs() * state.view.camera.points_per_m;
@@ -82,14 +83,15 @@ fn write_caption(ui: &mut Ui, state: &AppState) {
         let (left, right) = area.split_left_right_at_x(area.right() - LEGEND_WIDTH);
         (left.with_max_x(left.right() - GAP), right)
     };
-    ui.scope_builder(UiBuilder::new().max_rect(words), |ui| write_words(ui, state));
+    ui.scope_builder(UiBuilder::new().max_rect(words), |ui| write_name_and_summary(ui, state));
     ui.scope_builder(UiBuilder::new().max_rect(legend), |ui| {
         legend::beside(ui, state);
         safe_reach::legend_beside(ui, state);
     });
 }
 
-fn write_words(ui: &mut Ui, state: &AppState) {
+/// Writes the name of the scene and the summary of its answer, one line each.
+fn write_name_and_summary(ui: &mut Ui, state: &AppState) {
     let scene = &state.document.scene;
     let name = if scene.name.is_empty() { "Untitled scene" } else { &scene.name };
     ui.add(Label::new(RichText::new(name).strong()).truncate());

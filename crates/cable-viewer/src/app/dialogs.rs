@@ -78,6 +78,7 @@ fn close() -> Command {
     Command::File(FileCommand::SetDialog(None))
 }
 
+/// A message with a button that closes it.
 fn message(ui: &mut Ui, title: &str, text: &str, commands: &mut Vec<Command>) {
     ui.heading(title);
     ui.add_space(6.0);
@@ -309,6 +310,7 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: PathPurpose, c
     }
 }
 
+/// Asks whether to save before the scene is replaced.
 fn unsaved(ui: &mut Ui, name: &str, then: &SceneReplacement, commands: &mut Vec<Command>) {
     ui.heading("Unsaved changes");
     ui.add_space(6.0);
@@ -328,6 +330,7 @@ fn unsaved(ui: &mut Ui, name: &str, then: &SceneReplacement, commands: &mut Vec<
     });
 }
 
+/// Asks whether to recover the scene of a window that ended unexpectedly.
 fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) {
     ui.heading("Recover unsaved changes");
     ui.add_space(6.0);
@@ -379,6 +382,7 @@ const CONTROLS: [(&str, &str); 28] = [
     ("Ctrl+P", "Every command, by name"),
 ];
 
+/// The table of pointer and keys.
 fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("Pointer and keys");
     ui.add_space(6.0);

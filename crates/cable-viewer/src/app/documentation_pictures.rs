@@ -152,6 +152,7 @@ fn weak() -> Scene {
     scene
 }
 
+/// Sets up the picture of a safe reach search.
 fn safe_reach(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Light);
     let choice = SafeReachOptions { across: 20, ..SafeReachOptions::default() };
@@ -163,6 +164,7 @@ fn safe_reach(app: &mut ViewerApp, ctx: &Context) {
     view(app, ctx, ViewCommand::SearchSafeReach);
 }
 
+/// Sets up the picture of a comparison with a pinned answer.
 fn compare(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Dark);
     app.apply(ctx, vec![Command::SetModel(Model::Fem), Command::View(ViewCommand::SetUnits(System::Us))]);

@@ -62,7 +62,7 @@ impl Section {
             Self::Selected => panels::selected_item::ui,
             Self::Warnings => panels::warnings::ui,
             Self::MarkedPlace | Self::UnmarkedPlace => panels::analysis::tension_budget::ui,
-            Self::Readouts if state.ui.results_beside => panels::readouts::rest,
+            Self::Readouts if state.ui.results_beside => panels::readouts::below_headline,
             Self::Readouts => panels::readouts::ui,
             Self::SafeReach => panels::analysis::safe_reach::ui,
             Self::Compare => panels::analysis::compare::ui,
@@ -420,6 +420,7 @@ fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, id: Id, now: T) 
     before != Some(now)
 }
 
+/// A column of sections that scrolls.
 fn scroll(ui: &mut Ui, column: SectionColumn, state: &AppState, commands: &mut Vec<Command>) {
     let shown = newly_wanted(ui, column, state);
     // The bar stands beside figures, not over their last letters.

@@ -56,6 +56,7 @@ pub fn feedback() -> FileCommand {
     FileCommand::SetDialog(Some(Dialog::Feedback { answers, path }))
 }
 
+/// An entry of a menu; returns whether it was clicked.
 fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
     let mut button = Button::new(text);
     if let Some(shortcut) = shortcut {
@@ -96,6 +97,7 @@ fn help(text: &str) -> &'static str {
     }
 }
 
+/// The file menu.
 fn file(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (text, shortcut, command) in [
         ("New", Some(&keys::NEW), FileCommand::New),
@@ -147,6 +149,7 @@ pub fn import_map() -> FileCommand {
     FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))
 }
 
+/// The edit menu.
 fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let (undo, redo) = state.document.undo.can_undo_and_redo();
     for (text, shortcut, enabled, command) in
@@ -184,6 +187,7 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The view menu.
 fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if entry(ui, "Fit scene (F)", None) {
         commands.push(Command::View(ViewCommand::Fit));

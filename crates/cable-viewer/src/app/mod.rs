@@ -41,7 +41,7 @@ use crate::io::autosave::{Autosave, Changes};
 use crate::io::{first_steps_mark, recent_files};
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach, work_precision};
 use crate::render::theme;
-use crate::state::analysis::hold;
+use crate::state::analysis::pin_answers;
 use crate::state::dialog::Dialog;
 use crate::state::job_questions::{bending_query_fits, friction_query, friction_query_fits};
 use crate::state::live::RestartCause;
@@ -112,6 +112,7 @@ impl ViewerApp {
         Self::start(ctx, scene, path, WorkerKind::Inline)
     }
 
+    /// The application with a scene, which its worker begins to solve.
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, worker_kind: WorkerKind) -> Self {
         theme::install(ctx);
         ctx.add_plugin(early_clicks::HeldClicks::default());
@@ -221,6 +222,8 @@ impl ViewerApp {
         self.pending_edits.is_empty()
     }
 
+    /// Does what commands asked for outside the state: files, clipboard, jobs and requests to the
+    /// worker.
     fn perform_effects(&mut self, ctx: &egui::Context, effects: Effects) {
         if let (true, Some(autosave)) = (effects.forget_recovery, &mut self.autosave) {
             autosave.forget();
@@ -279,7 +282,7 @@ impl ViewerApp {
         if let Some(job) = &self.model_comparison_job {
             self.state.analysis.models = job.progress();
             if let model_comparison::Progress::Done(found) = self.state.analysis.models.clone() {
-                hold(&mut self.state.analysis, &found, &self.state.document.saved);
+                pin_answers(&mut self.state.analysis, &found, &self.state.document.saved);
             }
             if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
                 self.model_comparison_job = None;
@@ -421,6 +424,7 @@ impl ViewerApp {
         }
     }
 
+    /// Takes a report of the worker into the state.
     fn show(&mut self, report: Report) {
         let state = &mut self.state;
         if report.history_restarts {

@@ -64,6 +64,7 @@ fn double_click(state: &AppState, canvas: Rect, p: Pos2, commands: &mut Vec<Comm
     }
 }
 
+/// Finds what is under the pointer and shows its cursor.
 fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
     let pointer = response.hover_pos();
     let item = match &state.selection.grab {
@@ -88,6 +89,7 @@ fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     ui.ctx().set_cursor_icon(icon);
 }
 
+/// Zooms about the pointer.
 fn wheel(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
     let Some(p) = response.hover_pos() else { return };
     let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
@@ -98,6 +100,7 @@ fn wheel(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     }
 }
 
+/// Grabs what the pointer pressed, or begins a marquee; moves it, and lets go.
 fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
     let canvas = response.rect;
     if response.drag_started_by(PointerButton::Primary)
@@ -146,6 +149,8 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
     }
 }
 
+/// Moves what is grabbed to the pointer at `p`: a load along its cable, other things freely or on
+/// the grid.
 fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands: &mut Vec<Command>) {
     if let Item::Load(k) = grab.item {
         // A load slides along its cable.

@@ -107,6 +107,7 @@ pub fn add_cable(state: &mut AppState) {
     (state.selection.selected, state.selection.also_selected) = (Some(item), Vec::new());
 }
 
+/// Adds a copy of a cable, shifted and with a name of its own.
 fn put_cable(state: &mut AppState, cable: &Cable, shift: &impl Fn(Point) -> Point) -> Item {
     let mut cable = cable.clone();
     cable.name = unique(&cable.name, |n| state.document.scene.cables.iter().any(|c| c.name == n));
@@ -121,6 +122,7 @@ fn put_cable(state: &mut AppState, cable: &Cable, shift: &impl Fn(Point) -> Poin
     Item::Cable(state.document.scene.cables.len() - 1)
 }
 
+/// Adds an obstacle, shifted and with a name of its own.
 fn put_obstacle(state: &mut AppState, mut obstacle: Obstacle, shift: &impl Fn(Point) -> Point) -> Item {
     obstacle.name = unique(&obstacle.name, |n| state.document.scene.obstacles.iter().any(|o| o.name == n));
     match &mut obstacle.shape {

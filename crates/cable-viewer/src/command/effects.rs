@@ -47,6 +47,7 @@ pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
     submit(state, EditStart::NewScene, effects);
 }
 
+/// Sends the scene as edited to the worker.
 fn submit(state: &mut AppState, start: EditStart, effects: &mut Effects) {
     // Edits apply to the live state, so a replay ends first.
     state.live.show_time(None);

@@ -115,6 +115,7 @@ pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>)
     }
 }
 
+/// Executes a file command that needs no confirmation.
 fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
         FileCommand::New => {
@@ -166,7 +167,7 @@ fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
         },
         FileCommand::OpenRun(path) => open_run(state, &path, effects),
         FileCommand::AddReferenceRun(path) => match read_run(&path) {
-            Ok(opened) => hold(state, &path, opened),
+            Ok(opened) => pin_run(state, &path, opened),
             Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
         },
         FileCommand::SetDialog(dialog) => set_dialog(state, dialog),
@@ -282,6 +283,7 @@ fn is_same_source(document: &Document, scene: &Scene, path: Option<&Path>) -> bo
     }
 }
 
+/// Replaces the document; all that belongs to the old one ends.
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
     if !is_same_source(&state.document, &scene, path.as_deref()) {
         // Pins belong to the file that they were made in.
@@ -316,7 +318,8 @@ fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     }
 }
 
-fn hold(state: &mut AppState, path: &Path, opened: OpenedRun) {
+/// Adds a run read from a folder to the pinned answers.
+fn pin_run(state: &mut AppState, path: &Path, opened: OpenedRun) {
     let samples: Vec<Sample> = opened.answers.iter().map(Sample::of).collect();
     let events = opened.answers.iter().map(|a| a.warnings.len()).sum();
     let run = KeptRun::of(samples.iter(), &opened.answers, events).map(Arc::new);
@@ -332,6 +335,7 @@ fn hold(state: &mut AppState, path: &Path, opened: OpenedRun) {
     }
 }
 
+/// Saves the scene; what waited for that follows.
 fn save(state: &mut AppState, path: &Path, effects: &mut Effects) {
     match scene_file::save(path, &state.document.scene) {
         Ok(()) => {
@@ -352,6 +356,7 @@ fn save(state: &mut AppState, path: &Path, effects: &mut Effects) {
     }
 }
 
+/// Writes the recording as a run folder.
 fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
     let scene = state.live.latest.scene.as_deref().ok_or("nothing was solved yet")?;
     let request =

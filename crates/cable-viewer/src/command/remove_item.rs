@@ -29,6 +29,7 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
     (state.selection.selected, state.selection.also_selected) = (None, Vec::new());
 }
 
+/// Removes an item; ends of a cable become free, and the last cable stays.
 fn remove(scene: &mut Scene, item: Item) {
     match item {
         Item::Cable(k) if scene.cables.len() > 1 && k < scene.cables.len() => {
@@ -87,6 +88,7 @@ pub fn drop_lost_selection(state: &mut AppState) {
     state.selection.also_selected = also;
 }
 
+/// True if the scene has the item.
 fn exists(state: &AppState, item: Item) -> bool {
     let scene = &state.document.scene;
     match item {

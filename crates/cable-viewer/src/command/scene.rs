@@ -345,6 +345,7 @@ pub(super) fn release_spring_support(state: &mut AppState, effects: &mut Effects
     }
 }
 
+/// Applies a command to the scene.
 fn change(state: &mut AppState, command: SceneCommand) {
     let scene = &mut state.document.scene;
     match command {
@@ -390,6 +391,7 @@ fn change(state: &mut AppState, command: SceneCommand) {
 /// Speed of a first leg, m/s: a careful walk.
 const FIRST_LEG_M_PER_S: f64 = 0.3;
 
+/// Adds a leg after the selected one, or at the end of the path, with the speed of the one before.
 fn add_leg(state: &mut AppState, to_x_m: f64) {
     let Some(robot) = state.document.scene.robot.as_mut().filter(|_| to_x_m.is_finite()) else { return };
     let place = match state.selection.selected {

@@ -15,6 +15,7 @@ pub(super) struct Bounds {
 impl Bounds {
     pub(super) const EMPTY: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
+    /// Includes a point (m).
     pub(super) fn add(&mut self, p: Point) {
         if p.iter().all(|v| v.is_finite()) {
             for (k, v) in p.into_iter().enumerate() {
@@ -29,6 +30,7 @@ impl Bounds {
     }
 }
 
+/// Includes the cables of the answer, and the places of supports.
 fn add_cables(state: &AppState, bounds: &mut Bounds) {
     // The cable of a scene that was there before says nothing of where this one will be.
     if let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_answered()) {

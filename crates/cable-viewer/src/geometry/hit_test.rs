@@ -151,6 +151,7 @@ fn distance_to_segment(a: Point, b: Point, p: Point) -> f64 {
     (a[0] + (b[0] - a[0]) * f - p[0]).hypot(a[1] + (b[1] - a[1]) * f - p[1])
 }
 
+/// The topmost obstacle under a point of the canvas.
 fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     let world = state.view.camera.to_world(canvas, p);
     let reach = f64::from(LINE_HIT_RADIUS) / state.view.camera.points_per_m;

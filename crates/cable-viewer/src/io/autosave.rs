@@ -115,6 +115,7 @@ impl Autosave {
         }
     }
 
+    /// Writes a copy of a scene on a thread of its own.
     fn write(&mut self, scene: Scene) {
         let (path, copy) = (self.path.clone(), scene.clone());
         let job = move || {
@@ -136,6 +137,7 @@ impl Autosave {
         }
     }
 
+    /// Stores how a writer ended.
     fn keep(&mut self, writer: JoinHandle<Result<(), String>>) {
         self.fault = match writer.join() {
             Ok(Ok(())) => None,

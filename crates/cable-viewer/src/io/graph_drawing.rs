@@ -133,6 +133,7 @@ struct Drawing {
 }
 
 impl Drawing {
+    /// The drawing of a graph as it is in view.
     fn of(graph: &GraphInView) -> Self {
         let (entries, rows) = legend(graph);
         let under = MARGINS[1] + LEGEND_LINE * rows as f64;
@@ -170,6 +171,7 @@ impl Drawing {
         self.marks.push(GraphMark::Text(TextLabel::new([at + SWATCH + 6.0, low], TextAnchor::Start, name)));
     }
 
+    /// Adds the area between the ranges of the friction search.
     fn ribbon(&mut self, graph: &GraphInView, entry: Option<&LegendEntry>) {
         let ribbon = graph.known_ribbon();
         if ribbon.is_empty() {
@@ -184,6 +186,7 @@ impl Drawing {
         }
     }
 
+    /// Adds grid lines with their numbers.
     fn grid(&mut self, graph: &GraphInView) {
         let ([left, bottom, right, top], frame) = (graph.bounds, self.frame);
         for v in ticks(left, right) {
@@ -200,6 +203,7 @@ impl Drawing {
         }
     }
 
+    /// Adds line `k` of the graph and its entry in the legend.
     fn line(&mut self, graph: &GraphInView, k: usize, entry: Option<&LegendEntry>) {
         let line = &graph.lines[k];
         let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
@@ -212,6 +216,7 @@ impl Drawing {
         }
     }
 
+    /// Adds the limits of the cable with their names.
     fn limits(&mut self, graph: &GraphInView) {
         let [left, under, right, _] = self.frame;
         for (limit, name, colour) in limits(graph) {

@@ -150,6 +150,7 @@ fn peaks(history: &HistoryTable, k: usize, cables: &mut [CableSolution]) {
     }
 }
 
+/// The energy in row `k` of the history.
 fn energy(history: &HistoryTable, k: usize) -> Energy {
     let of = |name| extra(history, name, k).unwrap_or(0.0);
     Energy {
@@ -193,6 +194,7 @@ fn reactions(scene: &Scene, history: &HistoryTable, k: usize, cables: &mut [Cabl
     }
 }
 
+/// The report of the robot in row `k` of the history; None if the run has no robot.
 fn robot(scene: &Scene, history: &HistoryTable, k: usize, cables: &[CableSolution]) -> Option<RobotReport> {
     let of = |name| extra(history, name, k);
     let hitched = scene.cables.iter().zip(cables).flat_map(|(c, answer)| c.supports.iter().zip(&answer.supports));

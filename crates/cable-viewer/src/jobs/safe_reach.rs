@@ -162,6 +162,7 @@ pub fn start(query: SafeReachQuery, shown: impl Fn() + Send + 'static) -> Job {
     Job::start("safe reach", move |listen| find(query, listen), shown)
 }
 
+/// Finds the safe reach, and tells the listener about maps that are not yet complete.
 fn find(query: SafeReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
     let scene = Arc::new(query.scene);
     let mut progress = -MIN_PROGRESS_STEP;

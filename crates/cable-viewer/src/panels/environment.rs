@@ -132,6 +132,7 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The choice of side view or plan view.
 fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut view = state.document.scene.view;

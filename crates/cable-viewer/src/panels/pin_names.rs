@@ -34,6 +34,7 @@ pub fn pin_names(state: &AppState) -> Vec<PinName> {
     names
 }
 
+/// The name of a pin by what makes it different from the others.
 fn name(pin: &Reference, pins: &[Reference]) -> PinName {
     let scene = if pin.scene.name.is_empty() { "Untitled scene" } else { &pin.scene.name };
     let changes = pin.changes.iter().filter(|c| c.key != "name");

@@ -82,6 +82,7 @@ const SEPARATOR_WIDTH: f32 = 22.0;
 /// Room of the sign for what is told on hover only, points.
 const ELLIPSIS_WIDTH: f32 = 20.0;
 
+/// Shows the most important items that fit, and an ellipsis for the others.
 fn show_status(ui: &mut Ui, items: Vec<StatusItem>) {
     let font = TextStyle::Body.resolve(ui.style());
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), font.clone(), Color32::WHITE).size().x;
@@ -119,6 +120,7 @@ fn show_status(ui: &mut Ui, items: Vec<StatusItem>) {
     }
 }
 
+/// The playback speed, with its slider if there is room.
 fn speed(ui: &mut Ui, state: &AppState, with_slider: bool, commands: &mut Vec<Command>) {
     let label = ui.label("Speed").id;
     if with_slider {

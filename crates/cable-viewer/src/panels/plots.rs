@@ -33,7 +33,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
-    asked(ui, state, &mut view);
+    apply_request(ui, state, &mut view);
     if ui.available_width() >= LEAST_ONE_ROW_WIDTH {
         ui.horizontal(|ui| {
             controls(ui, state, &mut view);
@@ -81,7 +81,25 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.data_mut(|d| d.insert_temp(id, view));
 }
 
+/// The row of controls: measures, following, and the time window.
 fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
+    measures(ui, state, view);
+    ui.separator();
+    checkbox(ui, &mut view.follow, "Follow").on_hover_text(
+        "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
+         to fit. Click for a cursor, again for a second and their difference, again for none",
+    );
+    time_window(ui, view);
+    if state.live.history.samples.len() >= 2
+        && state.document.scene.cables.len() > 1
+        && matches!(view.measure, Measure::Cable(CableQuantity::Stress | CableQuantity::Strain))
+    {
+        ui.weak("Over time: tension, as there are several cables");
+    }
+}
+
+/// The measures to choose from; those of a robot only if there is one.
+fn measures(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     for measure in Measure::ALL {
         let robot = matches!(measure, Measure::Pull | Measure::Speed);
         if !robot || state.document.scene.robot.is_some() {
@@ -95,11 +113,10 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
             }
         }
     }
-    ui.separator();
-    checkbox(ui, &mut view.follow, "Follow").on_hover_text(
-        "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
-         to fit. Click for a cursor, again for a second and their difference, again for none",
-    );
+}
+
+/// The length of the past that the time graph follows.
+fn time_window(ui: &mut Ui, view: &mut GraphView) {
     let present = WINDOWS.iter().find(|(w, _)| *w == view.window_s).map_or("", |(_, text)| text);
     let combo = ComboBox::from_id_salt("window").selected_text(present).width(84.0);
     let shown = combo.show_ui(ui, |ui| {
@@ -109,16 +126,10 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.live.history.samples.len() >= 2
-        && state.document.scene.cables.len() > 1
-        && matches!(view.measure, Measure::Cable(CableQuantity::Stress | CableQuantity::Strain))
-    {
-        ui.weak("Over time: tension, as there are several cables");
-    }
 }
 
 /// Takes in a request that was made of the graphs since the frame before.
-fn asked(ui: &Ui, state: &AppState, view: &mut GraphView) {
+fn apply_request(ui: &Ui, state: &AppState, view: &mut GraphView) {
     let id = Id::unique("graph requests");
     let (count, request) = state.ui.graph_request;
     let before = ui.data(|d| d.get_temp::<u64>(id)).unwrap_or(0);
@@ -149,6 +160,7 @@ fn over_time(ui: &mut Ui, state: &AppState, view: GraphView, height: f32, graph:
     dimmed_if_old(ui, state, |ui| graph(ui, state, &pins, view, height))
 }
 
+/// The graph along the cable.
 fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> GraphResponse {
     let index = state.current_cable();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);

@@ -60,6 +60,7 @@ pub fn hand_speed(state: &AppState) -> f64 {
     state.live.manual_robot_speed.map_or(top, |v| v.min(top))
 }
 
+/// The controls that drive the robot by hand.
 fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let speed = hand_speed(state);
     let order = state.live.robot_speed_command;
@@ -105,6 +106,7 @@ fn pull_n(state: &AppState) -> f64 {
     x.hypot(y)
 }
 
+/// What the robot does now; `pull_n` is the pull on its hitch.
 fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
     let share = if r.traction_n > 0.0 { r.thrust_n.abs() / r.traction_n } else { 0.0 };
     let Unit { symbol, si, .. } = Unit::M_PER_S.display();
@@ -150,6 +152,7 @@ fn set(robot: Robot, commands: &mut Vec<Command>) {
     commands.push(Command::Scene(SceneCommand::EditDone));
 }
 
+/// Track friction and rolling resistance.
 fn figures(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let friction = robot.track_friction.unwrap_or(TRACK_FRICTION);
     let rolling = robot.rolling_resistance.unwrap_or(ROLLING_RESISTANCE);
@@ -185,6 +188,7 @@ pub fn first_wait() -> RobotTask {
     RobotTask::Wait { wait_s: FIRST_LEG.1 }
 }
 
+/// The legs of the path.
 fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     ui.separator();
     ui.weak(if robot.path.is_empty() { "No path: it stands until it is driven" } else { "Path" });
@@ -214,6 +218,7 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     });
 }
 
+/// The fields of leg `k`.
 fn leg(ui: &mut Ui, robot: &Robot, k: usize, faults: &mut Vec<String>, commands: &mut Vec<Command>) {
     let Some(task) = robot.path.get(k) else { return };
     let number = k + 1;

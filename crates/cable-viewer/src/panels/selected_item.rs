@@ -93,6 +93,7 @@ fn remove(ui: &mut Ui, state: &AppState, item: Item, commands: &mut Vec<Command>
 
 type Figure = (&'static str, String, &'static str);
 
+/// The figures of an item's answer.
 fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
     match item {
         Item::Support { cable, support } => of_support(state, answer, cable, support),
@@ -106,6 +107,7 @@ fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
     }
 }
 
+/// The figures of a support.
 fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize) -> Vec<Figure> {
     let Some(s) = answer.cables.get(cable).and_then(|c| c.supports.get(support)) else { return Vec::new() };
     // The answer leaves one that no piece hangs on where the run began.
@@ -131,6 +133,7 @@ fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize)
     rows
 }
 
+/// The figures of an obstacle, over all cables.
 fn of_obstacle(answer: &Solution, name: &str) -> Vec<Figure> {
     let contacts: Vec<&ContactReport> =
         answer.cables.iter().flat_map(|c| &c.contacts).filter(|c| c.obstacle == name).collect();
@@ -151,6 +154,7 @@ fn of_obstacle(answer: &Solution, name: &str) -> Vec<Figure> {
     ]
 }
 
+/// The figures of a load.
 fn of_load(state: &AppState, answer: &Solution, k: usize) -> Vec<Figure> {
     let Some(load) = state.document.scene.loads.get(k) else { return Vec::new() };
     let Some(cable) = answer.cables.iter().find(|c| c.name == load.cable) else { return Vec::new() };

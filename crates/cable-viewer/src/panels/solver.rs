@@ -92,6 +92,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     cost(ui, state, answer);
 }
 
+/// Tolerance, speed and stiffness of the hand, and the number of segments.
 fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Settings { tolerance, segments, .. } = state.solver.settings;
     let usual = Settings::default();
@@ -128,6 +129,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The choice of one hand stiffness for all cables.
 fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let stiffness = state.solver.settings.hand_stiffness_n_per_m;
     let set =
@@ -146,6 +148,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
     }
 }
 
+/// The choice whether a hand may pull a cable beyond its length.
 fn pull_past_length(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut pulls = state.solver.pulls_past_length;
     let help = "On: a support that is dragged farther than the cable reaches, while time runs, is pulled by the hand's \
@@ -160,6 +163,7 @@ fn largest_mesh(answer: Option<&Solution>) -> Option<usize> {
     nodes.checked_sub(1).filter(|&n| n > 0)
 }
 
+/// What the last solve or step took.
 fn cost(ui: &mut Ui, state: &AppState, answer: &Solution) {
     let cost = answer.cost;
     let status = match &state.solver.status {

@@ -43,6 +43,7 @@ pub(super) fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64
     [if low < 0.0 { low - HEADROOM * height } else { 0.0 }, low + (1.0 + HEADROOM) * height]
 }
 
+/// Grid lines at round values, at most about `parts` of them.
 pub(super) fn grid_marks(input: GridInput, parts: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let step = round_step(high - low, parts);
@@ -89,6 +90,7 @@ enum AxisEnd {
     Right,
 }
 
+/// The end of the axis at which a label at `value` would be cut off, if any.
 fn end_at(value: f64, shown: &RangeInclusive<f64>, width: f32) -> Option<AxisEnd> {
     let (start, end) = (*shown.start(), *shown.end());
     let per_point = (end - start) / f64::from(width.max(1.0));

@@ -471,6 +471,7 @@ fn wheel(plot: &mut PlotUi<'_>) -> bool {
     true
 }
 
+/// Draws the time shown, the cursors and their text.
 fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: Option<&str>) {
     if let Some(x) = mark {
         plot.vline(egui_plot::VLine::new("Shown", x).color(TIME_MARK).width(1.5).allow_hover(false));
@@ -533,6 +534,7 @@ enum Dashes {
     Dashed,
 }
 
+/// A sample of a line for the legend.
 fn swatch(ui: &mut Ui, colour: Color32, dashes: Dashes) {
     let (rect, _) = ui.allocate_exact_size(vec2(SWATCH, 10.0), Sense::hover());
     let parts: &[[f32; 2]] = match dashes {

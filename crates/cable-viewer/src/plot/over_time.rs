@@ -37,6 +37,7 @@ pub fn second(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, h
     graph(ui, state, pins, GraphView { measure, ..view }, &title, height)
 }
 
+/// The graph over time.
 fn graph(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, title: &str, height: f32) -> GraphResponse {
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };

@@ -67,7 +67,7 @@ impl Measure {
         }
     }
 
-    /// Returns what it is, on hover.
+    /// The explanation on hover.
     #[must_use]
     pub fn help(self) -> &'static str {
         match self {

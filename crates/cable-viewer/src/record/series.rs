@@ -87,6 +87,7 @@ pub fn envelope(
     known.map(|c| (c.sum.map(|s| s / c.count), c)).map(|(mean, c)| (mean, [mean[0], c.low, c.high])).unzip()
 }
 
+/// Appends the extremes of a column, in the order of time.
 fn push(out: &mut Vec<[f64; 2]>, column: Option<[[f64; 2]; 2]>) {
     let Some([low, high]) = column else { return };
     let (first, second) = if low[0] <= high[0] { (low, high) } else { (high, low) };

@@ -247,6 +247,7 @@ struct FrameGeometry {
 }
 
 impl FrameGeometry {
+    /// The corners, triangles and tiles of a frame.
     fn of(
         jobs: &[ClippedPrimitive],
         screen: Rect,
@@ -525,6 +526,7 @@ struct Picture {
 }
 
 impl Picture {
+    /// The texture that keeps the picture from frame to frame.
     fn new(
         device: &wgpu::Device,
         format: wgpu::TextureFormat,
@@ -556,6 +558,7 @@ impl Picture {
 }
 
 impl Device {
+    /// The buffers, textures and pipelines of the painter.
     fn new(device: &wgpu::Device, queue: &wgpu::Queue, format: wgpu::TextureFormat) -> Self {
         let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
         let uniform = wgpu::BindingType::Buffer {
@@ -656,6 +659,7 @@ impl Device {
     }
 }
 
+/// A buffer of a size (bytes).
 fn buffer_of(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("software drawing"),
@@ -665,6 +669,7 @@ fn buffer_of(device: &wgpu::Device, size: u64, usage: wgpu::BufferUsages) -> wgp
     })
 }
 
+/// A texture for glyphs, of a size (pixels).
 fn font_of(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: Some("font"),
@@ -678,6 +683,7 @@ fn font_of(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
     })
 }
 
+/// Binds the inputs of the shader.
 fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
@@ -697,6 +703,7 @@ fn bind(
     })
 }
 
+/// The pipeline that draws triangles with this fill.
 fn pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
@@ -727,6 +734,7 @@ fn pipeline(
     PipelineParts { shader: SHADER, entry_points, corners, target, layout }.build(device)
 }
 
+/// The pipeline that copies the kept picture.
 fn copy_pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
@@ -752,6 +760,7 @@ struct PipelineParts<'a> {
 }
 
 impl PipelineParts<'_> {
+    /// Makes the pipeline.
     fn build(self, device: &wgpu::Device) -> wgpu::RenderPipeline {
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("software drawing"),

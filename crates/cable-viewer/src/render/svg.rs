@@ -64,6 +64,7 @@ fn line(stroke: Stroke) -> String {
     format!("{} stroke-width=\"{}\"", colour("stroke", stroke.color), stroke.width)
 }
 
+/// The stroke attributes of a path.
 fn path_line(stroke: &PathStroke, points: &[Pos2]) -> String {
     let color = match &stroke.color {
         ColorMode::Solid(color) => *color,
@@ -86,6 +87,7 @@ impl LineElement {
     }
 }
 
+/// Writes a polygon or polyline.
 fn path(out: &mut String, points: &[Pos2], element: LineElement, inside: Color32, stroke: &PathStroke) {
     let words: Vec<String> = points.iter().map(|p| format!("{:.2},{:.2}", p.x, p.y)).collect();
     let name = match element {
@@ -101,6 +103,7 @@ fn path(out: &mut String, points: &[Pos2], element: LineElement, inside: Color32
     );
 }
 
+/// Writes a shape.
 fn draw(out: &mut String, shape: &Shape) {
     let _ = match shape {
         Shape::Vec(shapes) => {
@@ -165,6 +168,7 @@ fn draw(out: &mut String, shape: &Shape) {
     };
 }
 
+/// Writes a rectangle.
 fn rectangle(out: &mut String, r: &RectShape) {
     // A blurred one is a shadow.
     if r.blur_width > 0.0 {

@@ -135,6 +135,7 @@ pub fn install(ctx: &Context) {
     }
 }
 
+/// Sets the colours of widgets.
 fn visuals(visuals: &mut Visuals, palette: &Palette) {
     let dark = visuals.dark_mode;
     visuals.panel_fill = if dark { Color32::from_rgb(28, 31, 37) } else { Color32::from_rgb(244, 245, 247) };

@@ -45,6 +45,7 @@ impl Textures {
         }
     }
 
+    /// Applies a change of a texture.
     fn change(&mut self, id: TextureId, change: &ImageDelta) {
         let ImageData::Color(image) = &change.image;
         let Some([left, top]) = change.pos else {
@@ -128,6 +129,7 @@ fn pixels(clip: Rect, pixels_per_point: f32, size: [u32; 2]) -> [u32; 4] {
     [pixel(clip.min.x, size[0]), pixel(clip.min.y, size[1]), pixel(clip.max.x, size[0]), pixel(clip.max.y, size[1])]
 }
 
+/// Draws the triangles of a mesh.
 fn draw_mesh(picture: &mut RgbaImage, mesh: &Mesh, texture: &Texture, clip: Clip) {
     for triangle in mesh.indices.chunks_exact(3) {
         let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
@@ -152,6 +154,7 @@ fn top_or_left(from: Pos2, to: Pos2) -> bool {
     to.y < from.y || (to.y == from.y && to.x > from.x)
 }
 
+/// Draws a triangle; pixels on an edge between two belong to one of them.
 fn draw_triangle(picture: &mut RgbaImage, texture: &Texture, corners: [&Vertex; 3], clip: Clip) {
     let Clip { pixels: clip, pixels_per_point: scale } = clip;
     let [mut a, mut b, c] = corners;

@@ -80,9 +80,9 @@ impl Reference {
     }
 }
 
-/// Holds each answer, in place of one held before of the same scene and model at rest, as far as
+/// Pins each answer, in place of one pinned before of the same scene and model at rest, as far as
 /// there is room. `saved`: the scene as it was opened or saved.
-pub fn hold(analysis: &mut Analysis, found: &ModelComparison, saved: &Scene) {
+pub fn pin_answers(analysis: &mut Analysis, found: &ModelComparison, saved: &Scene) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };
         let (scene, changes) = (Arc::clone(&found.scene), analysis.changes_to(&found.scene, saved));

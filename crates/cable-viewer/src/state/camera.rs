@@ -46,6 +46,11 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 /// cover the ends of the cable; larger: the window is wasted.
 pub const BORDER: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
 
+/// Least room that a fitted scene gets beside its borders, points, and least size of a scene, m. A
+/// choice, tuned on nothing: they keep the scale finite.
+const MIN_FITTED_POINTS: f32 = 40.0;
+const MIN_FITTED_SIZE_M: f64 = 1e-3;
+
 /// Greatest factor by which a view of the scene widens when something leaves it. Larger: a cable
 /// that falls for ever becomes a dot; smaller: a robot that drives far has its cable out of view.
 const MAX_WIDENING: f64 = 4.0;
@@ -157,7 +162,8 @@ impl Camera {
         true
     }
 
-    /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points).
+    /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points) as
+    /// in [`BORDER`].
     pub fn fit(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) {
         self.fit_wanted = false;
         self.fitted_to = Some(canvas.size().into());
@@ -166,12 +172,13 @@ impl Camera {
             return;
         }
         // In a small canvas the border shrinks before the scene does.
-        let share = |k: usize, points: f32| border[k] * (0.5 * points / (border[k & 2] + border[(k & 2) + 1])).min(1.0);
-        let (width, height) = (canvas.width(), canvas.height());
-        let [left, right, top, bottom] = [share(0, width), share(1, width), share(2, height), share(3, height)];
-        let room =
-            |k: usize, points: f32, border: f32| f64::from((points - border).max(40.0)) / (high[k] - low[k]).max(1e-3);
-        let scale = room(0, canvas.width(), left + right).min(room(1, canvas.height(), top + bottom));
+        let shrunk = |pair: [f32; 2], points: f32| pair.map(|b| b * (0.5 * points / (pair[0] + pair[1])).min(1.0));
+        let [left, right] = shrunk([border[0], border[1]], canvas.width());
+        let [top, bottom] = shrunk([border[2], border[3]], canvas.height());
+        let scale_of = |axis: usize, points: f32, borders: f32| {
+            f64::from((points - borders).max(MIN_FITTED_POINTS)) / (high[axis] - low[axis]).max(MIN_FITTED_SIZE_M)
+        };
+        let scale = scale_of(0, canvas.width(), left + right).min(scale_of(1, canvas.height(), top + bottom));
         self.points_per_m = scale.clamp(*SCALE.start(), *SCALE.end());
         // The middle of the part within the borders is not that of the canvas.
         self.centre_m = [

@@ -13,6 +13,7 @@ pub fn sentence(of: &impl Sentence) -> String {
     plain(&of.sentence(system::current()))
 }
 
+/// A sentence of the core with the words of the window: code becomes quotes.
 fn plain(text: &str) -> String {
     // A sentence about a file has the words of the file.
     let of_file = [".csv", ".toml", "line "].iter().any(|word| text.contains(word));

@@ -23,6 +23,7 @@ pub fn radio_value<T: PartialEq>(ui: &mut Ui, value: &mut T, of: T, text: impl I
     response
 }
 
+/// Adds a widget whose empty box has an outline.
 fn outlined(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     let before = ui.visuals().widgets.inactive;
     let paper = ui.visuals().extreme_bg_color;

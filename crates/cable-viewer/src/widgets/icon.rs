@@ -77,6 +77,7 @@ pub fn text_button(ui: &mut Ui, icon: Icon, text: &str, width: f32) -> Response 
     answer.response
 }
 
+/// Draws an icon into a rectangle.
 fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) {
     // Points of the sign lie in −1…1, y down.
     let at = |x: f32, y: f32| rect.center() + egui::vec2(x, y) * (0.5 * SIDE);

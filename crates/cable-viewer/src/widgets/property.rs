@@ -108,6 +108,7 @@ pub fn row(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance) -> Prop
     change
 }
 
+/// The slider of a property.
 fn slide(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, change: &mut PropertyEdit) {
     let si = quantity.unit.display().si;
     let rail = SliderRange { ends: quantity.usual.map(|v| v / si), logarithmic: quantity.logarithmic };
@@ -123,6 +124,7 @@ fn slide(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, change: &
     });
 }
 
+/// The button that resets a property; returns whether it was clicked.
 fn reset(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, typed_wrong: bool) -> bool {
     let differs = known.origin.as_ref().is_some_and(|(v, _)| *v != known.value) || typed_wrong;
     let response = icon::plain_button_if(differs, ui, Icon::Reset);
@@ -134,6 +136,7 @@ fn reset(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance, typed_wro
     response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
 }
 
+/// The explanation of a property on hover.
 fn explanation(ui: &mut Ui, quantity: &PropertyQuantity, known: &Provenance) {
     ui.set_max_width(300.0);
     ui.label(RichText::new(quantity.name).strong());

@@ -115,6 +115,7 @@ struct RowButtons {
     remove: bool,
 }
 
+/// Row `k` of the table, with its buttons.
 fn row(
     ui: &mut Ui,
     table: &Table<'_>,

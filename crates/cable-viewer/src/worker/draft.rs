@@ -111,6 +111,7 @@ pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: MeshResolution) -> Option<
     Some(next)
 }
 
+/// Gives a draft the state of the cables.
 fn transfer_state(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
     let mut states = old.states();
     for state in &mut states {

@@ -25,6 +25,7 @@ pub fn start(shared: &Arc<Shared>, shown: &UpdateCallback, engine: Engine, threa
     std::thread::Builder::new().name("cable solver".to_owned()).spawn(run).ok()
 }
 
+/// The loop of the thread: waits for requests, solves, and publishes reports.
 fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let mut schedule = Schedule::new();
     loop {

@@ -65,6 +65,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
     canvas::keep_clear(ui, hints.response.rect.union(buttons.response.rect));
 }
 
+/// The text of the hint for a step.
 fn text(state: &AppState, step: FirstStep) -> String {
     match step {
         FirstStep::Drag => {

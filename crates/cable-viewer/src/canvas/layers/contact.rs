@@ -69,6 +69,7 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     }
 }
 
+/// Draws a mark across the cable at an arc length (m), unless it would touch the last one.
 fn tick(view: &CanvasView<'_>, answer: &CableSolution, s: f64, last: &mut Option<Pos2>) {
     let near = between(answer, [s, s]);
     let k = answer.nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, answer.nodes.len().saturating_sub(1).max(1));

@@ -60,6 +60,7 @@ fn screen_vector(f: Point, greatest: f64) -> Vec2 {
     vec2((f[0] / size * length) as f32, (-f[1] / size * length) as f32)
 }
 
+/// Draws normal force and friction of the contacts, the strongest first.
 fn contacts(view: &CanvasView<'_>, cable: &CableSolution, scale: &impl Fn(Point) -> Vec2) {
     let mut drawn: Vec<Pos2> = Vec::new();
     for c in strongest_first(&cable.contacts) {
@@ -129,6 +130,7 @@ fn figure(force: Point, figures: ForceFigures) -> String {
     format!("{size}\n{}, {}", part(force[0], ["left", "right"]), part(force[1], ["down", "up"]))
 }
 
+/// Draws the reactions of supports, and appends their figures.
 fn reactions(
     view: &mut CanvasView<'_>,
     state: &AppState,
@@ -149,6 +151,7 @@ fn reactions(
     }
 }
 
+/// Draws the loads of a cable, and appends their figures.
 fn loads(
     view: &mut CanvasView<'_>,
     state: &AppState,

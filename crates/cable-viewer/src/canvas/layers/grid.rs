@@ -45,6 +45,7 @@ fn each(view: &CanvasView<'_>, axis: usize, step: f64, mut line: impl FnMut(f32,
     numbered(view, axis, step, |at, value| line(at, value.abs() < 0.5 * step));
 }
 
+/// Calls `line` with the position (points) and the value (m) of each grid line of an axis.
 fn numbered(view: &CanvasView<'_>, axis: usize, step: f64, mut line: impl FnMut(f32, f64)) {
     let a = view.camera.to_world(view.rect, view.rect.left_bottom())[axis];
     let b = view.camera.to_world(view.rect, view.rect.right_top())[axis];

@@ -66,6 +66,7 @@ fn corners(view: &CanvasView<'_>, shape: &Shape, state: &AppState) {
     }
 }
 
+/// Draws ground, filled to the bottom of the canvas.
 fn terrain(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
     let line = distinct_points(view, points_m);
     let bottom = line.iter().fold(view.rect.max.y, |b, p| b.max(p.y)) + 4.0;
@@ -129,6 +130,7 @@ fn hatch(view: &CanvasView<'_>, a: Pos2, b: Pos2) {
     }
 }
 
+/// Draws a filled polygon.
 fn polygon(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
     let mut mesh = Mesh::default();
     for &p in points_m {

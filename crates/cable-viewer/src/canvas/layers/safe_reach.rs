@@ -87,6 +87,8 @@ fn border(view: &CanvasView<'_>, area: &Area, k: usize, own: [MapCorner; 4], lin
     }
 }
 
+/// Draws the map between four neighbouring places: colour, hatching above a limit, and lines of
+/// equal tension.
 fn quad(view: &CanvasView<'_>, area: &Area, corners: [MapCorner; 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
     if corners.iter().any(|corner| corner.most_n.is_nan()) {
         return;
@@ -219,6 +221,7 @@ struct MapKey {
 }
 
 impl MapKey {
+    /// The legend of the map that is shown, if there is one.
     fn of(state: &AppState) -> Option<Self> {
         let (maps, scene) = state.analysis.safe_reach.found()?;
         let [service_n, _] = maps.limits_n();
@@ -235,6 +238,7 @@ impl MapKey {
         Some(Self { title: format!("{title}{out_of_date}"), service, over })
     }
 
+    /// Draws the legend into a rectangle.
     fn draw(&self, painter: &Painter, palette: &Palette, area: Rect) {
         let text = |at: Pos2, anchor: Align2, text: &str, size: f32| {
             painter.text(pos2(at.x.round(), at.y.round()), anchor, text, FontId::proportional(size), palette.text)

@@ -53,6 +53,7 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     }
 }
 
+/// Draws the sign of a support by its kind.
 fn sign(view: &CanvasView<'_>, p: Pos2, s: &Support) {
     let (ink, paper) = (view.palette.support, view.palette.background);
     let line = Stroke::new(1.6, ink);

@@ -236,6 +236,7 @@ struct RunFigures {
 }
 
 impl RunFigures {
+    /// The figures of an answer, which took `wall_s` (s) to find.
     fn of(solution: &Solution, scene: &Scene, wall_s: f64) -> Self {
         let sags = scene
             .cables
@@ -252,6 +253,7 @@ impl RunFigures {
     }
 }
 
+/// A row of figures, with their differences from the present ones.
 fn row(ui: &mut Ui, f: &RunFigures, present: Option<&RunFigures>) {
     cell(ui, format::force(f.tension_n), Some(f.tension_n), present.map(|p| p.tension_n));
     let sag = f.sag_m.map_or_else(|| "–".to_owned(), format::length);

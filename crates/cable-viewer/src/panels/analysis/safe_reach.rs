@@ -106,6 +106,7 @@ fn so_far(line: &str) -> String {
     format!("So far: {first}{}", letters.as_str())
 }
 
+/// What is moved, how finely, and which trip.
 fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Vec<Command>) {
     let choice = state.analysis.safe_reach.choice;
     ui.horizontal(|ui| {
@@ -138,6 +139,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
     }
 }
 
+/// The choice of the trip.
 fn both_ways(ui: &mut Ui, choice: SafeReachOptions, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let there = "The greatest tension with the end at each place";
@@ -197,6 +199,7 @@ fn to(x: f64) -> String {
     Unit { decimals: Some(2), ..Unit::M }.text(x)
 }
 
+/// Says where along the ground a robot stays below a tension (N).
 fn of_line(map: &ReachMap, trip: Trip, limit: ReachLimit, tension_n: f64) -> String {
     let name = limit.name();
     let Some([left, right]) = map.safe_m(tension_n, trip) else {
@@ -220,6 +223,7 @@ fn of_line(map: &ReachMap, trip: Trip, limit: ReachLimit, tension_n: f64) -> Str
     format!("{from} x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
+/// Says where in the area an end stays below a tension (N).
 fn of_area(area: &Area, limit: ReachLimit, tension_n: f64) -> String {
     let name = limit.name();
     let force = format::force(tension_n);

@@ -145,6 +145,7 @@ fn listed(found: &TensionBudget) -> Vec<Contribution> {
     found.contributions.iter().filter(|t| t.tension_n.abs() > NEGLIGIBLE_FRACTION * greatest).copied().collect()
 }
 
+/// The name of a contribution.
 fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Contribution) -> String {
     let support = |k: usize| {
         let s = scene.cables.get(cable).and_then(|c| c.supports.get(k));
@@ -173,6 +174,7 @@ fn how(answer: &Solution, cable: usize, term: &Contribution) -> String {
     if turn >= 0.5 { format!("{factor} over {turn:.0}°") } else { factor }
 }
 
+/// The colour of a contribution.
 fn colour(term: &Contribution) -> Color32 {
     match term.cause {
         Cause::End => END_COLOUR,
@@ -222,6 +224,7 @@ fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn 
     response.on_hover_text("Above: what adds. Below: what takes away, from the right. The line: the tension");
 }
 
+/// The listed contributions with their colours and figures.
 fn figures(
     ui: &mut Ui,
     listed: &[Contribution],

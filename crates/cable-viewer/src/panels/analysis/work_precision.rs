@@ -53,6 +53,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
+/// The measured settings: chart, legend, the fastest that is accurate enough, and refusals.
 fn outcome(ui: &mut Ui, state: &AppState, found: &WorkPrecision) {
     if *found.scene != state.document.scene {
         ui.colored_label(ui.visuals().warn_fg_color, "Out of date: edited since");
@@ -90,6 +91,7 @@ fn place(entry: &MeasuredSetting) -> Option<[f64; 2]> {
     Some([(wall_s * 1e3).max(1e-6).log10(), compared.force_difference.max(MIN_DIFFERENCE).log10()])
 }
 
+/// The chart of difference over time, both logarithmic.
 fn chart(ui: &mut Ui, found: &WorkPrecision, tolerance: f64) {
     let places: Vec<[f64; 2]> = found.entries.iter().filter_map(place).collect();
     let ends = |k: usize, also: f64| {
@@ -142,6 +144,7 @@ fn spoken(entry: &MeasuredSetting) -> Option<String> {
     Some(format!("{}: {difference} in {}{stated}", name(entry.setting), format::duration(*wall_s)))
 }
 
+/// The models of the chart with their colours.
 fn legend(ui: &mut Ui, found: &WorkPrecision) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;

@@ -99,6 +99,7 @@ fn renamed(state: &AppState, index: usize, name: String) -> Command {
     Command::Scene(SceneCommand::SetScene(Box::new(scene)))
 }
 
+/// The choice of a preset.
 fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
     let present = cable.preset.as_deref().and_then(preset::cable_preset);
     labelled(ui, "Preset", "Cable preset", |ui| {
@@ -121,6 +122,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
     });
 }
 
+/// The choice of a fixed number of segments.
 fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>, commands: &mut Vec<Command>) {
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     let mut own = cable.segments.is_some();
@@ -149,6 +151,7 @@ fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
     answer.nodes.len().checked_sub(1).filter(|&n| n > 0)
 }
 
+/// The choice of self-contact.
 fn self_contact(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
     let mut on = cable.self_contact;
     let help = "The cable is an obstacle to itself (FEM only, without pulleys). Off: it passes in front of itself";

@@ -26,6 +26,7 @@ pub fn of(property: &Property, cable: &Cable, loaded: Option<&Cable>) -> Provena
     }
 }
 
+/// Figure, confidence, source and band of a preset, as text.
 fn source(property: &Property, figure: &Figure) -> String {
     let unit = property.quantity.unit;
     let sure = match figure.confidence {

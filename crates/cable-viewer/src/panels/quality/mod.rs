@@ -87,6 +87,7 @@ fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
     readout::assessed_row(ui, "Residual", &value, help, wrong);
 }
 
+/// The greatest displacement since the run began.
 fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
     let far = |n: &Node| n.displacement_m[0].hypot(n.displacement_m[1]);
     let nodes = answer.cables.iter().flat_map(|c| c.nodes.iter().map(move |n| (c, n)));
@@ -113,6 +114,7 @@ fn worst_condition(tolerance: f64, scene: &Scene, answer: &Solution) -> Option<(
     Some((worst, wrong))
 }
 
+/// The estimated condition number of the equations.
 fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     let name = "Condition estimate";
     if !answer.model.capabilities().mesh {
@@ -126,6 +128,7 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     readout::assessed_row(ui, name, &format!("≈ {}", format::magnitude(worst, 2)), help, wrong);
 }
 
+/// The kinetic energy, and whether its peaks grow.
 fn kinetic_energy(ui: &mut Ui, state: &AppState, answer: &Solution) {
     let help = "Kinetic energy now, marked “growing” if its peak in the last second is above that of the second before. \
                 Supports, loads or the robot may explain this; if nothing does and it lasts, a warning appears";

@@ -42,7 +42,7 @@ pub fn dimmed_if_old<R>(ui: &mut Ui, state: &AppState, figures: impl FnOnce(&mut
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     head(ui, state, commands);
     ui.separator();
-    rest(ui, state, commands);
+    below_headline(ui, state, commands);
 }
 
 /// The present cable as it was solved, which may not be the one being typed; else why there is
@@ -101,7 +101,7 @@ pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The readouts below the headline figures.
-pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+pub fn below_headline(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let index = state.current_cable();
     let (Ok((scene, cable, solved)), Some(answer)) = (shown(state), state.live.snapshot.solution.as_deref()) else {
         return;
@@ -215,6 +215,7 @@ fn explained(end: &EndForce) -> String {
     )
 }
 
+/// Sag, heights and lengths.
 fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Command>) {
     let help = match view {
         View::Elevation => "Greatest depth below the straight line between neighbouring supports",
@@ -257,6 +258,7 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
     figure(ui, "Least tension", format::force(least.tension_n), help, Some((&node(least.at), commands)));
 }
 
+/// Stress, strain, bends and pressure.
 fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSummary, commands: &mut Vec<Command>) {
     if let Some((stress_pa, node)) = extremes::greatest(solved, |n| n.stress_pa) {
         let help = "Greatest tension over the full round section (conductors alone carry more)";
@@ -428,6 +430,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<C
     Some(ComparedReadout { text: format!("{change} with it"), more, answered: true })
 }
 
+/// Error estimate, contacts and friction.
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
         Some(e) if e < ROUNDING_FRACTION => "exact for this model".to_owned(),

@@ -69,6 +69,7 @@ fn direction_deg(s: &SupportReaction) -> f64 {
     s.reaction_y_n.atan2(s.reaction_x_n).to_degrees()
 }
 
+/// The text about a reaction on hover.
 fn explanation(cable: &Cable, s: &SupportReaction) -> String {
     let mut text = format!(
         "{} at {:.1}° (anticlockwise from the right)\nAt {}, {} of {} along the cable",
@@ -84,6 +85,7 @@ fn explanation(cable: &Cable, s: &SupportReaction) -> String {
     text + "\nClick to centre on it"
 }
 
+/// Draws the direction of a reaction; a dot if it is negligible beside the largest (N).
 fn arrow(ui: &mut Ui, s: &SupportReaction, largest: f64) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ARROW), Sense::hover());
     let text = if size(s) > NEGLIGIBLE_FRACTION * largest {

@@ -63,6 +63,7 @@ fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Co
     }
 }
 
+/// The text about a map on hover.
 fn about(map: &MapPreset) -> String {
     format!(
         "{}\nInside width {}, waste up to {} deep, opening at {}",

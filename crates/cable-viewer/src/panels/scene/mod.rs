@@ -30,6 +30,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     scene_errors::inline(ui, state, "version", commands);
 }
 
+/// The name of the scene.
 fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut wrong = None;
     labelled(ui, "Name", "Scene name", |ui| {
@@ -47,6 +48,7 @@ fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     scene_errors::inline(ui, state, "name", commands);
 }
 
+/// The choices of a scene, a map and a robot.
 fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "Open", "Open scene", |ui| {
         let combo = ComboBox::from_id_salt("scene")

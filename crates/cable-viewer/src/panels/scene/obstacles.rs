@@ -29,6 +29,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the view");
 }
 
+/// The buttons that add obstacles.
 fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (name, help, command) in new_obstacles(state) {
         if ui.button(name).on_hover_text(help).clicked() {
@@ -65,6 +66,7 @@ pub fn new_obstacles(state: &AppState) -> [(&'static str, &'static str, SceneCom
     })
 }
 
+/// The name of a shape and its description.
 fn shape_name(shape: &Shape) -> (&'static str, &'static str) {
     match shape {
         Shape::Terrain { .. } => ("Ground", "From left to right, solid below"),

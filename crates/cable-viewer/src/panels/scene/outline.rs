@@ -42,6 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     warnings::summary(ui, state, commands);
 }
 
+/// Contents moved to the right by one level.
 fn indented(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, contents: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.add_space(INDENT);

@@ -42,6 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     scene_errors::inline(ui, state, "robot", commands);
 }
 
+/// The text about a robot preset on hover.
 fn about(p: &RobotPreset) -> String {
     format!(
         "{}\n{} long, {} high, {}; hitch {} behind the middle, {} up",
@@ -106,6 +107,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     }
 }
 
+/// Position and heading of the robot.
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
     place(ui, |ui| {

@@ -128,6 +128,7 @@ fn place_apart(ui: &mut Ui, state: &AppState, row: &Row<'_>) {
     });
 }
 
+/// The choice of the kind of a support.
 fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) -> Response {
     let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value));
     let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
@@ -243,6 +244,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     }
 }
 
+/// The fields of a pulley.
 fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
     let s = row.value;
     let text = ["Wheel radius", "Radius of the wheel the cable runs on; 0 = a point"];
@@ -266,6 +268,7 @@ fn pulley(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     }
 }
 
+/// The fields of a dead load, steady or with a time table.
 fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
     let s = row.value;
     let knots = Knots::of(&s.times_s, &s.forces_n);

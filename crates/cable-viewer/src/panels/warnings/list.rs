@@ -175,6 +175,7 @@ pub fn places(state: &AppState) -> Vec<(String, Command)> {
     named.collect()
 }
 
+/// All rows, the most severe first.
 fn entries(state: &AppState) -> Vec<WarningRow> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
@@ -197,6 +198,7 @@ fn entries(state: &AppState) -> Vec<WarningRow> {
     list
 }
 
+/// A row of a severity with this text and nothing else.
 fn entry(severity: Severity, text: String) -> WarningRow {
     WarningRow {
         severity,
@@ -220,6 +222,7 @@ fn dead_worker(state: &AppState) -> Option<WarningRow> {
     Some(WarningRow { title: "The solver stopped".to_owned(), fixes: vec![fix], ..entry(Severity::Stop, text) })
 }
 
+/// The row of a scene that cannot be solved.
 fn scene_fault(state: &AppState) -> Option<WarningRow> {
     let found = scene_errors::summary(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
@@ -270,6 +273,7 @@ fn severity_and_title(warning: &Warning) -> (Severity, &'static str) {
     }
 }
 
+/// The row of a warning.
 fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> WarningRow {
     let (severity, title) = severity_and_title(warning);
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
@@ -320,6 +324,7 @@ fn of_problem(problem: quality::QualityProblem) -> WarningRow {
     }
 }
 
+/// The place of a warning (m).
 fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
     if warning.at_m.is_some() {
         return warning.at_m;
@@ -468,6 +473,7 @@ fn show(entry: &WarningRow, commands: &mut Vec<Command>) {
     }
 }
 
+/// The buttons of a row.
 fn actions(ui: &mut Ui, number: usize, entry: &WarningRow, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
         let button = ui.button("Show").on_hover_text(format!("Zooms on {}", format::position(at_m)));

@@ -38,6 +38,7 @@ impl Engine {
         true
     }
 
+    /// Solves the scene of a draft in full.
     pub(super) fn solve_draft(&mut self) -> Result<(), Error> {
         let (Phase::Draft { .. }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
         // The answer is one at rest even where time is to run next: what runs on from the draft
@@ -48,6 +49,7 @@ impl Engine {
         result
     }
 
+    /// Answers an edit: from the present state, or at rest if time has not run.
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
         if edit.start == EditStart::NewScene {

@@ -79,6 +79,7 @@ struct EndedRun {
 }
 
 impl EndedRun {
+    /// A copy to go back to.
     fn checkpoint(&self) -> Self {
         Self {
             run: self.run.checkpoint(),
@@ -339,7 +340,8 @@ impl Engine {
         Report { paused_itself: true, ..self.report() }
     }
 
-    /// The scene stays without an answer.
+    /// Stores the edit whose solve was cancelled; the scene stays without an answer, and time
+    /// stands.
     fn cancel(&mut self, edit: Option<Edit>) {
         if let Some(edit) = edit {
             self.outbox.history_restarts |= edit.start == EditStart::NewScene;

@@ -51,6 +51,7 @@ impl Engine {
         Report { paused_itself: failed, ..self.report() }
     }
 
+    /// Passes a dragged support to the simulation.
     pub(super) fn drag(&mut self, drag: Drag) {
         if self.coarse() {
             self.phase = Phase::CoarseMotion { moved_at: Instant::now() };

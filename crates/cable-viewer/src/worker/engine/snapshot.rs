@@ -31,6 +31,7 @@ impl Engine {
         solution
     }
 
+    /// Puts the result of a solve or step into the snapshot.
     pub(super) fn show(&mut self, result: Result<(), Error>) {
         let scene: Option<Arc<Scene>> = self.edit.as_ref().map(|e| Arc::new(e.scene.clone()));
         let refused = self.refused();
