@@ -319,7 +319,7 @@ impl Simulation {
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
         let Some(problem) = self.cables.first().map(SimulatedCable::problem) else { return };
         let Some(outline) = &problem.outline else { return };
-        let met = self.scene.obstacles.iter().filter(|o| outline.meets(at, &o.shape));
+        let met = self.scene.obstacles.iter().filter(|o| outline.overlaps(at, &o.shape));
         let place = [at.at.x, at.at.y];
         let warnings = met.map(|o| {
             let cause = WarningCause::RobotInObstacle { obstacle: o.name.clone() };
@@ -453,6 +453,8 @@ impl Simulation {
         }
     }
 
+    /// Advances by `dt_s` (s) without inertia; if the answer violates a law, the next model
+    /// answers.
     fn advance_quasi_static(&mut self, dt_s: f64) -> Result<(), SolveError> {
         let done = self.advance_unjudged(dt_s, Inertia::QuasiStatic);
         self.judge_answers(RunPhase::InMotion);

@@ -115,6 +115,7 @@ impl State {
         self.between(&self.velocity_m_per_s, arc_length_m)
     }
 
+    /// The value at an arc length (m), linear between nodes.
     fn between(&self, values: &[Vec2], arc_length_m: f64) -> Option<Vec2> {
         let n = self.arc_length_m.len();
         let k = self.arc_length_m.partition_point(|&s| s <= arc_length_m).clamp(1, n.max(2) - 1);

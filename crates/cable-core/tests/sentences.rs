@@ -11,8 +11,8 @@ use cable_core::math::Vec2;
 use cable_core::record::{LeftOut, ReadError, RowFault, RunStop, WriteError, WrittenNumber};
 use cable_core::scene::import::{ImportChange, ImportFault};
 use cable_core::solution::{
-    EndMove, Histories, LikelyBending, MeanTension, ModelReason, NeglectedEffect, NextCheaper, ShownEquilibrium,
-    SlideReason, TakenStiffness, Warning, WarningCause, WarningKind,
+    AssumedStiffness, EndMove, Histories, LikelyBending, MeanTension, ModelReason, NeglectedEffect, NextCheaper,
+    ShownEquilibrium, SlideReason, Warning, WarningCause, WarningKind,
 };
 use cable_core::units::{Quantity, UnitSystem};
 use cable_core::wording::Sentence;
@@ -233,7 +233,7 @@ fn others() -> Vec<Box<dyn Sentence>> {
         let feature = Unsupported::Obstacle { arc_length_m: 3.2 };
         Box::new(SolveError::Unsupported { model, feature })
     };
-    let taken = || vec![TakenStiffness { cable: name("main"), bending_stiffness_n_m2: 1.4 }];
+    let taken = || vec![AssumedStiffness { cable: name("main"), bending_stiffness_n_m2: 1.4 }];
     let bending = |bending| ModelReason::Bending { reason: Box::new(ModelReason::SupportsOnly), bending };
     let fault = SceneFault::BeyondEnd { arc_length_m: 12.0, length_m: 10.0 };
     let scene = Box::new(SceneError { path: name("loads[0]"), fault, at: None });
@@ -250,8 +250,8 @@ fn others() -> Vec<Box<dyn Sentence>> {
     vec![
         Box::new(ModelReason::Requested),
         Box::new(ModelReason::NoAnswer(refusal())),
-        Box::new(bending(LikelyBending::Taken(taken()))),
-        Box::new(bending(LikelyBending::TakenWhereItMatters(taken()))),
+        Box::new(bending(LikelyBending::Assumed(taken()))),
+        Box::new(bending(LikelyBending::AssumedWhereItMatters(taken()))),
         Box::new(bending(LikelyBending::NoAnswer(refusal()))),
         Box::new(next(Some(0.69))),
         Box::new(next(Some(2e-5))),

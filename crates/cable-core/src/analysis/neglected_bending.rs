@@ -21,7 +21,7 @@ use crate::scene::Scene;
 use crate::scene::preset::cable_preset;
 use crate::simulation::Simulation;
 use crate::solution::error_estimates::greatest_tension;
-use crate::solution::{ErrorEstimates, LikelyBending, Solution, TakenStiffness, Warning, WarningCause, WarningKind};
+use crate::solution::{AssumedStiffness, ErrorEstimates, LikelyBending, Solution, Warning, WarningCause, WarningKind};
 
 /// Effects that an answer at rest without bending stiffness neglects, for one cable.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -96,14 +96,14 @@ pub enum Bending {
 
 /// The scene with the likely bending stiffness for some of its flexible cables, and that stiffness;
 /// None if it is known for none of them.
-fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, Vec<TakenStiffness>)> {
+fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, Vec<AssumedStiffness>)> {
     let mut stiff = scene.clone();
     let mut taken = Vec::new();
     for cable in stiff.cables.iter_mut().filter(|c| c.bending_stiffness_n_m2 == 0.0 && counts(&c.name)) {
         let likely = cable.likely_bending_stiffness_n_m2();
         if likely > 0.0 {
             cable.bending_stiffness_n_m2 = likely;
-            taken.push(TakenStiffness { cable: cable.name.clone(), bending_stiffness_n_m2: likely });
+            taken.push(AssumedStiffness { cable: cable.name.clone(), bending_stiffness_n_m2: likely });
         }
     }
     (!taken.is_empty()).then_some((stiff, taken))
@@ -129,12 +129,13 @@ fn settle(scene: &Scene, model: Model, settings: Settings) -> Result<Solution, E
     Ok(Simulation::with_settings(scene.clone(), model, settings)?.settle()?)
 }
 
+/// Chooses the bending stiffnesses to solve with; an answer that this needed comes with them.
 fn choose(scene: &Scene, model: Model, settings: Settings, bending: Bending) -> Result<Chosen, Error> {
     let as_written = |answer| Chosen { scene: scene.clone(), bending: None, answer };
     match bending {
         Bending::AsWritten => Ok(as_written(None)),
         Bending::Likely => Ok(match with_likely(scene, |_| true) {
-            Some((scene, taken)) => Chosen { scene, bending: Some(LikelyBending::Taken(taken)), answer: None },
+            Some((scene, taken)) => Chosen { scene, bending: Some(LikelyBending::Assumed(taken)), answer: None },
             None => as_written(None),
         }),
         Bending::WhereItMatters => {
@@ -143,7 +144,7 @@ fn choose(scene: &Scene, model: Model, settings: Settings, bending: Bending) -> 
             let Some((stiff, taken)) = with_likely(scene, tight) else { return Ok(as_written(Some(flexible))) };
             match settle(&stiff, model, settings) {
                 Ok(answer) => {
-                    let bending = Some(LikelyBending::TakenWhereItMatters(taken));
+                    let bending = Some(LikelyBending::AssumedWhereItMatters(taken));
                     Ok(Chosen { scene: stiff, bending, answer: Some(answer) })
                 }
                 Err(Error::Solve(error)) => {

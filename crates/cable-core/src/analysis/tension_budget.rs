@@ -163,6 +163,7 @@ pub fn tension_budget(
     })
 }
 
+/// Weight and wind of a cable at an instant (s), N per metre; None if there is no such cable.
 fn distributed_load(scene: &Scene, cable: usize, time_s: f64) -> Option<DistributedLoad> {
     let (c, e) = (scene.cables.get(cable)?, &scene.environment);
     let weight = match scene.view {

@@ -97,6 +97,7 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
     })
 }
 
+/// Checks that the pieces of the cable are in balance, each and together.
 pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
     [Law::Balance, Law::TotalBalance].into_iter().for_each(|law| found.ask(law));
     let limit = BALANCE_FRACTION * checked.scale;

@@ -118,6 +118,7 @@ impl CheckedCable<'_> {
         out
     }
 
+    /// A violation at a node, with the value found and the greatest allowed in the unit of the law.
     pub fn finding(&self, law: Law, node: usize, value: f64, limit: f64) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {
@@ -158,7 +159,7 @@ impl CheckedCable<'_> {
     }
 
     /// Returns the obstacles near the line from each node to the next.
-    pub fn near(&self) -> Neighbours {
+    pub fn neighbours(&self) -> Neighbours {
         let reach = self.reach();
         Neighbours::new(self.surroundings, self.answer.nodes.iter().map(Node::at), reach)
     }

@@ -118,6 +118,7 @@ fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Nei
     report_length(checked, found, bar, lengths);
 }
 
+/// Reports a bar whose length is not that of its material, and adds what is folded in it.
 pub(super) fn report_length(
     checked: &CheckedCable<'_>,
     found: &mut Verification,
@@ -238,7 +239,7 @@ fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbo
     };
     let mut met = Vec::new();
     for part in 0..BOW_PARTS {
-        checked.surroundings.near(at(part), at(part + 1), checked.reach(), &mut met);
+        checked.surroundings.append_features_near(at(part), at(part + 1), checked.reach(), &mut met);
     }
     met.is_empty()
 }

@@ -108,7 +108,7 @@ fn check(found: &mut Verification, checked: &CheckedCable<'_>, depth: Depth) {
     if !well_formed_answer::check_material(checked, found) {
         return;
     }
-    let near = checked.near();
+    let near = checked.neighbours();
     penetration::check_penetration(checked, found, &near);
     balance::check_contacts(checked, found);
     if answer.assumptions.inertia || !answer.breaks.is_empty() {

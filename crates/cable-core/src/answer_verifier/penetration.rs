@@ -6,6 +6,7 @@ use super::tolerance::{DEPTH_DIAMETERS, DEPTH_LENGTHS, DEPTH_M, MATERIAL_TOLERAN
 use crate::math::{larger, smaller};
 use crate::verification_report::{Law, Verification};
 
+/// Checks that neither nodes nor the bars between them are deeper in an obstacle than allowed.
 pub(super) fn check_penetration(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
     found.ask(Law::Penetration);
     let radius = 0.5 * checked.cable.diameter_m;

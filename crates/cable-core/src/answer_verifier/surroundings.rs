@@ -25,6 +25,7 @@ struct SolidEdge {
 }
 
 impl SolidEdge {
+    /// The obstacles of a scene, and the outline of its robot.
     fn new(from: Vec2, to: Vec2, thickness: f64, body: usize) -> Self {
         let around = Vec2::repeat(thickness);
         Self { from, to, thickness, body, low: from.inf(&to) - around, high: from.sup(&to) + around }
@@ -52,13 +53,13 @@ impl Edges {
     }
 
     /// Returns whether all edges lie beside a box from `low` to `high`, m.
-    fn apart(&self, low: Vec2, high: Vec2) -> bool {
+    fn is_clear_of_box(&self, low: Vec2, high: Vec2) -> bool {
         low.x > self.high.x || high.x < self.low.x || low.y > self.high.y || high.y < self.low.y
     }
 
     /// Those whose boxes meet a box from `low` to `high`, m.
     fn edges_in_box(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
-        let all = if self.apart(low, high) { &[][..] } else { &self.sorted[..] };
+        let all = if self.is_clear_of_box(low, high) { &[][..] } else { &self.sorted[..] };
         let first = all.partition_point(|e| e.low.x < low.x - self.widest);
         let begun = all[first..].iter().take_while(move |e| e.low.x <= high.x);
         begun.filter(move |e| e.high.x >= low.x && e.low.y <= high.y && e.high.y >= low.y)
@@ -82,13 +83,13 @@ impl Neighbours {
     ) -> Self {
         let mut all = Vec::new();
         let (low, high) = bounds(chain.clone());
-        if surroundings.apart(low - Vec2::repeat(reach), high + Vec2::repeat(reach)) {
+        if surroundings.is_clear_of_box(low - Vec2::repeat(reach), high + Vec2::repeat(reach)) {
             return Self { begins: Vec::new(), all };
         }
         let mut begins = Vec::with_capacity(chain.len());
         for (a, b) in chain.clone().zip(chain.skip(1)) {
             begins.push(all.len());
-            surroundings.near(a, b, reach, &mut all);
+            surroundings.append_features_near(a, b, reach, &mut all);
         }
         begins.push(all.len());
         Self { begins, all }
@@ -190,8 +191,8 @@ pub(super) struct Surroundings<'a> {
 
 impl Surroundings<'_> {
     /// Returns whether nothing is in a box from `low` to `high`, m, as all lies beside it.
-    fn apart(&self, low: Vec2, high: Vec2) -> bool {
-        self.fixed.apart(low, high) && self.moving.apart(low, high)
+    fn is_clear_of_box(&self, low: Vec2, high: Vec2) -> bool {
+        self.fixed.is_clear_of_box(low, high) && self.moving.is_clear_of_box(low, high)
     }
 
     /// Edges whose boxes meet a box from `low` to `high`, m.
@@ -215,7 +216,7 @@ impl Surroundings<'_> {
 
     /// Appends the features within `reach` (m) of the straight line between two points: for each
     /// edge the nearest points of both lines, and the points nearest to the two ends.
-    pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
+    pub fn append_features_near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
         for e in self.edges_in_box(low, high) {
             let t = e.thickness;
@@ -293,6 +294,7 @@ fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {
     points.fold(nowhere, |(low, high), p| (low.inf(&p), high.sup(&p)))
 }
 
+/// The solid of an obstacle, whose edges are added to `edges`.
 fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
     let mut line = |points: &[[f64; 2]], ends: LineEnds, thickness: f64| {
         let n = points.len();

@@ -6,6 +6,7 @@ use super::tolerance::MATERIAL_TOLERANCE;
 use crate::solution::{ContactReport, Node, SupportReaction};
 use crate::verification_report::{Finding, Law, Verification};
 
+/// The first number of an answer that is not finite, or the lack of nodes.
 pub(super) fn not_finite(checked: &CheckedCable<'_>) -> Option<Finding> {
     // This form has no branch for each number.
     let all = |values: &[f64]| values.iter().fold(true, |all, v| all & v.is_finite());

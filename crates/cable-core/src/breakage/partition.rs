@@ -102,6 +102,7 @@ impl CablePart {
         end.copied().flatten()
     }
 
+    /// A copy whose end (0 or 1) no support holds; loads at the cut are dropped.
     fn detached(&self, end: usize, problem: &Problem, cut: &Cut<'_>) -> Self {
         let mut part = self.clone();
         if let Some(s) = part.supports.get_mut(end) {

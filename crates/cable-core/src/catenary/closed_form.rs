@@ -92,6 +92,8 @@ impl EndForces {
 }
 
 impl ChainPiece {
+    /// Tensions at both ends for the horizontal force `h` and the vertical force at the start `va`,
+    /// with the series or logarithm that suits the sag.
     #[inline]
     fn end_forces(&self, h: f64, va: f64) -> EndForces {
         let vb = va + self.w * self.l;

@@ -117,6 +117,7 @@ impl<'a> Chain<'a> {
         (frame.join(e.x, e.z), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
     }
 
+    /// The dual energy of all pieces, with its slopes and curvatures, for the force at the start.
     fn energy(&self, frame: LoadAxes, h: f64, v: f64) -> DualEnergy {
         let mut sum = DualEnergy::default();
         let (mut h, mut v) = (h, v);

@@ -534,6 +534,7 @@ fn left_to_right(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points
 }
 
+/// The corners in clockwise order.
 fn clockwise(mut points: Vec<Vec2>) -> Vec<Vec2> {
     // Twice the area about the first corner, so that a polygon far from the origin keeps its
     // digits.
@@ -545,6 +546,7 @@ fn clockwise(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points
 }
 
+/// The edges of a line of points; none if it is too short.
 fn edges_of(points: &[Vec2], ends: LineEnds) -> Vec<Edge> {
     let closed = ends == LineEnds::Joined;
     let n = points.len();

@@ -87,7 +87,7 @@ impl Outline {
 
     /// Returns whether an obstacle other than terrain reaches into the outline at a placement.
     #[must_use]
-    pub(crate) fn meets(&self, placement: RigidPose, shape: &Shape) -> bool {
+    pub(crate) fn overlaps(&self, placement: RigidPose, shape: &Shape) -> bool {
         let line = |points: &[Point]| points.iter().map(|p| vec2(*p)).collect::<Vec<_>>();
         let (ring, radius) = match shape {
             Shape::Terrain { .. } => return false,

@@ -130,6 +130,7 @@ struct Pairing {
 }
 
 impl Pairing {
+    /// Appends the pair to `out` if it is nearer than `reach` (m).
     fn push(self, x: &[Vec2], reach: f64, out: &mut Vec<SelfPair>) {
         let Self { node, segment, fraction, weight, diameter } = self;
         let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);

@@ -65,6 +65,7 @@ pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<
     out
 }
 
+/// A binary tree of bounding boxes: the root at 1, the children of k at 2k and 2k + 1.
 fn boxes(points: &[Vec2], segments: usize, leaves: usize) -> Vec<BoundingBox> {
     let empty = [Vec2::repeat(f64::INFINITY), Vec2::repeat(f64::NEG_INFINITY)];
     let mut boxes = vec![empty; 2 * leaves];

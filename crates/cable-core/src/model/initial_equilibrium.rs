@@ -63,7 +63,7 @@ pub fn initial_equilibrium(
     };
     if problem.bending_stiffness > 0.0 {
         // A loose cable gives no shape for a stiff one, because no tension draws it straight.
-        if spans.lies_loose() {
+        if spans.has_loose_cable() {
             return Ok(None);
         }
         warnings.iter_mut().for_each(of_flexible);

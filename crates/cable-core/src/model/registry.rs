@@ -39,7 +39,7 @@ pub struct Capabilities {
     pub long_steps: bool,
     /// It is a second opinion on a coarse mesh: a solution that violates a law is reported with the
     /// findings and not refused.
-    pub findings_are_told: bool,
+    pub reports_violations: bool,
 }
 
 /// No ability at all; each entry names those it has.
@@ -53,7 +53,7 @@ const NO_CAPABILITIES: Capabilities = Capabilities {
     explores_histories: false,
     long_rests: false,
     long_steps: false,
-    findings_are_told: false,
+    reports_violations: false,
 };
 
 /// A result of building a model.
@@ -127,7 +127,7 @@ const SOLVERS: [ModelInfo; 4] = [
             mesh: true,
             inertia: true,
             contact: true,
-            findings_are_told: true,
+            reports_violations: true,
             ..NO_CAPABILITIES
         },
         accuracy: [1e-3, 2e-5],
@@ -266,6 +266,7 @@ fn at_natural_scale(
     Ok(Box::new(natural_scale::ScaledModel::new(problem, by, inner)))
 }
 
+/// The model of a problem, within the layer for wheels that the cable may leave if it has any.
 fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
     let info = model.info();
     refuse_mobilised(model, &problem)?;

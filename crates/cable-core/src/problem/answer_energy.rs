@@ -29,6 +29,7 @@ fn product(a: [f64; 2], b: [f64; 2], ds: f64) -> f64 {
     ds * (2.0 * a[0] * b[0] + a[0] * b[1] + a[1] * b[0] + 2.0 * a[1] * b[1]) / 6.0
 }
 
+/// Energy of the cable between two nodes, whose figures are linear in between.
 fn element(problem: &Problem, bending_stiffness: f64, a: &Node, b: &Node) -> Energy {
     let ds = b.arc_length_m - a.arc_length_m;
     let speed = squared(a.vx_m_per_s, b.vx_m_per_s, ds) + squared(a.vy_m_per_s, b.vy_m_per_s, ds);

@@ -113,6 +113,7 @@ impl CableWheels {
     }
 }
 
+/// The problem of one cable.
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
     let env = &scene.environment;
     let radius = cable.diameter_m / 2.0;

@@ -93,6 +93,7 @@ pub(super) fn history_columns<'a>(
     columns
 }
 
+/// The columns beside time, tension and reactions, each with its value.
 pub(super) fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
     let e = s.energy;
     let energies = [e.kinetic_j, e.gravity_j, e.stretch_j, e.bending_j];

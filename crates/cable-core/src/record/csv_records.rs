@@ -56,6 +56,7 @@ impl<R: Read> WholeRecords<R> {
         self.bytes.len() - self.whole
     }
 
+    /// Reads the next chunk and finds the end of the last whole record in it.
     fn fill(&mut self) -> io::Result<()> {
         self.bytes.drain(..self.passed);
         self.whole -= self.passed;

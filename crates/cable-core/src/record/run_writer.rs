@@ -104,6 +104,7 @@ impl<W: Write> RunWriter<W> {
         events.record(&EVENT_COLUMNS)
     }
 
+    /// Writes the rows of an instant; nothing is written if a number is not finite.
     fn append(&mut self, solution: &Solution, node_rows_due: NodeRows) -> Result<(), WriteError> {
         check_finite(solution)?;
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
@@ -255,6 +256,7 @@ fn io_error(table: &'static str, e: csv::Error) -> WriteError {
     WriteError::Io { table, source }
 }
 
+/// Returns an error if the answer has a number that is not finite.
 fn check_finite(s: &Solution) -> Result<(), WriteError> {
     let bad = |table, number| WriteError::NonFinite { table, number: Box::new(number), time_s: s.time_s };
     for c in &s.cables {

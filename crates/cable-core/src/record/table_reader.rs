@@ -97,6 +97,7 @@ fn unreadable(table: &'static str, line: u64, error: &csv::Error) -> ReadError {
     row_error(table, line, RowFault::Unreadable { message: error.to_string() })
 }
 
+/// The finite number in column `k` of a record.
 fn parse(table: &'static str, record: &csv::StringRecord, k: usize, column: &str) -> Result<f64, ReadError> {
     let line = record.position().map_or(1, csv::Position::line);
     let column = || column.to_owned();

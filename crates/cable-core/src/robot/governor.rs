@@ -95,6 +95,8 @@ impl PlannedMotion {
         Self { speed: self.speed + 0.5 * h * (self.acceleration + acceleration), acceleration }
     }
 
+    /// Acceleration for the next `h` seconds (m/s²): the greatest with which the vehicle can still
+    /// stop at the place ordered.
     fn next_acceleration(self, order: SpeedOrder, h: f64) -> f64 {
         let fastest = self.toward(order.speed, h);
         let Some(left) = order.left else { return fastest };

@@ -427,6 +427,7 @@ impl Vehicle {
         SpeedOrder::default()
     }
 
+    /// Renews the report of the vehicle.
     fn update_report(&mut self, pulls: Pulls, forces: Forces, commanded: f64, going: Going) {
         let Pulls { hitch, outline: push } = pulls;
         self.report = RobotReport {

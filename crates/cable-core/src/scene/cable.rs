@@ -135,7 +135,7 @@ impl FrictionMobilised {
 
     /// Direction in which the cable is drawn: 1 towards its end, −1 towards its start, 0 neither.
     #[must_use]
-    pub fn way(self) -> f64 {
+    pub fn direction(self) -> f64 {
         match self {
             Self::LeastSliding => 0.0,
             Self::TowardsStart => -1.0,

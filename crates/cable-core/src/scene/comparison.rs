@@ -39,6 +39,7 @@ impl Scene {
     }
 }
 
+/// Appends the changes from one table to another.
 fn of_tables(was: &Table, is: &Table, out: &mut Vec<Change>) {
     let gained = is.keys().filter(|key| !was.contains_key(*key));
     for key in was.keys().chain(gained) {
@@ -96,6 +97,7 @@ fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
 
+/// The value of a field as a change shows it.
 fn field(value: &Value) -> FieldValue {
     match value {
         Value::String(text) => FieldValue::Text(text.clone()),

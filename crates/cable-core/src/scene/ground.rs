@@ -31,6 +31,7 @@ struct Columns {
 const MAX_STACK: usize = 4;
 
 impl Columns {
+    /// Sorts stretches of ground into columns of equal width.
     fn of(stretches: &[[Point; 2]]) -> Self {
         let ends = |k: usize| stretches.iter().flatten().map(move |p| p[k]);
         let left = ends(0).fold(f64::INFINITY, f64::min);
@@ -55,6 +56,7 @@ impl Columns {
         }
     }
 
+    /// Lists the stretches of each column, by counting sort.
     fn fill(&mut self, stretches: &[[Point; 2]], total: usize) {
         for s in stretches {
             for c in self.range(s) {

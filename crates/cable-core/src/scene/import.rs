@@ -120,6 +120,7 @@ pub fn read(text: &str, metres_per_unit: f64) -> Result<Import, ImportFault> {
     Ok(import)
 }
 
+/// Reads a table with two numbers a row as one line.
 fn table(text: &str, import: &mut Import) -> Result<(), ImportFault> {
     let mut line = Line::default();
     let mut headings = 0;
@@ -228,6 +229,7 @@ fn attributes<'a>(text: &'a str, element: &str, attribute: &str) -> Vec<&'a str>
     found
 }
 
+/// Reads the lines, polygons and paths of an SVG drawing; its y axis points down.
 fn svg(text: &str, import: &mut Import) -> Result<(), ImportFault> {
     if text.contains(" transform=") {
         import.changes.push(ImportChange::TransformsLeftOut);

@@ -84,6 +84,7 @@ impl SimulatedCable {
         Ok(sum)
     }
 
+    /// Advances every piece by `dt_s` (s); a piece that breaks is split, and its parts go on.
     fn advance_all_pieces(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
         self.add_obstacles_in_reach()?;

@@ -107,6 +107,7 @@ impl SimulatedCable {
         })
     }
 
+    /// The reaction of a support that holds nothing.
     fn unloaded_reaction(&self, support: &SupportPoint) -> SupportReaction {
         let at = support.position_at(self.time_s()).map(|p| p.0).or(support.at).unwrap_or_default();
         SupportReaction {

@@ -156,7 +156,7 @@ impl SimulatedCable {
 
     /// Lets the supports that the scene holds elsewhere than they are go to their places in time:
     /// within a step, an end moved by 10 mm pulled with 4 kN.
-    fn lead_moved_supports(&mut self, old: &Self) {
+    fn move_edited_supports(&mut self, old: &Self) {
         let problem = self.problem.clone();
         let same_number = problem.supports.len() == old.problem.supports.len();
         for (k, (support, before)) in problem.supports.iter().zip(&old.problem.supports).enumerate() {
@@ -176,7 +176,7 @@ impl SimulatedCable {
     pub fn continue_from(&mut self, old: &Self) -> Result<(), SolveError> {
         let (false, Some(first)) = (self.pieces.is_empty(), old.pieces.first()) else { return Ok(()) };
         if old.breaks.is_empty() {
-            self.lead_moved_supports(old);
+            self.move_edited_supports(old);
             self.go_on_from(first, old.peaks.is_some())?;
             let same = |p: &Problem| (p.length, p.cable.breaking_time_s);
             if let (Some(own), true) = (self.pieces.first_mut(), same(&self.problem) == same(&old.problem)) {
@@ -204,7 +204,7 @@ impl SimulatedCable {
         }
         self.pieces = pieces;
         self.breaks.clone_from(&old.breaks);
-        self.lead_moved_supports(old);
+        self.move_edited_supports(old);
         Ok(())
     }
 }

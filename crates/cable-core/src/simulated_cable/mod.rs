@@ -148,6 +148,7 @@ impl SimulatedCable {
         self.draw_support(support, SupportTarget { place_m: hand_m, grip: SupportGrip::Spring });
     }
 
+    /// Passes the target of a dragged support to the piece that it holds.
     fn draw_support(&mut self, support: usize, target: SupportTarget) {
         if !target.place_m.iter().all(|c| c.is_finite()) {
             return;

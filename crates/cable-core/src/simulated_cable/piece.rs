@@ -31,6 +31,7 @@ pub(super) struct CablePiece {
 }
 
 impl CablePiece {
+    /// A piece with the present answer of its model.
     pub fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
         let answer = mechanics.solution();
         Self {

@@ -44,7 +44,7 @@ impl Simulation {
         // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
         // broke.
         let reports_findings =
-            self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
+            self.requested.capabilities().reports_violations || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !reports_findings) {
             None => Ok(()),
             Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),

@@ -115,7 +115,7 @@ impl Simulation {
                     self.go_back(&before);
                     let mut vehicle = start;
                     vehicle.stop(drive, begun, going);
-                    self.lead(vehicle.hitch(), vehicle.pose().placement(), step.hitches);
+                    self.send_robot_pose(vehicle.hitch(), vehicle.pose().placement(), step.hitches);
                     self.vehicle = Some(vehicle);
                     self.for_each_cable(|c| c.advance(step.step_s, step.inertia))?;
                     return Ok(iterations + self.cost.iterations);
@@ -134,7 +134,7 @@ impl Simulation {
         search: &mut SpeedSearch,
     ) -> TrialOutcome {
         let Some(to) = start.pose_at_speed(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
-        self.lead(start.hitch_at(to), to.placement(), step.hitches);
+        self.send_robot_pose(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
         if self.for_each_cable(|c| c.advance(step.step_s, step.inertia)).is_err() {
             // The cable cannot move out of the robot's way.
@@ -191,7 +191,7 @@ impl Simulation {
     }
 
     /// Tells the cables where the hitch of the robot, and its outline, will be.
-    fn lead(&mut self, hitch: Vec2, to: RigidPose, hitches: &[Hitch]) {
+    fn send_robot_pose(&mut self, hitch: Vec2, to: RigidPose, hitches: &[Hitch]) {
         for &Hitch { cable, support } in hitches {
             self.drag_support(cable, support, hitch);
         }
@@ -243,11 +243,11 @@ impl Simulation {
     ///
     /// # Errors
     /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
-    pub(crate) fn lead_robot(&mut self, x_m: f64, dt_s: f64, inertia: Inertia) -> Result<Option<f64>, SolveError> {
+    pub(crate) fn place_robot(&mut self, x_m: f64, dt_s: f64, inertia: Inertia) -> Result<Option<f64>, SolveError> {
         let Some(vehicle) = &mut self.vehicle else { return Ok(None) };
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();
-        self.lead(hitch, to, &self.hitches());
+        self.send_robot_pose(hitch, to, &self.hitches());
         self.cables.iter_mut().for_each(SimulatedCable::begin_step);
         let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();

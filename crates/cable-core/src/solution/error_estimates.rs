@@ -78,6 +78,8 @@ impl ErrorEstimates {
         self.with(self, |a, _| a * factor)
     }
 
+    /// Joins the estimates of two answers figure by figure; unknown if one is, but for contact
+    /// forces.
     pub(crate) fn with(&self, other: &Self, join: impl Fn(f64, f64) -> f64) -> Self {
         let both = |a: Option<f64>, b: Option<f64>| Some(join(a?, b?));
         // If only one of two answers has a contact, the contact force of the other is zero.

@@ -62,17 +62,17 @@ impl ModelReason {
 /// The use made of the bending stiffness that is likely of the presets of flexible cables.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LikelyBending {
-    /// It was taken, as the user asked.
-    Taken(Vec<TakenStiffness>),
-    /// It was taken because the answer without it is not that of a cable.
-    TakenWhereItMatters(Vec<TakenStiffness>),
+    /// It was assumed, as the user asked.
+    Assumed(Vec<AssumedStiffness>),
+    /// It was assumed because the answer without it is not that of a cable.
+    AssumedWhereItMatters(Vec<AssumedStiffness>),
     /// There is no answer with it.
     NoAnswer(Box<SolveError>),
 }
 
 /// The bending stiffness that was assumed for a cable.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TakenStiffness {
+pub struct AssumedStiffness {
     /// Name of the cable.
     pub cable: String,
     /// Bending stiffness, N·m².

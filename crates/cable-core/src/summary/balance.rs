@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::shape::lies_on_something;
+use super::shape::is_of_obstacle;
 use crate::math::Vec2;
 use crate::problem::TimeSeries;
 use crate::scene::{Cable, Scene, SupportKind, View};
@@ -47,8 +47,7 @@ pub(super) fn balance(scene: &Scene, cable: &Cable, answer: &CableSolution, time
         })
     };
     let supports = sum(&mut answer.supports.iter().map(|s| -Vec2::new(s.reaction_x_n, s.reaction_y_n)));
-    let contacts =
-        sum(&mut answer.contacts.iter().filter(|c| lies_on_something(cable, c)).map(|c| Vec2::from(c.force_n)));
+    let contacts = sum(&mut answer.contacts.iter().filter(|c| is_of_obstacle(cable, c)).map(|c| Vec2::from(c.force_n)));
     let loads = scene.loads.iter().filter(|l| l.cable == cable.name && !hangs_at_a_support(cable, l.arc_length_m));
     let loads = sum(&mut loads.map(|l| series(l.force_n, &l.times_s, &l.forces_n).at(time_s)));
     let residual = supports + contacts + loads + weight;

@@ -177,6 +177,7 @@ fn tensions(answer: &CableSolution) -> (TensionAt, TensionAt) {
     })
 }
 
+/// The forces at both ends of a cable.
 fn ends(cable: &Cable, answer: &CableSolution) -> Vec<EndForce> {
     let last = cable.supports.len().saturating_sub(1);
     let nodes: [Option<[&Node; 2]>; 2] = match answer.nodes.as_slice() {

@@ -77,14 +77,14 @@ pub(super) fn heights(answer: &CableSolution) -> (CablePlace, CablePlace) {
 }
 
 /// Returns whether a contact is with an obstacle, not with the cable itself.
-pub(super) fn lies_on_something(cable: &Cable, c: &&ContactReport) -> bool {
+pub(super) fn is_of_obstacle(cable: &Cable, c: &&ContactReport) -> bool {
     c.obstacle != cable.name
 }
 
 /// Unstretched length in contact, m: that of the union of all contacts, which may overlap.
 pub(super) fn lying_m(cable: &Cable, answer: &CableSolution) -> f64 {
     let within = |s: f64| s.clamp(0.0, cable.length_m);
-    let contacts = answer.contacts.iter().filter(|c| lies_on_something(cable, c));
+    let contacts = answer.contacts.iter().filter(|c| is_of_obstacle(cable, c));
     let mut all: Vec<[f64; 2]> = contacts.map(|c| c.extent_m().map(within)).collect();
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let (mut sum, mut reached) = (0.0, 0.0);
@@ -102,7 +102,7 @@ pub(super) fn lying_m(cable: &Cable, answer: &CableSolution) -> f64 {
 /// two meet.
 pub(super) fn touchdowns(cable: &Cable, answer: &CableSolution) -> Vec<Touchdown> {
     let same = PLACE_TOLERANCE * cable.length_m;
-    let mut contacts: Vec<&ContactReport> = answer.contacts.iter().filter(|c| lies_on_something(cable, c)).collect();
+    let mut contacts: Vec<&ContactReport> = answer.contacts.iter().filter(|c| is_of_obstacle(cable, c)).collect();
     contacts.sort_by(|a, b| a.extent_m()[0].total_cmp(&b.extent_m()[0]));
     let mut out = Vec::new();
     for (k, c) in contacts.iter().enumerate() {

@@ -189,6 +189,7 @@ impl SharpestBends {
         if hangs { radius } else { 0.0 }
     }
 
+    /// Takes a node into account, which turns the cable by `turn` (rad).
     fn add(&mut self, problem: &Problem, n: &Node, guide_at_node: Guide, turn: f64, shown: ShownBend) {
         let stiff = problem.bending_stiffness > 0.0;
         let own = 1.0 / n.curvature_per_m.abs();

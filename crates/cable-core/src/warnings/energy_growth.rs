@@ -172,6 +172,7 @@ impl EnergyGrowth {
         }
     }
 
+    /// The warning that energy has grown from nowhere, by `grown` over `limit` (J).
     fn warning(&self, observed: &Observed<'_>, since: &EnergyMinimum, [grown, limit]: [f64; 2]) -> Warning {
         let (name, nodes) = (&observed.problem.cable.name, &observed.answer.nodes);
         let speed = |k: usize| nodes.get(k).map_or(0.0, |n| n.vx_m_per_s.hypot(n.vy_m_per_s));

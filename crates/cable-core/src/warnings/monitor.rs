@@ -57,6 +57,7 @@ impl WarningMonitor {
         self.active.iter().map(|s| &s.warning)
     }
 
+    /// Finds the warnings of an instant and keeps those of before for their time.
     fn update(&mut self, observed: &[Observed<'_>], time_s: f64, since_s: Option<f64>) {
         self.snags.resize_with(observed.len(), SnagDetector::default);
         self.energy_growth.resize_with(observed.len(), EnergyGrowth::default);
@@ -72,7 +73,7 @@ impl WarningMonitor {
             }
             self.hold_tension(cable, observed, time_s);
             if since_s.is_some() {
-                self.let_short_slack_pass(cable, observed.problem, time_s, &mut found);
+                self.drop_short_slack(cable, observed.problem, time_s, &mut found);
             }
             for (k, warning) in found.iter().enumerate() {
                 let number = found[..k].iter().filter(|w| w.kind == warning.kind).count();
@@ -86,6 +87,7 @@ impl WarningMonitor {
         self.last_s = Some(time_s);
     }
 
+    /// Renews a warning, or adds it.
     fn raise(&mut self, cable: usize, number: usize, warning: &Warning, time_s: f64, since_s: Option<f64>) {
         let same = |s: &&mut ActiveWarning| (s.cable, s.number, s.warning.kind) == (cable, number, warning.kind);
         if let Some(active) = self.active.iter_mut().find(same) {
@@ -100,7 +102,7 @@ impl WarningMonitor {
 
     /// In motion a part that loses its tension for less time than a cable takes to fall by its own
     /// diameter, √(2d/g), has not gone anywhere: as when one sticks and slips. It is no warning.
-    fn let_short_slack_pass(&mut self, cable: usize, problem: &Problem, time_s: f64, found: &mut Vec<Warning>) {
+    fn drop_short_slack(&mut self, cable: usize, problem: &Problem, time_s: f64, found: &mut Vec<Warning>) {
         let is_slack = |w: &Warning| matches!(w.cause, WarningCause::LowTension { .. });
         self.slack_since_s.resize(self.slack_since_s.len().max(cable + 1), None);
         let Some(since_s) = self.slack_since_s.get_mut(cable) else { return };

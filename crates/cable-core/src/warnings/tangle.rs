@@ -48,6 +48,7 @@ fn at(n: &Node) -> Vec2 {
     Vec2::new(n.x_m, n.y_m)
 }
 
+/// Appends the loops of a cable that crosses itself, the tightest first.
 fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let points: Vec<Vec2> = answer.nodes.iter().map(at).collect();
     let found = crossings(&points, |k| !answer.breaks.contains(&(k + 1)));
@@ -95,6 +96,7 @@ pub(super) fn turns(nodes: &[Node]) -> Vec<f64> {
     out
 }
 
+/// Appends the tightest full turn of a free stretch.
 fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let least = problem.cable.min_bend_radius_m;
     let radius = if least > 0.0 { least } else { 5.0 * problem.cable.diameter_m };
@@ -159,6 +161,7 @@ fn shortest(nodes: &[Node], turn: impl Fn(usize) -> f64) -> Option<(f64, usize, 
     best
 }
 
+/// Appends the obstacles round which the cable is wrapped.
 fn wraps(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     for body in problem.world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
         let of_it = || answer.contacts.iter().filter(|c| c.obstacle == body.name);

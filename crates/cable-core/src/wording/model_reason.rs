@@ -2,7 +2,7 @@
 
 use super::figures::{Figures, percent};
 use super::{Sentence, display_in_si, serialize_in_si};
-use crate::solution::{LikelyBending, ModelReason, NeglectedEffect, NextCheaper, TakenStiffness};
+use crate::solution::{AssumedStiffness, LikelyBending, ModelReason, NeglectedEffect, NextCheaper};
 use crate::units::{Quantity, UnitSystem};
 
 display_in_si!(ModelReason, LikelyBending, NextCheaper);
@@ -39,7 +39,7 @@ impl Sentence for ModelReason {
 
 impl Sentence for LikelyBending {
     fn sentence(&self, units: UnitSystem) -> String {
-        let taken = |cables: &[TakenStiffness]| {
+        let taken = |cables: &[AssumedStiffness]| {
             let each = cables.iter().map(|c| {
                 let stiffness = Figures(units).given(Quantity::BendingStiffness, c.bending_stiffness_n_m2);
                 format!("`{}` with {stiffness}", c.cable)
@@ -48,8 +48,8 @@ impl Sentence for LikelyBending {
             format!("the likely bending stiffness of its preset was used: {all}")
         };
         match self {
-            Self::Taken(cables) => taken(cables),
-            Self::TakenWhereItMatters(cables) => {
+            Self::Assumed(cables) => taken(cables),
+            Self::AssumedWhereItMatters(cables) => {
                 format!(
                     "without bending stiffness it bends too tightly, lies in folds or crosses itself, so {}",
                     taken(cables)

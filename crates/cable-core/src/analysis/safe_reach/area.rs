@@ -19,7 +19,7 @@ use std::ops::ControlFlow;
 use exploration::Exploration;
 pub use map::{Area, ReachQuery};
 
-use super::{frozen_scene, lay, least, unsupported};
+use super::{frozen_scene, least, place_cables, unsupported};
 use crate::any_error::Error;
 use crate::contact::World;
 use crate::error::UnsupportedReach;
@@ -100,7 +100,7 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     let segments = Some(query.settings.segments.unwrap_or(bars as usize));
     let settings = Settings { segments, breaks: false, ..query.settings };
     let mut simulation = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
-    lay(&mut simulation, query.now.as_deref())?;
+    place_cables(&mut simulation, query.now.as_deref())?;
     Ok((exploration, simulation))
 }
 

@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{STEP_S, UNREACHABLE_FACTOR, frozen_scene, lay, least, unsupported};
+use super::{STEP_S, UNREACHABLE_FACTOR, frozen_scene, least, place_cables, unsupported};
 use crate::any_error::Error;
 use crate::error::{SolveError, UnsupportedReach};
 use crate::math::{Point, larger, smaller};
@@ -140,7 +140,7 @@ pub fn robot_reach(
     let question = Question::History(Inertia::QuasiStatic);
     let settings = Settings { breaks: false, ..settings };
     let mut start = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
-    lay(&mut start, now)?;
+    place_cables(&mut start, now)?;
     let walk = Traverse { cables: &cables, limit_n: UNREACHABLE_FACTOR * map.breaking_n };
     let step = (to_m - from_m) / count.saturating_sub(1).max(1) as f64;
     let xs: Vec<f64> = (0..count).map(|k| from_m + step * k as f64).collect();
@@ -232,7 +232,7 @@ impl Traverse<'_> {
         for &x in xs {
             progress(map, (x - at).abs())?;
             let Some(at_m) = stands(x) else { continue };
-            most = most.and_then(|m| self.go(&mut there, [at, x]).map(|out| larger(m, out)));
+            most = most.and_then(|m| self.greatest_tension_on_way(&mut there, [at, x]).map(|out| larger(m, out)));
             at = x;
             let place = ReachPlace {
                 at_m,
@@ -280,7 +280,7 @@ impl Traverse<'_> {
             let (most_n, jammed) = agreed.unwrap_or_else(|| {
                 let most = side[k].most;
                 let back = match &side[k].simulation {
-                    Some(there) => self.go(&mut there.clone(), [x, start_m]),
+                    Some(there) => self.greatest_tension_on_way(&mut there.clone(), [x, start_m]),
                     None => most,
                 };
                 (larger(value(most), value(back)), most == Err(Obstruction::Jammed) || back == Err(Obstruction::Jammed))
@@ -294,15 +294,15 @@ impl Traverse<'_> {
     }
 
     /// Moves the robot from one place to another; returns the largest tension on the way.
-    fn go(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<f64, Obstruction> {
+    fn greatest_tension_on_way(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<f64, Obstruction> {
         let steps = ((to - from).abs() / STEP_M).ceil();
         let mut most = simulation.largest_n(self.cables.iter().copied());
         for k in 1..=steps as usize {
             let x = from + (to - from) * (k as f64 / steps);
             // At places where it cannot stand the cable is moved past.
-            let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
+            let left_m = simulation.place_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
-            if is_held_back(left_m) {
+            if is_stopped_by_cable(left_m) {
                 self.push_with_inertia(simulation, [x - (to - from) / steps, x])?;
                 most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             }
@@ -320,8 +320,8 @@ impl Traverse<'_> {
         let pushes = (PUSH_TIME_S / robot::STEP_S).ceil();
         for k in 1..=(parts + pushes) as usize {
             let x = from + (to - from) * smaller(k as f64 / parts, 1.0);
-            let left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|e| why_stuck(&e))?;
-            if k as f64 >= parts && !is_held_back(left_m) {
+            let left_m = simulation.place_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|e| why_stuck(&e))?;
+            if k as f64 >= parts && !is_stopped_by_cable(left_m) {
                 break;
             }
             if k as f64 == parts + pushes {
@@ -329,13 +329,13 @@ impl Traverse<'_> {
             }
         }
         // The cable that toppled has come down.
-        let rests = simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
-        if is_held_back(rests) { Err(Obstruction::Jammed) } else { Ok(()) }
+        let rests = simulation.place_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
+        if is_stopped_by_cable(rests) { Err(Obstruction::Jammed) } else { Ok(()) }
     }
 }
 
 /// Returns whether the cable stops a robot that is so far from its target, m.
-fn is_held_back(left_m: Option<f64>) -> bool {
+fn is_stopped_by_cable(left_m: Option<f64>) -> bool {
     left_m.is_some_and(|m| m > MAX_SHORTFALL_M)
 }
 

@@ -73,7 +73,7 @@ fn frozen_scene(scene: &Scene, now: Option<&Solution>) -> Scene {
 }
 
 /// Lays the cables: at rest in the shape of an answer, or else as in the scene.
-fn lay(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
+fn place_cables(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
     if let Some(now) = now {
         if now.cables.iter().any(|c| !c.breaks.is_empty()) {
             return Err(unsupported(UnsupportedReach::BrokenCable));

@@ -151,6 +151,7 @@ impl RunFolder {
         self.write(|writer| writer.begin(scene, robot))
     }
 
+    /// Writes an instant, and notes in the manifest its time and the model that solved it.
     fn append(
         &mut self,
         solution: &Solution,
@@ -165,6 +166,7 @@ impl RunFolder {
         Ok(())
     }
 
+    /// Writes to the tables, which are made if need be; if that fails they are as before.
     fn write(
         &mut self,
         write: impl FnOnce(&mut RunWriter<TableFile>) -> Result<(), WriteError>,

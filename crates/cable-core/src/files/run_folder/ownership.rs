@@ -33,6 +33,7 @@ pub(super) fn look(folder: &Path) -> Result<Option<Manifest>, FileError> {
     }
 }
 
+/// The manifest of a run folder; None if there is none that can be read.
 pub(in crate::files) fn read_manifest(folder: &Path) -> Option<Manifest> {
     let path = folder.join(MANIFEST_NAME);
     if !is_plain_file(&path) {
@@ -54,6 +55,7 @@ pub(super) fn check_own(folder: &Path, manifest: &Manifest) -> Result<(), FileEr
     RUN_FILES.iter().try_for_each(|name| check_file(folder, manifest, name))
 }
 
+/// Returns an error if a file of the run is not as the manifest has it.
 pub(super) fn check_file(folder: &Path, manifest: &Manifest, name: &str) -> Result<(), FileError> {
     let path = folder.join(name);
     if !exists(&path) {
@@ -74,6 +76,7 @@ pub(super) fn check_file(folder: &Path, manifest: &Manifest, name: &str) -> Resu
     }
 }
 
+/// Length and fingerprint of a file.
 pub(super) fn record_of(path: &Path, name: &str) -> io::Result<FileRecord> {
     let mut file = fs::File::open(path)?;
     let (mut bytes, mut hash) = (0, Fingerprint::default());

@@ -42,6 +42,7 @@ impl TableFile {
         self.file.as_ref().map_or(Ok(()), fs::File::sync_all)
     }
 
+    /// Appends bytes to the file, which the first ones create.
     fn append(&mut self, part: &[u8]) -> io::Result<()> {
         match &mut self.file {
             Some(file) => file.write_all(part),

@@ -112,6 +112,8 @@ impl<'a> Nodes<'a> {
         self.push(b);
     }
 
+    /// Adds the nodes between two points at `s0` and `s1` (m) by bisection, until both the shape
+    /// and the tension are straight between neighbours.
     fn refine(&mut self, point: &impl Fn(f64) -> ShapePoint, ends: [ShapePoint; 2], s0: f64, s1: f64, depth: u32) {
         let s = 0.5 * (s0 + s1);
         let middle = point(s);
@@ -167,6 +169,7 @@ pub(super) fn report(p: &Problem, layout: &SupportLayout, e: &Equilibrium) -> (V
     (nodes.out, reactions)
 }
 
+/// Adds the nodes on the wheel of anchor `k`.
 fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibrium, k: usize) {
     let (a, arc) = (&slide.layout.anchors[k], &e.arcs[k]);
     let (Some(before), Some(_)) = SlidingProblem::forces(&e.stretches, k) else { return };
@@ -187,6 +190,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibriu
     }
 }
 
+/// The reactions of all supports, in their order.
 fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let at_node = |s: f64| {
         let k = nodes.partition_point(|n| n.arc_length_m < s - SAME_POINT_FRACTION * p.length);

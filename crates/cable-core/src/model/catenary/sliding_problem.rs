@@ -114,6 +114,7 @@ pub(super) struct SpanSolutions {
 }
 
 impl SlidingProblem<'_> {
+    /// The span of material between two arc lengths, m.
     pub fn chain(&self, from: f64, to: f64) -> Chain<'_> {
         Chain {
             from,

@@ -160,11 +160,11 @@ impl FemModel {
         if self.refinement() == MeshRefinement::Forbidden || !by_mesh || bars > self.tuning().start.max_refined_bars {
             return None;
         }
-        self.laid_on(bars)
+        self.on_other_bars(bars)
     }
 
     /// The same cable laid along its route on another number of bars; None if there is none.
-    pub(in crate::model::fem) fn laid_on(&self, bars: usize) -> Option<Self> {
+    pub(in crate::model::fem) fn on_other_bars(&self, bars: usize) -> Option<Self> {
         let settings = Settings { segments: Some(bars), ..self.settings };
         let mut other = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
         other.starts_from_spans = self.starts_from_spans;

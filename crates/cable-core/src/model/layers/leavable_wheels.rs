@@ -244,7 +244,7 @@ impl LeavableWheels {
             if let Some(pose) = self.robot_pose {
                 next.inner.set_robot_pose(pose);
             }
-            next.lead_all();
+            next.move_all_inner_supports();
             next.inner.continue_from(&*before.inner).then_some(next)
         });
         match continued {
@@ -255,10 +255,10 @@ impl LeavableWheels {
     }
 
     /// Moves all supports of the inner model that were moved.
-    fn lead_all(&mut self) {
+    fn move_all_inner_supports(&mut self) {
         for k in 0..self.led.len() {
             if let Some(lead) = self.led[k] {
-                self.lead(k, lead);
+                self.move_support(k, lead);
             }
         }
     }
@@ -277,7 +277,7 @@ impl LeavableWheels {
             Start::Motion(state) => this.inner.set_state(state)?,
             Start::Rest(answer, time_s) => this.inner.warm_start(answer, *time_s)?,
         }
-        this.lead_all();
+        this.move_all_inner_supports();
         Ok(this.inner)
     }
 
@@ -300,11 +300,11 @@ impl LeavableWheels {
     }
 
     /// Moves a support; a wheel that was left goes there when the cable is next solved.
-    fn lead(&mut self, support: usize, lead: SupportMove) {
+    fn move_support(&mut self, support: usize, target: SupportMove) {
         if let Some(led) = self.led.get_mut(support) {
-            *led = Some(lead);
+            *led = Some(target);
         }
-        match (self.inner_index(support), lead) {
+        match (self.inner_index(support), target) {
             (Some(inner), SupportMove::Dragged(at)) => self.inner.drag_support(inner, at),
             (Some(inner), SupportMove::Pulled(at)) => self.inner.pull_support(inner, at),
             (None, _) => {}
@@ -364,7 +364,7 @@ impl LeavableWheels {
     ///
     /// # Errors Those of the model without the posts of wheels that are led.
     fn move_led(&mut self, dt_s: f64, known: &[bool]) -> Result<(), SolveError> {
-        self.take_led_posts()?;
+        self.remove_moved_posts()?;
         let most = self.settings.hand_speed_m_per_s * dt_s;
         for (support, to) in self.led_away() {
             let from = self.wheel_left(support).map(|wheel| self.place_of(wheel));
@@ -380,7 +380,7 @@ impl LeavableWheels {
     /// wheel again; else the post is taken away.
     ///
     /// # Errors Those of the model without the post.
-    fn take_led_posts(&mut self) -> Result<(), SolveError> {
+    fn remove_moved_posts(&mut self) -> Result<(), SolveError> {
         let led = self.led_away();
         if led.is_empty() {
             return Ok(());
@@ -612,7 +612,7 @@ impl LeavableWheels {
     /// Lays a stiff cable at rest on posts in place of wheels, before it is moved, where the model
     /// would neglect its bend on a wheel: a sliding node carries no moment. It stays on the wheels
     /// if it cannot be laid so.
-    fn lay_bends_on_posts(&mut self, inertia: Inertia) {
+    fn move_bends_to_posts(&mut self, inertia: Inertia) {
         let bent = self.inner.wheels_bent_over(inertia);
         let bent: Vec<usize> = bent.into_iter().filter_map(|k| self.outer_index(k)).collect();
         let mut replaced = self.replaced();
@@ -897,7 +897,7 @@ impl Layer for LeavableWheels {
             Inertia::QuasiStatic => self.put_at_rest(),
         }
         if std::mem::take(&mut self.rests) {
-            self.lay_bends_on_posts(inertia);
+            self.move_bends_to_posts(inertia);
         }
         let end_s = self.inner.time_s() + dt_s;
         let mut report = self.advance_until_return(end_s, inertia, gauge)?;
@@ -917,11 +917,11 @@ impl Layer for LeavableWheels {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.lead(support, SupportMove::Dragged(target_m));
+        self.move_support(support, SupportMove::Dragged(target_m));
     }
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.lead(support, SupportMove::Pulled(hand_m));
+        self.move_support(support, SupportMove::Pulled(hand_m));
     }
 
     fn set_robot_pose(&mut self, to: RigidPose) {

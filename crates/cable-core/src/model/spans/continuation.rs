@@ -164,7 +164,7 @@ impl CableEquilibrium {
         layout.set_context(&mut self.context, to);
         for k in 0..self.sections.len() {
             match self.solve_section(layout, k, routes.get(k).map(Vec::as_slice), workspace) {
-                Ok(one) => taken = taken.and(one),
+                Ok(one) => taken = taken.plus(one),
                 Err(failure) => {
                     self.undo(layout, workspace);
                     return Err(failure);
@@ -214,7 +214,7 @@ impl CableEquilibrium {
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         if self.sections[k].loose.is_some() {
-            return self.lay_loose_again(layout, k);
+            return self.renew_loose_section(layout, k);
         }
         let solved = self.find_section_equilibrium(layout, k, route, [&mut *start, moved], workspace)?;
         let mut taken = StepStats { solved, ..StepStats::default() };
@@ -328,7 +328,7 @@ impl CableEquilibrium {
 
     /// Lays a loose section anew while its supports stay where they are. Moving supports would drag
     /// its folds over the ground, and the force for that is not modelled.
-    fn lay_loose_again(&mut self, layout: &SectionLayout, k: usize) -> Result<StepStats, Failure> {
+    fn renew_loose_section(&mut self, layout: &SectionLayout, k: usize) -> Result<StepStats, Failure> {
         let found = slack::loose_section(layout, k, &self.context, &self.instant, LooseShapes::AnyTension);
         let section = &mut self.sections[k];
         let Some(found) = found.filter(|f| f.end_conditions == section.end_conditions) else {
@@ -373,13 +373,13 @@ impl CableEquilibrium {
             match result {
                 Ok(t) => {
                     pushed = None;
-                    taken = taken.and(t);
+                    taken = taken.plus(t);
                     drag *= if raised > 0 { DRAG_DECREASE_AFTER_RAISE } else { DRAG_DECREASE };
                     raised = 0;
                     if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
                         && let Ok(t) = self.step(layout, to, workspace)
                     {
-                        return Ok(taken.and(t));
+                        return Ok(taken.plus(t));
                     }
                 }
                 Err(failure) => {
@@ -413,7 +413,7 @@ impl CableEquilibrium {
     /// Gives a loose cable a very small tension when it begins to be drawn, because only a cable in
     /// tension can be followed: with a free end along its route; held at both ends and drawn over
     /// crests, with the surplus in a kink.
-    fn take_up_slack(&mut self, layout: &SectionLayout, to: &BoundaryConditions, workspace: &mut Workspace) {
+    fn tension_loose_sections(&mut self, layout: &SectionLayout, to: &BoundaryConditions, workspace: &mut Workspace) {
         if self.loose_lengths().is_none() || self.instant.places == to.places {
             return;
         }
@@ -424,7 +424,7 @@ impl CableEquilibrium {
         let instant = self.instant.clone();
         let taut = if all(&|k| spreads(k) && !has_both_ends(k)) {
             let mut taut = self.clone();
-            taut.lay_in_tension(layout, &instant, workspace).ok().map(|_| taut)
+            taut.place_in_tension(layout, &instant, workspace).ok().map(|_| taut)
         } else if all(&|k| !spreads(k) && has_both_ends(k)) {
             Self::along_route(layout, &instant, workspace).ok().map(|(taut, _)| taut)
         } else {
@@ -444,7 +444,7 @@ impl CableEquilibrium {
         first: f64,
         workspace: &mut Workspace,
     ) -> Result<StepStats, AdvanceFailure> {
-        self.take_up_slack(layout, to, workspace);
+        self.tension_loose_sections(layout, to, workspace);
         let [old, mut from, mut at] = std::mem::take(&mut workspace.instants);
         workspace.instants[0] = old;
         from.clone_from(&self.instant);
@@ -480,7 +480,7 @@ impl CableEquilibrium {
                 }
                 Ok(t) => {
                     size.grow();
-                    (taken, done) = (taken.and(t), next);
+                    (taken, done) = (taken.plus(t), next);
                     continue;
                 }
                 Err(failure) => {
@@ -501,7 +501,7 @@ impl CableEquilibrium {
                     failure: self.failure_to_report(failure, held_back),
                     done,
                 })?;
-                (taken, done) = (taken.and(slid), next);
+                (taken, done) = (taken.plus(slid), next);
                 taken.runaways += 1;
                 size.restart();
             }
@@ -512,9 +512,9 @@ impl CableEquilibrium {
 
 impl StepStats {
     /// The sum of these statistics and those of another step.
-    pub fn and(self, more: Self) -> Self {
+    pub fn plus(self, more: Self) -> Self {
         Self {
-            solved: self.solved.and(more.solved),
+            solved: self.solved.plus(more.solved),
             halvings: self.halvings + more.halvings,
             runaways: self.runaways + more.runaways,
             found_without_friction: self.found_without_friction || more.found_without_friction,
@@ -524,7 +524,7 @@ impl StepStats {
 }
 
 impl Converged {
-    fn and(self, more: Self) -> Self {
+    fn plus(self, more: Self) -> Self {
         Self {
             iterations: self.iterations + more.iterations,
             residual: if more.residual > self.residual { more.residual } else { self.residual },

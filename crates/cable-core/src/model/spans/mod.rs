@@ -160,7 +160,7 @@ impl SpansModel {
     }
 
     /// True if cable of the equilibrium lies without tension.
-    pub(super) fn lies_loose(&self) -> bool {
+    pub(super) fn has_loose_cable(&self) -> bool {
         self.cable_equilibrium.as_ref().is_some_and(|n| n.loose_lengths().is_some())
     }
 
@@ -349,6 +349,7 @@ impl SpansModel {
         Ok(taken)
     }
 
+    /// The report of a step from its statistics.
     fn report_of(&self, taken: StepStats) -> StepReport {
         let scale = self.layout.problem.force_scale();
         StepReport {
@@ -375,7 +376,7 @@ impl SpansModel {
         let tensions_here = tensions(cable_equilibrium);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversal::mobilised(drawn) } else { drawn };
-            let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.way(), workspace);
+            let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.direction(), workspace);
             found.or_else(|| self.along_route_mobilised(drawn, start, workspace)).map(|n| tensions(&n))
         });
         // A cable that is longer than its way may also lie loose.
@@ -413,7 +414,7 @@ impl SpansModel {
 
     /// A warning of other equilibria of a frictionless cable, if there are any.
     pub(super) fn other_equilibria(&mut self) -> Option<Warning> {
-        if self.rubs() || self.lies_loose() {
+        if self.rubs() || self.has_loose_cable() {
             return None;
         }
         let cable_equilibrium = self.cable_equilibrium.as_ref()?;
@@ -534,7 +535,7 @@ impl Mechanics for SpansModel {
     }
 
     fn reason(&self) -> Option<&ModelReason> {
-        self.lies_loose().then_some(&ModelReason::LooseCable)
+        self.has_loose_cable().then_some(&ModelReason::LooseCable)
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
@@ -555,7 +556,7 @@ impl Mechanics for SpansModel {
         };
         let (found, stable) = match &mut self.cable_equilibrium {
             Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut workspace) {
-                Ok(left) => (found.map(|taken| taken.and(left)), true),
+                Ok(left) => (found.map(|taken| taken.plus(left)), true),
                 Err(_) => (found, false),
             },
             _ => (found, true),

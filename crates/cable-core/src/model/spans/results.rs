@@ -82,6 +82,7 @@ struct ReportInProgress<'a> {
 }
 
 impl ReportInProgress<'_> {
+    /// Adds the nodes and contacts of a section.
     fn add_section(&mut self, section: &CableSection) {
         if let Some(loose) = &section.loose {
             let problem = &self.layout.problem;
@@ -140,6 +141,7 @@ struct ContactStretch {
 }
 
 impl ContactStretch {
+    /// The stretch between two boundary coordinates.
     fn new(contact_path: &ContactPath<'_>, cable_radius: f64, history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(contact_path, from);
@@ -176,6 +178,7 @@ impl ContactStretch {
     }
 }
 
+/// The stretches of a contact, divided at breakpoints of its friction and at borders of pieces.
 fn stretches(
     contact_path: &ContactPath<'_>,
     cable_radius: f64,
@@ -199,6 +202,7 @@ fn stretches(
     out
 }
 
+/// Adds the nodes of a contact.
 fn contact_nodes(nodes: &mut Nodes<'_>, contact_path: &ContactPath<'_>, c: &Contact, stretches: &[ContactStretch]) {
     let mut push = |place: &BoundaryPoint, (tension, s): (f64, f64)| {
         let curvature =
@@ -264,6 +268,7 @@ fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64
     (normal, push, along, turned)
 }
 
+/// The report of a contact.
 fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &[ContactStretch]) -> ContactReport {
     let friction = contact_path.friction;
     let (normal_n, push, along, turned) = pressed(contact_path, stretches);
@@ -463,6 +468,7 @@ pub(in crate::model::spans) fn end_force(
     }
 }
 
+/// The reactions of all supports, in their order.
 fn supports(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let p = &layout.problem;
     let context = &cable_equilibrium.context;

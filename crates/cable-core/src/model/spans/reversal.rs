@@ -99,6 +99,7 @@ impl Reversal<'_> {
         }
     }
 
+    /// The contact as it is in the cable with its direction reversed.
     fn contact(&self, c: &ContactReport) -> ContactReport {
         let part =
             |p: &ContactPart| ContactPart { begins_m: self.s(p.ends_m), ends_m: self.s(p.begins_m), state: p.state };

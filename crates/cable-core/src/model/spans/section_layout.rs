@@ -232,7 +232,7 @@ impl SectionLayout {
             curves,
             law,
             drag: 0.0,
-            mobilised: self.problem.cable.friction_mobilised.way(),
+            mobilised: self.problem.cable.friction_mobilised.direction(),
             loose_where_tension_ends: false,
             loads: loads.collect(),
             settings: self.settings.clone(),

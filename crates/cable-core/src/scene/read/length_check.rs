@@ -78,6 +78,7 @@ struct Waypoint {
 }
 
 impl Waypoint {
+    /// The anchor of a support, a wheel with the cable's radius added; None if it has no place.
     fn of(scene: &Scene, cable: &Cable, support: &Support) -> Option<Self> {
         let at = match support.kind {
             SupportKind::Robot => scene.hitch_m()?,

@@ -37,7 +37,7 @@ pub(super) fn points(at: &Path<'_>, values: &[Point], range: Range) -> CheckResu
 }
 
 /// No two neighbours in the same place.
-pub(super) fn apart(at: &Path<'_>, line: &[Point]) -> CheckResult {
+pub(super) fn distinct_neighbours(at: &Path<'_>, line: &[Point]) -> CheckResult {
     match line.windows(2).position(|w| w[0] == w[1]) {
         Some(i) => Err(at.index(i + 1).document_fault(DocumentFault::RepeatedPoint)),
         None => Ok(()),
@@ -66,6 +66,7 @@ pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) ->
     Ok(())
 }
 
+/// Checks times and values of a series.
 pub(super) fn series(
     times_at: &Path<'_>,
     values_at: &Path<'_>,

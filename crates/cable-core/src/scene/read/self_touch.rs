@@ -45,6 +45,7 @@ pub(super) fn first_self_touch(points: &[Point], ends: LineEnds) -> Option<LineS
 }
 
 impl<'a> EdgeTree<'a> {
+    /// The line with a binary tree of octagons about its edges.
     fn new(points: &'a [Point], ends: LineEnds) -> Self {
         let closed = ends == LineEnds::Joined;
         let edges = if closed { points.len() } else { points.len().saturating_sub(1) };
@@ -76,6 +77,7 @@ impl<'a> EdgeTree<'a> {
         (self.points[k], self.points[if k + 1 < self.points.len() { k + 1 } else { 0 }])
     }
 
+    /// The first two edges that touch, searched for by pairs of boxes that overlap.
     fn search(&self) -> Option<LineSelfTouch> {
         let leaves = self.boxes.len() / 2;
         let mut pairs = vec![(1, 1)];
@@ -102,6 +104,7 @@ impl<'a> EdgeTree<'a> {
         None
     }
 
+    /// The first two edges of two leaves that touch.
     fn leaves_meet(&self, a: usize, b: usize) -> Option<LineSelfTouch> {
         for i in a * LEAF_EDGES..self.edges.min((a + 1) * LEAF_EDGES) {
             for j in (b * LEAF_EDGES).max(i + 1)..self.edges.min((b + 1) * LEAF_EDGES) {
@@ -137,6 +140,7 @@ fn turns_back(corner: Point, a: Point, b: Point) -> bool {
     turn(corner, a, b) == 0.0 && along > 0.0
 }
 
+/// True if the segments from `a` to `b` and from `c` to `d` touch.
 fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
     let (c_side, d_side, a_side, b_side) = (turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b));
     let between = |side: f64, p: Point, from: Point, to: Point| {

@@ -11,6 +11,7 @@ pub(super) fn placed(mut error: SceneError, text: &str, table: &DeTable<'_>) -> 
     error
 }
 
+/// Position in the text (bytes) of the innermost part of a path that is there.
 fn locate(table: &DeTable<'_>, path: &str) -> Option<usize> {
     let mut found: Option<&Spanned<DeValue<'_>>> = None;
     for step in path.split(['.', '[']) {

@@ -6,7 +6,8 @@
 
 use super::key_path::Path;
 use super::number_and_name_checks::{
-    CheckResult, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
+    CheckResult, MAX_KNOTS, MAX_POINTS_ON_CABLE, at_most, distinct_neighbours, force, number, point, points, series,
+    unique,
 };
 use super::range;
 use super::self_touch::{LineSelfTouch, first_self_touch};
@@ -130,7 +131,7 @@ fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
         return Err(route.document_fault(DocumentFault::ShortRoute));
     }
     points(&route, &cable.route_m, range::COORDINATE)?;
-    apart(&route, &cable.route_m)?;
+    distinct_neighbours(&route, &cable.route_m)?;
     support_rules::check(scene, cable, at)
 }
 
@@ -170,7 +171,7 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
         return Err(line.fault(SceneFault::TooFewPoints { count: corners.len(), least }));
     }
     points(&line, corners, range::COORDINATE)?;
-    apart(&line, corners)?;
+    distinct_neighbours(&line, corners)?;
     match (&obstacle.shape, corners.first(), corners.last()) {
         (Shape::Terrain { .. }, Some(first), Some(last)) if !(last[0] > first[0]) => {
             Err(line.document_fault(DocumentFault::TerrainLeftwards))

@@ -245,9 +245,11 @@ impl Exploration<'_> {
             let before_n = from.most_n;
             drop(from);
             // If this way has no answer, another one may have one.
-            let Some(out_n) = self.go(&mut simulation, [self.at(parent), self.at(place)]) else { continue };
+            let Some(out_n) = self.greatest_tension_on_way(&mut simulation, [self.at(parent), self.at(place)]) else {
+                continue;
+            };
             let most_n = larger(before_n, out_n);
-            if most_n.is_infinite() && self.near(place) {
+            if most_n.is_infinite() && self.is_easily_reached(place) {
                 self.beyond[place] = true;
                 continue;
             }
@@ -330,7 +332,7 @@ impl Exploration<'_> {
     }
 
     /// Returns whether a cable that no obstacle holds would easily reach a place.
-    fn near(&self, place: usize) -> bool {
+    fn is_easily_reached(&self, place: usize) -> bool {
         self.holds.iter().all(|h| (self.at(place) - h).norm() <= RETRY_DISTANCE_FRACTION * self.far_m)
     }
 
@@ -370,7 +372,7 @@ impl Exploration<'_> {
     fn back(&self, simulation: &mut Simulation, place: usize) -> Option<f64> {
         let (mut at, mut most) = (place, 0.0);
         while let Some(before) = self.parents.get(at).copied().flatten().filter(|_| f64::is_finite(most)) {
-            most = larger(most, self.go(simulation, [self.at(at), self.at(before)])?);
+            most = larger(most, self.greatest_tension_on_way(simulation, [self.at(at), self.at(before)])?);
             at = before;
         }
         Some(most)
@@ -378,7 +380,7 @@ impl Exploration<'_> {
 
     /// Moves the end straight from one place to another; returns the largest tension, infinite if
     /// the cable stops it, None without an answer.
-    pub fn go(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2]) -> Option<f64> {
+    pub fn greatest_tension_on_way(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2]) -> Option<f64> {
         let steps = ((to - from).norm() / STEP_M).ceil();
         let mut most = self.tension_n(simulation);
         for k in 1..=steps as usize {

@@ -75,7 +75,7 @@ const MAX_STRAIGHT_TURN_DEG: f64 = 30.0;
 ///
 /// The contacts of the elastica are tried in this order: those of the flexible cable, those of a
 /// chain relaxed from it, and those of a chain with bars half as long.
-pub fn rest(
+pub fn equilibrium(
     problem: &Problem,
     time_s: f64,
     dragged: &[Option<Vec2>],
@@ -91,11 +91,11 @@ pub fn rest(
         let found = results::stiffen_and_refine(elastica, problem, tolerance)?;
         keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
     });
-    let crushed = bent.as_ref().is_some_and(|(answer, _)| lies_crushed(problem, answer));
+    let crushed = bent.as_ref().is_some_and(|(answer, _)| is_crushed(problem, answer));
     if crushed {
         // A cable under such compression bows as soon as anything lifts it.
         let rest = rest_by_chain(chain_input, chain::rest_of_flexible(chain_input), tolerance);
-        return rest.filter(|(answer, _)| !lies_crushed(problem, answer)).or(bent);
+        return rest.filter(|(answer, _)| !is_crushed(problem, answer)).or(bent);
     }
     let chain = match &bent {
         // The equilibrium may be unstable: a chain released there shows it.
@@ -142,7 +142,7 @@ fn rest_by_chain(
 
 /// True if an answer lies straight on a surface under more compression than it could bear if
 /// anything lifted it.
-fn lies_crushed(problem: &Problem, answer: &CableSolution) -> bool {
+fn is_crushed(problem: &Problem, answer: &CableSolution) -> bool {
     answer.contacts.iter().any(|contact| {
         let [from, to] = contact.extent_m();
         let lying = answer.nodes.iter().filter(|n| (from..=to).contains(&n.arc_length_m));

@@ -130,6 +130,7 @@ pub fn solution(elastica: &Elastica, problem: &Problem) -> CableSolution {
     }
 }
 
+/// The nodes of all pieces; pieces that meet share one.
 fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::new();
     let area = problem.cable.area_m2();
@@ -175,6 +176,7 @@ fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
     out
 }
 
+/// The reactions of all supports, in their order.
 fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<SupportReaction> {
     let ends = |k: usize| {
         (elastica.pieces.get(k).and_then(|p| p.nodes.last()), elastica.pieces.get(k + 1).and_then(|p| p.nodes.first()))

@@ -29,6 +29,8 @@ impl Stepper {
         self.rest_rounds(to, dragged, self.cable.mesh.tuning.equilibrium.max_corner_pull_rad)
     }
 
+    /// Solves for the equilibrium at the time `to` (s), again while sliding nodes, loads or
+    /// friction change.
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
         // A cable that is brought to rest where it is draws no load over a round.

@@ -99,7 +99,7 @@ impl Stepper {
     /// # Errors
     /// A typed reason when there is none, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        self.cable.refuse()?;
+        self.cable.check_supported()?;
         self.time_control.sleep.wake();
         self.cable.answers.lagging_supports.clear();
         self.rollback.save(&self.cable);

@@ -189,7 +189,7 @@ impl FemModel {
         if 2 * bars < LEAST_BARS {
             return None;
         }
-        let mut other = self.laid_on(bars)?;
+        let mut other = self.on_other_bars(bars)?;
         if let WorkBudget::Left(left) = self.stepper.solver.work_left {
             let work = self.tuning().equilibrium.max_work.saturating_sub(left);
             let iterations = work / self.stepper.cable.meshing.even_bars;

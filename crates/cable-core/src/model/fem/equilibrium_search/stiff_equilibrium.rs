@@ -35,7 +35,7 @@ impl FemModel {
         let lay = initial_equilibrium(&passing, self.settings, &self.dragged, self.robot_pose).ok()?;
         let (time_s, tolerance) = (self.stepper.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
-        let (answer, cost) = elastica::rest(&passing, time_s, &self.dragged, flexible, tolerance)?;
+        let (answer, cost) = elastica::equilibrium(&passing, time_s, &self.dragged, flexible, tolerance)?;
         if meets_itself(&self.problem, &answer.nodes) || crosses_an_obstacle(&self.problem, &answer.nodes) {
             return None;
         }

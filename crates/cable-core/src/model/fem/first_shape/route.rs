@@ -120,6 +120,7 @@ pub fn bow(problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Option<Vec<Vec2>> {
     Some(mesh.arc_length.iter().map(place).collect())
 }
 
+/// Distance along a line of points (m) of its point nearest to `at`.
 fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {
     let mut best = (f64::INFINITY, 0.0);
     for k in 1..points.len() {

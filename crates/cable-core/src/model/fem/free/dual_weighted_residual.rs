@@ -104,7 +104,7 @@ pub fn position_error(network: &mut PulleyNetwork) -> f64 {
 
 /// Greatest distance of points of one mesh from those of the same arc length on another, m.
 #[must_use]
-pub fn apart(some: &[SolutionPoint], others: &[SolutionPoint]) -> f64 {
+pub fn greatest_distance(some: &[SolutionPoint], others: &[SolutionPoint]) -> f64 {
     let mut most = 0.0;
     for p in some {
         let k = others.partition_point(|o| o.arc_length < p.arc_length - NODE_TOLERANCE_M);

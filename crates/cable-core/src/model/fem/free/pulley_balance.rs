@@ -153,6 +153,7 @@ impl PulleyNetwork {
         Ok(())
     }
 
+    /// Solves span `i` between its present ends and stores its end forces.
     fn solve_span(&mut self, i: usize) -> Result<(), PulleyFailure> {
         let ends = self.ends[i];
         let SpanEnds { first, last } = ends;
@@ -205,6 +206,8 @@ impl PulleyNetwork {
         (0..self.layout.stations.len()).filter(|&k| self.wheel(k).is_some()).collect()
     }
 
+    /// The logarithm of the tension ratio at a pulley: its present value, and those with friction
+    /// −μ, 0 and μ.
     fn law(&self, station: usize, wheel: &Wheel) -> PulleyLaw {
         let [before, after] = self.forces[station];
         let ratio = (after.norm() / before.norm()).ln();
@@ -440,7 +443,7 @@ impl PulleyNetwork {
         let at_limit = self.imbalance(station, &wheel);
         if at_limit.is_some_and(|f| f * imbalance > 0.0) {
             let other = if imbalance < 0.0 { station + 1 } else { station - 1 };
-            return self.pass(station, other);
+            return self.move_past_station(station, other);
         }
         for _ in 0..JUMP_HALVINGS {
             let middle = 0.5 * (near + far);
@@ -456,6 +459,7 @@ impl PulleyNetwork {
         self.try_at(station, far)
     }
 
+    /// Moves a pulley to an arc length (m) and solves the spans beside it.
     fn try_at(&mut self, station: usize, arc_length: f64) -> Result<(), PulleyFailure> {
         self.layout.stations[station].arc_length = arc_length;
         for i in 0..self.ends.len() {
@@ -469,7 +473,7 @@ impl PulleyNetwork {
 
     /// Handles a pulley whose balance lies beyond the `other` station next to it: a load changes to
     /// the other side; at an end the cable runs out.
-    fn pass(&mut self, station: usize, other: usize) -> Result<(), PulleyFailure> {
+    fn move_past_station(&mut self, station: usize, other: usize) -> Result<(), PulleyFailure> {
         let inner = other > 0 && other + 1 < self.layout.stations.len();
         if !inner {
             return Err(PulleyFailure::RunsOut(station));

@@ -207,7 +207,7 @@ impl Statics {
                 let feature = Unsupported::BendingOverPulleys;
                 return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
-            return self.bend(network, time, body_force);
+            return self.solve_with_bending(network, time, body_force);
         }
         let mut estimate = dual_weighted_residual::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
@@ -301,6 +301,7 @@ impl Statics {
         off
     }
 
+    /// The same equilibrium on twice the elements, for the error estimate; None if that has none.
     fn finer(
         &self,
         network: &PulleyNetwork,
@@ -359,7 +360,12 @@ impl Statics {
     }
 
     /// Finds the equilibrium with bending stiffness, starting from the flexible cable.
-    fn bend(&mut self, network: PulleyNetwork, time: f64, force: BodyForce) -> Result<StepReport, SolveError> {
+    fn solve_with_bending(
+        &mut self,
+        network: PulleyNetwork,
+        time: f64,
+        force: BodyForce,
+    ) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a definite shape without auxiliary weight.
         let body = match force {
@@ -398,6 +404,7 @@ impl Statics {
             .map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_buckled_shapes()).map(nodes).collect())
     }
 
+    /// The warnings about the model's assumptions.
     fn warnings(&self, body_force: BodyForce) -> Vec<Warning> {
         let problem = &self.problem;
         let mut out = Vec::new();

@@ -195,6 +195,7 @@ impl StationLayout {
     }
 }
 
+/// The station of a load (N) between supports.
 fn point_load(arc_length: f64, load: Vec2) -> Station {
     Station {
         arc_length,
@@ -273,6 +274,7 @@ fn arcs_along_route(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) ->
         .collect()
 }
 
+/// Distance of each point along their line, m.
 fn way_along(points: &[Vec2]) -> Vec<f64> {
     let mut way = vec![0.0];
     let mut sum = 0.0;

@@ -80,7 +80,7 @@ impl PulleyNetwork {
     pub fn balance_with_friction(&mut self) -> Result<(), PulleyFailure> {
         self.steps = 0;
         let pulleys = self.pulleys();
-        self.take_unknowns(&pulleys)?;
+        self.apply_unknowns(&pulleys)?;
         let most = MAX_MODES * pulleys.len();
         for round in 0..most {
             let solved = self.newton_on_pulleys(&pulleys);
@@ -105,7 +105,7 @@ impl PulleyNetwork {
     }
 
     /// Moves the stations to the unknowns and solves the spans between them.
-    fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), PulleyFailure> {
+    fn apply_unknowns(&mut self, pulleys: &[usize]) -> Result<(), PulleyFailure> {
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             let station: &mut Station = &mut self.layout.stations[k];
             (station.arc_length, station.material_on_wheel) = (r.material[0], r.material[1] - r.material[0]);
@@ -125,6 +125,8 @@ impl PulleyNetwork {
         self.solve_spans()
     }
 
+    /// The residuals of all pulleys with friction, and their slopes by own unknowns and by the
+    /// forces of the spans.
     fn equations(&mut self, pulleys: &[usize]) -> FrictionEquations {
         let on = self.cable_properties();
         let count: usize = self.pulley_states.iter().map(|r| r.unknowns().len()).sum();
@@ -238,6 +240,7 @@ impl PulleyNetwork {
         (matrix, slopes)
     }
 
+    /// Solves for angles and materials of these pulleys at once.
     fn newton_on_pulleys(&mut self, pulleys: &[usize]) -> Result<(), PulleyFailure> {
         let first = pulleys.first().copied().unwrap_or(0);
         let mut e = self.equations(pulleys);
@@ -256,13 +259,13 @@ impl PulleyNetwork {
             let better = backtrack(self.longest_step(pulleys, &step), MAX_HALVINGS, |part| {
                 self.move_unknowns(&from, &step, part);
                 self.steps += 1;
-                self.take_unknowns(pulleys).ok()?;
+                self.apply_unknowns(pulleys).ok()?;
                 Some(self.equations(pulleys))
                     .filter(|next| next.residual.norm_squared() <= (1.0 - ARMIJO_FRACTION * part) * norm)
             });
             let Some(next) = better else {
                 self.move_unknowns(&from, &step, 0.0);
-                self.take_unknowns(pulleys)?;
+                self.apply_unknowns(pulleys)?;
                 return if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(failure) };
             };
             e = next;
@@ -305,6 +308,7 @@ impl PulleyNetwork {
         alpha
     }
 
+    /// Sets the unknowns to those of `from` plus the fraction `alpha` of a step.
     fn move_unknowns(&mut self, from: &[PulleyState], step: &DVector<f64>, alpha: f64) {
         let mut column = 0;
         for (r, old) in self.pulley_states.iter_mut().zip(from) {

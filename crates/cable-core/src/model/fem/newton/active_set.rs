@@ -139,7 +139,7 @@ impl PredictedContacts {
         for _ in 0..mesh.tuning.newton.active_set_rounds {
             let (mut stiffer, mut changed) = (false, false);
             for stop in gap_constraints.iter_mut() {
-                let [new, moved] = stop.hold(system, coupling, right, mesh, x, step);
+                let [new, moved] = stop.add_to(system, coupling, right, mesh, x, step);
                 stiffer |= new;
                 changed |= moved;
             }

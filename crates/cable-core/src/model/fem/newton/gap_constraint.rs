@@ -75,7 +75,7 @@ impl GapConstraint {
     /// comes nearer to it.
     ///
     /// With e = b − a the distance of p from the line is ± e × (p − a)/|e| for any step.
-    fn bend(&self, x: &[Vec2], step: &[f64]) -> f64 {
+    fn second_order_opening(&self, x: &[Vec2], step: &[f64]) -> f64 {
         let Some((bar, pivot)) = self.bar else { return 0.0 };
         let gone = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
         let (p, go) = match pivot {
@@ -97,7 +97,7 @@ impl GapConstraint {
     /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; the target of an
     /// active one follows the second-order opening. Returns whether the matrix changed, and whether
     /// anything changed.
-    pub fn hold(
+    pub fn add_to(
         &mut self,
         system: &mut System,
         coupling: &mut Coupling,
@@ -106,12 +106,12 @@ impl GapConstraint {
         x: &[Vec2],
         step: &[f64],
     ) -> [bool; 2] {
-        let bend = self.bend(x, step);
+        let second_order = self.second_order_opening(x, step);
         let new = self.gap_goal.is_none();
-        if new && self.gap + self.opening(step) + bend >= self.least {
+        if new && self.gap + self.opening(step) + second_order >= self.least {
             return [false, false];
         }
-        let mut way = self.least - self.gap - bend;
+        let mut way = self.least - self.gap - second_order;
         for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.fixity[s.0]) {
             // A held node moves to its target; a sliding node stays.
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
@@ -185,7 +185,7 @@ mod tests {
             // The gap has no sign: crossings are left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
             let stop = GapConstraint::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
-            let change = stop.opening(&moves) + stop.bend(&x, &moves);
+            let change = stop.opening(&moves) + stop.second_order_opening(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
 
@@ -203,7 +203,7 @@ mod tests {
             };
             let (before, after) = (pair(&x), pair(&then));
             let stop = GapConstraint::of_own(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
-            let change = stop.opening(&moves) + stop.bend(&x, &moves);
+            let change = stop.opening(&moves) + stop.second_order_opening(&x, &moves);
             prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
         }
     }

@@ -84,6 +84,7 @@ impl MixedFreeSolver {
         self.gradient.get(node).copied().unwrap_or_default()
     }
 
+    /// Makes the vectors as long as the mesh requires.
     fn make_room(&mut self, mesh: &Mesh) {
         let (nodes, bars) = (mesh.nodes(), mesh.rest_length.len());
         self.pull.resize(bars, 0.0);
@@ -96,6 +97,7 @@ impl MixedFreeSolver {
         self.step.resize(nodes, Vec2::zeros());
     }
 
+    /// Takes Newton steps from `x`, which becomes the answer; None if they do not converge.
     fn newton(&mut self, mesh: &Mesh, input: &StepInput, x: &mut [Vec2]) -> Option<Converged> {
         for iterations in 0..=mesh.tuning.newton.free_iterations {
             if iterations == 0 {

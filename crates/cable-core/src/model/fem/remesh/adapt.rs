@@ -20,7 +20,7 @@ use crate::model::fem::obstacle::IntersectionCheck;
 use crate::model::fem::remesh::arc_marks::{adapt_marks, move_marks};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare, NewSlidingNode};
-use crate::model::fem::remesh::loads_over_rounds::{give_nodes, pass_loads};
+use crate::model::fem::remesh::loads_over_rounds::{add_nodes_of_loads, pass_loads};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::{CableState, LoadNode, MovingMass, attribute_to, renew_input};
 use crate::model::fem::system::contact::floor_friction;
@@ -100,19 +100,19 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
         let [this, next] = [k, k + 1].map(|k| cable.mesh.sliding[k].map(|s| s.slide_over));
-        let has_let_go = this.is_some_and(|slide_over| has_let_go(cable, slide_over));
+        let is_released = this.is_some_and(|slide_over| is_released(cable, slide_over));
         let leaves = match this {
             None => false,
-            Some(SlideOver::Pulley(_)) => has_let_go,
+            Some(SlideOver::Pulley(_)) => is_released,
             Some(slide_over @ SlideOver::Obstacle { .. }) => {
                 !new_nodes.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
             }
         };
         // Of the nodes on a wheel that has let go, one keeps the bend.
-        let is_spare = has_let_go && this == next;
+        let is_spare = is_released && this == next;
         // A load that it carries needs a node: a corner keeps it until the load has run over.
         if leaves && !is_spare && cable.meshing.loads.iter().any(|load| load.node == k) {
-            changed |= has_let_go && make_material_at_tangents(cable, k);
+            changed |= is_released && make_material_at_tangents(cable, k);
             k += 1;
             continue;
         }
@@ -123,7 +123,7 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
             remove(cable, k);
             changed = true;
         } else if leaves
-            && (rests || has_let_go || Criteria::of(cable).settles_unstretched(k))
+            && (rests || is_released || Criteria::of(cable).settles_unstretched(k))
             && make_material_at_tangents(cable, k)
         {
             changed = true;
@@ -139,7 +139,7 @@ pub(in crate::model::fem) fn remove_sliding_nodes(
 }
 
 /// True if a node slides over the wheel of a pulley that has let go.
-fn has_let_go(cable: &CableState, slide_over: SlideOver) -> bool {
+fn is_released(cable: &CableState, slide_over: SlideOver) -> bool {
     let SlideOver::Pulley(support) = slide_over else { return false };
     cable.problem.supports.get(support).is_none_or(|s| !s.holds_from(cable.motion.time))
 }
@@ -189,7 +189,7 @@ pub(in crate::model::fem) fn make_material_at_tangents(cable: &mut CableState, k
     let Some(node) = cable.mesh.sliding.get(k).copied().flatten() else { return change_to_material(cable, k) };
     let settles = attribute_to(cable, node.slide_over, |d| change_to_material(d, k));
     if settles {
-        give_nodes(cable, k);
+        add_nodes_of_loads(cable, k);
     }
     settles
 }
@@ -213,12 +213,12 @@ fn change_to_material(cable: &mut CableState, k: usize) -> bool {
     let outward = perp(along) * -end.sense;
     let outward =
         if outward.norm() > cable.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };
-    let has_let_go = cable.mesh.sliding[k].is_some_and(|s| has_let_go(cable, s.slide_over));
+    let is_released = cable.mesh.sliding[k].is_some_and(|s| is_released(cable, s.slide_over));
     let whole = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length).iter().sum();
     let (sliding, place) = (cable.mesh.sliding[k].take(), cable.motion.positions[k]);
     let way = outward * (end.radius * out);
     cable.motion.positions[k] = end.center + way;
-    if has_let_go {
+    if is_released {
         place_at_path_length(cable, k, whole, end.center, way);
     }
     if ![k - 1, k].into_iter().all(|e| IntersectionCheck::of(cable).is_clear(e)) {

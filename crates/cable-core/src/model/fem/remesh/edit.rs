@@ -105,7 +105,7 @@ fn remove_plain(cable: &mut CableState, k: usize) {
         let had = history(cable);
         merge(cable, k);
         let has = history(cable);
-        cable.motion.account.take_history(round.slide_over, had - has);
+        cable.motion.account.record_transferred_history(round.slide_over, had - has);
     } else {
         attribute_to(cable, round.slide_over, |d| delete(d, k));
     }

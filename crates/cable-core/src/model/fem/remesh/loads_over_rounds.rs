@@ -49,7 +49,7 @@ pub(super) fn pass_loads(cable: &mut CableState, inertia: Inertia) -> bool {
 }
 
 /// Distance (m) from a round at which it takes over a load that does not move.
-fn near(cable: &CableState, inertia: Inertia) -> f64 {
+fn takeover_distance(cable: &CableState, inertia: Inertia) -> f64 {
     cable.even()
         * match inertia {
             Inertia::QuasiStatic => LOAD_DISTANCE_BARS_AT_REST,
@@ -71,7 +71,7 @@ fn comes_to(cable: &CableState, [j, k]: [usize; 2], force: Vec2, inertia: Inerti
     };
     let nearest = from + (to - from) * nearest_fraction(round.center, from, to) - round.center;
     let comes = inertia == Inertia::QuasiStatic || nearest.norm() < (from - round.center).norm();
-    comes && nearest.norm_squared() - round.radius * round.radius < near(cable, inertia).powi(2)
+    comes && nearest.norm_squared() - round.radius * round.radius < takeover_distance(cable, inertia).powi(2)
 }
 
 /// True if the sliding node `k` has to carry a load (N) that comes to it: a corner lets go of the
@@ -127,7 +127,7 @@ fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
         let slid = cable.motion.slide_rates[k] * cable.motion.step_before;
         // Material after the round runs off it where the arc length there falls.
         let runs_off = if e < k { slid } else { -slid };
-        let near = larger(near(cable, inertia), LOAD_WAY_STEPS * slid.abs());
+        let near = larger(takeover_distance(cable, inertia), LOAD_WAY_STEPS * slid.abs());
         let clear = CLEAR_FACTOR * near + more_round(cable, load, e);
         let is_clear = beyond > if runs_off < 0.0 { larger(clear, cable.even()) } else { clear };
         if !is_clear || to_load(e) < least || to_load(e + 1) < least {
@@ -137,7 +137,7 @@ fn leave_round(cable: &mut CableState, load: usize, inertia: Inertia) -> bool {
     let bars = (inertia == Inertia::Dynamic).then(|| StretchedBars::of(cable));
     give_node(cable, load);
     // Two nodes so near to each other are one too many.
-    let (own, near) = (cable.meshing.loads[load].node, near(cable, inertia));
+    let (own, near) = (cable.meshing.loads[load].node, takeover_distance(cable, inertia));
     let spare = |j: &usize| {
         let mesh = &cable.mesh;
         let is_plain = cable.meshing.removable(mesh, *j) && mesh.sliding[*j].is_none();
@@ -171,7 +171,7 @@ fn give_node(cable: &mut CableState, load: usize) {
 }
 
 /// Gives the loads of node `k`, which has become a material node, nodes of their own.
-pub(super) fn give_nodes(cable: &mut CableState, k: usize) {
+pub(super) fn add_nodes_of_loads(cable: &mut CableState, k: usize) {
     let carried: Vec<usize> =
         (0..cable.meshing.loads.len()).filter(|&load| cable.meshing.loads[load].node == k).collect();
     for load in carried {

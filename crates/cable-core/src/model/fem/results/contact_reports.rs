@@ -191,6 +191,7 @@ impl NeighbouringContacts<'_> {
         })
     }
 
+    /// The friction along the cable, N.
     fn friction(&self) -> StretchFriction {
         let (d, x) = (self.state, self.positions);
         let mut out = StretchFriction { force_n: 0.0, sliding_n: 0.0 };
@@ -235,6 +236,7 @@ impl NeighbouringContacts<'_> {
     }
 }
 
+/// The report of a run of neighbouring contacts.
 fn report(
     d: &CableState,
     x: &[Vec2],

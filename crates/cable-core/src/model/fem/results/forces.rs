@@ -22,6 +22,7 @@ pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
 
+/// Tension of a bar (N): with a sliding node, that in the middle of its straight part.
 pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let path = d.mesh.path(e, x);
     let tension = d.mesh.tension(e, path.length);

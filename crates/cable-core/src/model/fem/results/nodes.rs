@@ -16,6 +16,7 @@ const LEAST_POINT_DISTANCE_M: f64 = 1e-9;
 /// Room for so many points on each round: more are rare, and only cost a copy.
 const USUAL_POINTS_ON_ROUND: usize = 8;
 
+/// The nodes of the answer, with points on the rounds of sliding nodes.
 pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();

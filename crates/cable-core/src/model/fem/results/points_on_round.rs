@@ -78,6 +78,7 @@ struct Round<'a> {
 }
 
 impl<'a> Round<'a> {
+    /// The round of sliding node `k`, with the paths of the bars beside it.
     fn at(cable: &'a CableState, k: usize, node: &'a SlidingNode, load: &'a SlidingNodeLoad, x: &[Vec2]) -> Self {
         let mesh = &cable.mesh;
         let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
@@ -224,6 +225,8 @@ struct RoundTension {
 }
 
 impl RoundTension {
+    /// The distribution of tension over an arc that begins `before` and ends `after` the mark
+    /// (rad).
     fn of(round: &Round<'_>, [before, after]: [f64; 2], tension: &[f64]) -> Self {
         let (cable, k, radius, sense) = (round.cable, round.k, round.node.end.radius, round.node.end.sense);
         let forces = round.forces_at_ends([before, after]);

@@ -52,6 +52,7 @@ fn released(d: &CableState, support: usize, x: &[Vec2]) -> Option<SupportReactio
     })
 }
 
+/// The reactions of all supports, in their order.
 pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
     let problem: &Problem = &d.problem;
     problem

@@ -176,7 +176,8 @@ impl CableState {
         }
     }
 
-    pub(in crate::model::fem) fn refuse(&self) -> Result<(), SolveError> {
+    /// Returns an error for a cable that `fem` cannot solve.
+    pub(in crate::model::fem) fn check_supported(&self) -> Result<(), SolveError> {
         let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.slide_over, SlideOver::Pulley(_)));
         if self.problem.cable.self_contact && pulleys {
             let feature = Unsupported::SelfContactWithPulleys;

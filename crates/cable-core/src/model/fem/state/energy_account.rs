@@ -121,6 +121,7 @@ impl Energies {
         self.exchanged = if half_sum > self.exchanged { half_sum } else { self.exchanged };
     }
 
+    /// The account as answers have it.
     fn account(&self) -> EnergyAccount {
         let Works { supports, loads, outlines, friction, material, impacts, edits, breaks, numerical } = self.works;
         EnergyAccount {

@@ -41,4 +41,4 @@ pub(in crate::model::fem) use stick_slip::{ChangedNodes, StickSlipChanges, Tried
 pub(in crate::model::fem) use stored_energy::{
     bending_energy, gravity_energy, kinetic_energy, kinetic_energy_of_step, stored_energy,
 };
-pub(in crate::model::fem) use support_stop::{lay_down_released, stopped_by_obstacles};
+pub(in crate::model::fem) use support_stop::{place_released_supports, stopped_by_obstacles};

@@ -95,7 +95,7 @@ impl MomentumSums {
 
     /// Records an impulse (N s) of the history that material takes with it when it joins or leaves
     /// a round.
-    pub(in crate::model::fem) fn take_history(&mut self, slide_over: SlideOver, impulse: Vec2) {
+    pub(in crate::model::fem) fn record_transferred_history(&mut self, slide_over: SlideOver, impulse: Vec2) {
         self.last[kind_of(slide_over)] += impulse;
     }
 

@@ -38,7 +38,7 @@ pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh
 /// Places the nodes of supports that release the cable between two times (s) on the surfaces on
 /// which they stood. A held node has no contact and may be nearer to a surface than any force could
 /// press it.
-pub(in crate::model::fem) fn lay_down_released(cable: &mut CableState, [from, to]: [f64; 2]) {
+pub(in crate::model::fem) fn place_released_supports(cable: &mut CableState, [from, to]: [f64; 2]) {
     let clear = PUSHED_OUT_REACHES * cable.contacts.barrier.reach;
     for (support, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {
         let Some(node) = node.filter(|_| support.holds_from(from) && !support.holds_from(to)) else { continue };

@@ -36,7 +36,7 @@ impl Stepper {
         dragged: &[Option<Vec2>],
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
-        self.cable.refuse()?;
+        self.cable.check_supported()?;
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }

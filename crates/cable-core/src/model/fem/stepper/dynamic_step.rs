@@ -43,7 +43,7 @@ impl Stepper {
             done.iterations += first;
         }
         self.accept_step(unknowns, weights, h, AtStart { energy: before, slid });
-        self.take_off_rebounds(weights, h);
+        self.remove_rebounds(weights, h);
         self.remesh_after_step(done.residual)?;
         Ok(done)
     }
@@ -106,7 +106,7 @@ impl Stepper {
     }
 
     /// Makes the collisions of a step of `h` (s) perfectly inelastic, and closes its accounts.
-    fn take_off_rebounds(&mut self, weights: Weights, h: f64) {
+    fn remove_rebounds(&mut self, weights: Weights, h: f64) {
         plastic_impact::land_on_obstacles(&mut self.cable, h, weights.rate, &self.solver.ways);
         plastic_impact::land_on_itself(&mut self.cable, h, weights.rate, &self.solver.ways);
         if self.accounts_energy {

@@ -7,7 +7,7 @@
 
 use crate::error::{SolveError, Unsupported};
 use crate::model::fem::remesh::{lifted_wheel, load_at_pulley, make_material_at_tangents};
-use crate::model::fem::state::{CableState, lay_down_released, renew_input};
+use crate::model::fem::state::{CableState, place_released_supports, renew_input};
 use crate::model::fem::stepper::{StepRequest, Stepper};
 use crate::model::fem::system::{Converged, Failure, FailureCause};
 use crate::model::tension_gauge::TensionGauge;
@@ -101,7 +101,7 @@ impl Stepper {
                     if self.cable.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
                         self.cable.motion.step_before = 0.0;
                         if is_dynamic {
-                            lay_down_released(&mut self.cable, [start, to]);
+                            place_released_supports(&mut self.cable, [start, to]);
                         }
                     }
                     if progress.finish(piece) {
@@ -141,7 +141,7 @@ impl Stepper {
         self.cable.approach_edit(part);
         // The cable balances at the end of the piece, without the supports that release it on the
         // way.
-        lay_down_released(&mut self.cable, [start, to]);
+        place_released_supports(&mut self.cable, [start, to]);
         let tried = self.step_without_pull(to, &hand_targets).or_else(|failure| {
             let tuning = &self.cable.mesh.tuning.equilibrium;
             if failure.cause == FailureCause::CornerPulls || depth < tuning.halvings_before_relaxation {
@@ -151,7 +151,7 @@ impl Stepper {
             self.rollback.save(&self.cable);
             self.cable.approach_edit(part);
             self.cable.motion.time = start;
-            lay_down_released(&mut self.cable, [start, to]);
+            place_released_supports(&mut self.cable, [start, to]);
             self.relax(to, &hand_targets)
         });
         self.hand_drive.hand_targets = hand_targets;

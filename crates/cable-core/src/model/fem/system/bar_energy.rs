@@ -158,7 +158,8 @@ impl BarEnergy {
         }
     }
 
-    fn and(self, other: Self) -> Self {
+    /// The sum of two energies, with their slopes and curvatures.
+    fn plus(self, other: Self) -> Self {
         let sum = |k: usize| self.curvature[k] + other.curvature[k];
         Self {
             energy: self.energy + other.energy,
@@ -175,7 +176,7 @@ impl BarEnergy {
         let ratio = input.losses.damped_from[e] / mesh.rest_length[e];
         let (elastic, viscous) = (Self::spring(ea, 1.0, at), Self::spring(loss, ratio, at));
         if !mesh.is_flexible() || elastic.slope[0] > 0.0 && elastic.slope[0] + viscous.slope[0] > 0.0 {
-            return elastic.and(viscous);
+            return elastic.plus(viscous);
         }
         // Damping is measured from no less than the unstretched length. The energy at the length at
         // which the tension ends remains, per length.

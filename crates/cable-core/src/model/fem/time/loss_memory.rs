@@ -20,6 +20,7 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, unknowns: &Un
     relax_bends(cable, h, unknowns);
 }
 
+/// Brings the forces of the relaxation branches of bars to the end of a step of `h` (s).
 fn relax_bars(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
     let branches = &cable.loss.stretching.branches;
     if branches.is_empty() {
@@ -47,6 +48,7 @@ fn relax_bars(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
     cable.mesh.branch_forces = memory;
 }
 
+/// Brings the moments of the relaxation branches of bends to the end of a step of `h` (s).
 fn relax_bends(cable: &mut CableState, h: f64, unknowns: &Unknowns) {
     let branches = &cable.loss.bending.branches;
     let ei = cable.mesh.bending_stiffness;

@@ -44,7 +44,7 @@ impl Stepper {
             return Ok(());
         }
         self.rollback.save(&self.cable);
-        let taken = self.take_over(state);
+        let taken = self.adopt_state(state);
         if taken.is_err() {
             self.rollback.restore(&mut self.cable);
         }
@@ -159,7 +159,7 @@ impl Stepper {
     }
 
     /// Adopts a state: node by node if the nodes are the same, else by arc length.
-    fn take_over(&mut self, state: &State) -> Result<(), SolveError> {
+    fn adopt_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.time_control.sleep.wake();
         let led = put_outline(&mut self.cable);
         let same = state.arc_length_m == self.cable.mesh.arc_length && !led;

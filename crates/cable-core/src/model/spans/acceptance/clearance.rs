@@ -56,7 +56,7 @@ impl BoundingTriangle {
     }
 
     /// True if its sides do not prove that a box is farther than r from it.
-    fn meets(&self, low: Vec2, high: Vec2, r: f64) -> bool {
+    fn may_reach_box(&self, low: Vec2, high: Vec2, r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
@@ -102,7 +102,7 @@ impl BoundingTriangle {
         let (first, last) = self.bounds(r);
         let beside_box =
             |low: Vec2, high: Vec2| low.x > last.x || low.y > last.y || high.x < first.x || high.y < first.y;
-        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets(low, high, r);
+        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.may_reach_box(low, high, r);
         body.candidates_where(near)
             .filter(|&k| !beside.is_some_and(|feature| body.is_beside(k, feature)))
             .filter_map(|k| body.edges.get(k))

@@ -138,6 +138,7 @@ impl Curve {
         Self::new(vec![piece], closed, None, friction, sense)
     }
 
+    /// A boundary of these pieces in order.
     fn new(pieces: Vec<BoundaryPiece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
         let mut starts = Vec::with_capacity(pieces.len());
         let mut sum = 0.0;
@@ -409,6 +410,7 @@ impl Curve {
         }
     }
 
+    /// The angle (rad) on an arc at which its tangent is `tangent`, limited to the arc.
     fn arc_at(&self, start: Vec2, extent: f64, tangent: Vec2) -> f64 {
         let x = -self.sense * cross(start, tangent).atan2(start.dot(&tangent));
         if extent.is_infinite() {

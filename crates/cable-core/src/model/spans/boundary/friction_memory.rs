@@ -215,7 +215,7 @@ impl TensionProfile {
             let (mut p, mut tension, mut s) = (start.coordinate, start.tension, start.arc_length);
             while p != to {
                 let next = contact_path.next_border(p, to);
-                let (m, way) = (contact_path.even(0.5 * (p + next)), contact_path.lay(p, next, tension));
+                let (m, way) = (contact_path.even(0.5 * (p + next)), contact_path.flattest_slide(p, next, tension));
                 // The law of a stretch is stored at its left end.
                 if let (Some(breakpoint), true) = (breakpoints.last_mut(), next > p) {
                     breakpoint.mobilised = m;
@@ -330,6 +330,7 @@ impl TensionProfile {
         self.breakpoints.clear();
     }
 
+    /// Appends a breakpoint; stretches without extent and of equal friction are joined.
     fn push(&mut self, k: Breakpoint) {
         if let Some(last) = self.breakpoints.last_mut() {
             if k.coordinate - last.coordinate <= SHORTEST_STRETCH {
@@ -371,7 +372,7 @@ impl TensionProfile {
     pub fn at(&self, contact_path: &ContactPath<'_>, p: f64) -> (f64, f64) {
         let (breakpoint, beyond) = self.breakpoint(p, SweepDirection::Right);
         let way = if beyond {
-            contact_path.lay(breakpoint.coordinate, p, breakpoint.tension)
+            contact_path.flattest_slide(breakpoint.coordinate, p, breakpoint.tension)
         } else {
             contact_path.slide(breakpoint.coordinate, p, breakpoint.tension, breakpoint.mobilised)
         };
@@ -421,7 +422,7 @@ impl TensionProfile {
         }
         while at != to {
             let (next, old_m) = self.stretch(contact_path, at, to);
-            let (met, [there, here]) = contact_path.on(at, next).crossing(
+            let (met, [there, here]) = contact_path.segment(at, next).crossing(
                 next,
                 [Sliding { tension: old, mobilised: old_m }, Sliding { tension: way.tension, mobilised: m }],
             );
@@ -439,7 +440,7 @@ impl TensionProfile {
     }
 
     /// The stick zone of a contact under its end tensions.
-    pub fn hold(&self, contact_path: &ContactPath<'_>, e: &Ends) -> StickZone {
+    pub fn find_stick_zone(&self, contact_path: &ContactPath<'_>, e: &Ends) -> StickZone {
         let friction = contact_path.friction;
         let [p1, p2] = e.place;
         let [t1, t2] = e.tension;
@@ -510,7 +511,7 @@ impl TensionProfile {
         }
         match mode {
             Mode::Slip(m) => self.commit_slip(contact_path, e, [first, last], m),
-            Mode::Stick => match stick_zone.unwrap_or_else(|| self.hold(contact_path, e)) {
+            Mode::Stick => match stick_zone.unwrap_or_else(|| self.find_stick_zone(contact_path, e)) {
                 StickZone::Between(fronts) => {
                     old.clone_from(self);
                     self.commit_stick(contact_path, [first, last], fronts, old);

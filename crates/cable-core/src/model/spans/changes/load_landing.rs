@@ -87,7 +87,7 @@ pub(in crate::model::spans) fn touch(
     if let Some(side) = l.tip {
         c.ends.material = [l.arc_length; 2];
         if !pressed {
-            lay_hanging_length(&mut c, context, l, side)?;
+            land_hanging_length(&mut c, context, l, side)?;
             let inner = c.ends.breakpoint(1 - side);
             let tangent = context.curves[c.curve].place(inner.coordinate, c.chain_range).tangent;
             section.forces[k] = tangent * inner.tension + context.load_between(section.from, inner.arc_length);
@@ -121,7 +121,7 @@ fn load_contact(context: &SolveContext, l: &Landing, along: Vec2, tension: f64) 
 }
 
 /// Lays the length that hangs below the surface along it: an end that nothing presses down slides.
-fn lay_hanging_length(c: &mut Contact, context: &SolveContext, l: &Landing, side: usize) -> Result<(), Failure> {
+fn land_hanging_length(c: &mut Contact, context: &SolveContext, l: &Landing, side: usize) -> Result<(), Failure> {
     let (curve, load, inner) = (&context.curves[c.curve], context.law.load, 1 - side);
     let place = curve.place(c.ends.place[inner], c.chain_range);
     let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());

@@ -44,7 +44,7 @@ pub(super) fn touch_obstacles(
             continue;
         }
         if let Some(hit) = deepest(section, context, world, k, deep) {
-            lay_down_span(section, context, k, &hit, purpose)?;
+            land_span(section, context, k, &hit, purpose)?;
             any = true;
         }
     }
@@ -104,7 +104,7 @@ pub(super) fn touch_passed_corner(
         obstacle: 0,
         feature: corner.feature,
     };
-    lay_down_span(
+    land_span(
         section,
         context,
         k,
@@ -116,7 +116,7 @@ pub(super) fn touch_passed_corner(
 
 /// Lays span k down where it is deepest in an obstacle: the contact beside it is extended to there,
 /// or a new one is made.
-fn lay_down_span(
+fn land_span(
     section: &mut CableSection,
     context: &SolveContext,
     k: usize,

@@ -50,15 +50,15 @@ pub(in crate::model::spans) fn rows(
         Mode::Slip(m) if contact_path.floored && !lifted => (drawn(contact_path, e, end_points, m), None),
         Mode::Slip(m) => (sliding(contact_path, history, e, end_points, m), None),
         Mode::Stick => {
-            let stick_zone = history.hold(contact_path, e);
+            let stick_zone = history.find_stick_zone(contact_path, e);
             let (mut out, fronts) = match stick_zone {
                 // Beyond the friction cone the rows of sticking continue smoothly: the mode
                 // changes, not the rows.
                 StickZone::Between(fronts) | StickZone::Beyond(_, fronts) => {
-                    (holding(contact_path, e, end_points, &fronts), fronts)
+                    (sticking_equations(contact_path, e, end_points, &fronts), fronts)
                 }
                 StickZone::Meet(fronts) => {
-                    let mut out = holding(contact_path, e, end_points, &fronts);
+                    let mut out = sticking_equations(contact_path, e, end_points, &fronts);
                     meeting(&mut out, contact_path, history, e, end_points, &fronts);
                     (out, fronts)
                 }
@@ -201,7 +201,8 @@ fn drawn(contact_path: &ContactPath<'_>, e: &Ends, end_points: &[BoundaryPoint; 
     rows
 }
 
-fn holding(
+/// The two equations of a contact that sticks between its slip fronts.
+fn sticking_equations(
     contact_path: &ContactPath<'_>,
     e: &Ends,
     end_points: &[BoundaryPoint; 2],
@@ -271,7 +272,7 @@ pub(in crate::model::spans) fn next_mode(
         return if friction <= 0.0 { Mode::Slip(0.0) } else { mode };
     }
     match mode {
-        Mode::Stick => match stick_zone.unwrap_or_else(|| history.hold(contact_path, e)) {
+        Mode::Stick => match stick_zone.unwrap_or_else(|| history.find_stick_zone(contact_path, e)) {
             StickZone::Beyond(m, _) => {
                 // Round-off at the edge of the friction cone is not sliding.
                 let reached = contact_path.slide(e.place[0], e.place[1], e.tension[0], m).tension;

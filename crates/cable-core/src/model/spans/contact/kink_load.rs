@@ -123,12 +123,12 @@ fn part(section: &mut CableSection, context: &SolveContext, j: usize, side: usiz
         return;
     }
     section.contacts[if side == 0 { i } else { j }].next.part();
-    give_way(section, i, 1 - side);
+    shorten_for_span(section, i, 1 - side);
     section.resolve_span(context, j + side);
 }
 
 /// Shortens contact i a little at an end, so that a span can begin there.
-pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, end: usize) {
+pub(in crate::model::spans) fn shorten_for_span(section: &mut CableSection, i: usize, end: usize) {
     let gives = GIVE_WAY_FRACTION * (section.to - section.from);
     let e = &mut section.contacts[i].ends;
     let (most, sign) = (0.5 * (e.material[1] - e.material[0]), if end == 0 { 1.0 } else { -1.0 });

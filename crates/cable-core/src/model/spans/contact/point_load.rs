@@ -142,7 +142,7 @@ pub(in crate::model::spans) fn settle(section: &mut CableSection, context: &Solv
 fn lift(section: &mut CableSection, context: &SolveContext, j: usize) {
     for side in 0..2 {
         if section.is_joined(j, side) {
-            kink_load::give_way(section, j + 2 * side - 1, 1 - side);
+            kink_load::shorten_for_span(section, j + 2 * side - 1, 1 - side);
         }
     }
     let last = section.contacts.len() - 1;

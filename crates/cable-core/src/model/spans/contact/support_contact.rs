@@ -24,7 +24,7 @@ pub(in crate::model::spans) fn place(section: &mut CableSection, context: &Solve
             }
         }
         (EndCondition::Lies(_), None) => lift(section, context, side, outer, at),
-        (EndCondition::Fixed(_), Some(p)) if beyond(section, outer, side, p) => lay_end_on(section, side, outer, p),
+        (EndCondition::Fixed(_), Some(p)) if beyond(section, outer, side, p) => land_end(section, side, outer, p),
         (EndCondition::Fixed(_), _) => section.end_conditions[side] = EndCondition::Fixed(at),
         _ => {}
     }
@@ -37,7 +37,7 @@ fn beyond(section: &CableSection, j: usize, side: usize, p: f64) -> bool {
 }
 
 /// Lays an end of the section on the boundary, which removes its span.
-fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
+fn land_end(section: &mut CableSection, side: usize, j: usize, p: f64) {
     section.end_conditions[side] = EndCondition::Lies(p);
     let s = if side == 0 { section.from } else { section.to };
     let e = &mut section.contacts[j].ends;

@@ -72,6 +72,7 @@ impl WheelFriction {
         }
     }
 
+    /// The way of the cable over this wheel.
     fn contact_path(&self, on: &CableProperties) -> ContactPath<'_> {
         let law = CableLaw::new(on.load, on.thermal, on.stiffness);
         ContactPath {

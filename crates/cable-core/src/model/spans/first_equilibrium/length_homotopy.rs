@@ -14,18 +14,18 @@ use crate::model::spans::slack::{self, LooseShapes};
 impl CableEquilibrium {
     /// Lays the cable along its route with a very small tension, whether or not it could lie there
     /// loose.
-    pub(in crate::model::spans) fn lay_in_tension(
+    pub(in crate::model::spans) fn place_in_tension(
         &mut self,
         layout: &SectionLayout,
         goal: &BoundaryConditions,
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        self.lay_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, workspace)
+        self.settle_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, workspace)
     }
 
     /// Lays the cable along its route and finds its equilibrium: with its whole length, or shrunk
     /// until it is taut and then paid out again.
-    pub(in crate::model::spans) fn lay_along_route(
+    pub(in crate::model::spans) fn settle_along_route(
         &mut self,
         layout: &SectionLayout,
         goal: &BoundaryConditions,
@@ -36,7 +36,7 @@ impl CableEquilibrium {
         let taut = shape.length.tension_weights(tuned);
         let mut begin = goal.clone();
         layout.set_context(&mut self.context, &begin);
-        let routes = self.lay_sections(layout, &begin, shape)?;
+        let routes = self.place_sections(layout, &begin, shape)?;
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
             begin.load *= tuned.first_load_fraction;
@@ -52,7 +52,7 @@ impl CableEquilibrium {
         let mut taken = self.step_from(layout, &begin, &routes, workspace)?;
         let frictionless = self.contacts_with_friction().all(|c| c.smooth);
         if self.end_smoothness() {
-            taken = taken.and(self.step(layout, &begin, workspace)?);
+            taken = taken.plus(self.step(layout, &begin, workspace)?);
             let holds = self.contacts_with_friction().all(|c| c.mode == Mode::Stick);
             taken.found_without_friction = frictionless && holds && taut.is_none();
         }
@@ -60,12 +60,12 @@ impl CableEquilibrium {
             return Ok(taken);
         }
         let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
-        taken = taken.and(self.advance_load(layout, &heavy, tuned.first_step, workspace)?);
-        Ok(taken.and(self.advance_load(layout, goal, tuned.first_step, workspace)?))
+        taken = taken.plus(self.advance_load(layout, &heavy, tuned.first_step, workspace)?);
+        Ok(taken.plus(self.advance_load(layout, goal, tuned.first_step, workspace)?))
     }
 
     /// Lays each section along its route; returns the routes, an empty one for a loose section.
-    fn lay_sections(
+    fn place_sections(
         &mut self,
         layout: &SectionLayout,
         begin: &BoundaryConditions,

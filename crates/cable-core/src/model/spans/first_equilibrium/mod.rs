@@ -129,12 +129,12 @@ impl CableEquilibrium {
         [begin, goal]: [&BoundaryConditions; 2],
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        let taken = self.lay_along_route(layout, begin, shape, workspace)?;
+        let taken = self.settle_along_route(layout, begin, shape, workspace)?;
         if !(begin.friction < goal.friction) {
             return Ok(taken);
         }
         let more = self.apply_friction(layout, goal, workspace)?;
-        Ok(StepStats { found_without_friction: true, ..taken.and(more) })
+        Ok(StepStats { found_without_friction: true, ..taken.plus(more) })
     }
 
     /// The equilibrium of a cable in heaps where it comes down, hanging over crests, and without

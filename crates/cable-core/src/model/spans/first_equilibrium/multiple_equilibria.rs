@@ -136,7 +136,7 @@ impl CableEquilibrium {
                 (drag, raised) = (DRAG_RISE * drag, raised + 1);
                 continue;
             };
-            (taken, raised) = (taken.and(one), 0);
+            (taken, raised) = (taken.plus(one), 0);
             let slips = self.material_at_contacts().into_iter().zip(materials).map(|(a, b)| (a - b).abs());
             let force = drag * slips.fold(0.0, larger);
             drag *= left.map_or(1.0, |left| bounded(force / left, LEAST_DRAG_FALL, 1.0));
@@ -145,7 +145,7 @@ impl CableEquilibrium {
                 && let Ok(one) = self.step(layout, to, workspace)
                 && self.is_stable(workspace)
             {
-                return Ok(taken.and(one));
+                return Ok(taken.plus(one));
             }
         }
         Err(Failure::ContactCycling { s: 0.0 })

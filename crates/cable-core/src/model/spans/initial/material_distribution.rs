@@ -75,7 +75,7 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
                 c.ends.tension[side] = if free[side] { context.pull(c, side, force) } else { c.ends.tension[side] };
             }
         }
-        c.history = lay_down(&contact_path, &c.ends, [free, supported]);
+        c.history = profile_of_new_contact(&contact_path, &c.ends, [free, supported]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..END_FIT_ROUNDS {
@@ -84,7 +84,7 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
                 let (tension, s) = c.history.at(&contact_path, c.ends.place[other]);
                 let off = (s - c.ends.material[other]) * context.law.stretch(tension);
                 c.ends.place[side] += if other == side { -off } else { off };
-                c.history = lay_down(&contact_path, &c.ends, [free, supported]);
+                c.history = profile_of_new_contact(&contact_path, &c.ends, [free, supported]);
             }
         }
     }
@@ -93,7 +93,11 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &Solv
 /// The profile of a newly laid contact: from its free end, where its tension is known, or its held
 /// end, where its material is known; else from its middle. With two free ends it has the tension of
 /// the one that draws less.
-fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, supported]: [[bool; 2]; 2]) -> TensionProfile {
+fn profile_of_new_contact(
+    contact_path: &ContactPath<'_>,
+    e: &Ends,
+    [free, supported]: [[bool; 2]; 2],
+) -> TensionProfile {
     let start = match (free, supported) {
         ([true, false], _) | ([false, false], [true, false]) => e.breakpoint(0),
         ([false, true], _) | ([false, false], [false, true]) => e.breakpoint(1),

@@ -171,7 +171,7 @@ pub(in crate::model::spans) fn section_route(
     }
     for (k, at) in stops.iter().enumerate() {
         if k > 0 {
-            points.extend(over(&p.world, stops[k - 1], *at));
+            points.extend(way_round_blockage(&p.world, stops[k - 1], *at));
         }
         points.push(*at);
     }
@@ -183,7 +183,7 @@ pub(in crate::model::spans) fn section_route(
 
 /// A way from `a` to `b` if the straight one is blocked: out from under obstacles above either end,
 /// then above everything that is in the way.
-fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
+fn way_round_blockage(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let bodies = bodies_in_the_way(world, a, b);
     if bodies.is_empty() {
         return Vec::new();

@@ -70,7 +70,7 @@ pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[Impassable
             }
             let pivot = bends.last().map_or(start, |b| b.corner.at);
             let left = leaves(start, &bends, from, way, done);
-            let met = meets(corners, pivot, bends.last().map(|b| b.index), from, way, done, skip);
+            let met = first_corner_met(corners, pivot, bends.last().map(|b| b.index), from, way, done, skip);
             match (left, met) {
                 (Some(u), met) if met.is_none_or(|(v, _)| u <= v) => {
                     skip = bends.pop().map(|b| b.index);
@@ -107,7 +107,7 @@ fn leaves(start: Vec2, bends: &[PathCorner], from: Vec2, way: Vec2, done: f64) -
 }
 
 /// The first corner that the string meets, and the fraction of the leg there.
-fn meets(
+fn first_corner_met(
     corners: &[ImpassableCorner],
     pivot: Vec2,
     own: Option<usize>,

@@ -13,6 +13,8 @@ fn count(section: &CableSection) -> usize {
     6 * section.contacts.len() + 2
 }
 
+/// Writes the unknowns of a section to `out`: forces of the spans, ends and material of the
+/// contacts.
 pub(super) fn gather(section: &CableSection, out: &mut Vec<f64>) {
     out.resize(count(section), 0.0);
     let mut blocks = out.chunks_exact_mut(6);
@@ -47,6 +49,7 @@ fn slot(section: &CableSection, j: usize, side: usize) -> f64 {
     if has_tension_unknown(section, j, side) { e.tension[side] } else { e.place[side] }
 }
 
+/// Sets the unknowns of a section to `x`.
 pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f64]) {
     for k in 0..section.spans() {
         let x = &x[6 * k..];
@@ -167,6 +170,7 @@ fn known_force(section: &CableSection, context: &SolveContext, k: usize) -> Opti
     }
 }
 
+/// Adds the rows of span `k` whose force is known (N).
 fn known_force_rows(
     section: &CableSection,
     context: &SolveContext,

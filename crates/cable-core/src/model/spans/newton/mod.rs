@@ -102,6 +102,8 @@ pub(super) struct Converged {
     pub residual: f64,
 }
 
+/// The greatest absolute value and its index; that of the first that is not a number, if there is
+/// one.
 fn norm(r: &[f64]) -> (f64, usize) {
     let (mut worst, mut at) = (0.0, 0);
     for (i, v) in r.iter().enumerate() {
@@ -408,6 +410,7 @@ fn step(section: &mut CableSection, context: &SolveContext, workspace: &mut Work
     false
 }
 
+/// Takes the longest fraction of the step that lowers the residual; returns whether there is one.
 fn search(section: &mut CableSection, context: &SolveContext, before: f64, workspace: &mut Workspace) -> bool {
     // `first` is the fraction of the step at which the first contact reaches the end of its
     // boundary piece.

@@ -96,7 +96,7 @@ pub(in crate::model::spans) fn predict_slip(
     bars.clear();
     bars.extend((0..section.spans()).map(|k| span(section, context, end_points, k)));
     links.clear();
-    links.extend((0..section.contacts.len()).map(|j| link(section, context, end_points, j)));
+    links.extend((0..section.contacts.len()).map(|j| linear_contact(section, context, end_points, j)));
     let Some(settled) = memory.rounds(section, context) else { return };
     for (c, l) in section.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
         let friction = context.friction(c);
@@ -166,7 +166,13 @@ impl LinearSpan {
     }
 }
 
-fn link(section: &CableSection, context: &SolveContext, end_points: &[ContactPlaces], j: usize) -> LinearContact {
+/// Contact `j` linearised for the prediction of slip.
+fn linear_contact(
+    section: &CableSection,
+    context: &SolveContext,
+    end_points: &[ContactPlaces],
+    j: usize,
+) -> LinearContact {
     let c = &section.contacts[j];
     let e = &c.ends;
     let end_conditions = [

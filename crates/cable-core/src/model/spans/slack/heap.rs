@@ -40,6 +40,8 @@ pub(super) fn heap(
     best.map(|(_, k, found)| (k, found))
 }
 
+/// A heap that one edge with its friction, or two without, can carry under a load (N); None if they
+/// cannot.
 fn carried(context: &SolveContext, sides: [Option<(LyingStretch, BoundaryPoint)>; 2], load: Vec2) -> Option<Heap> {
     let at = sides.iter().flatten().next()?.1.at;
     let borne = |(s, place): (LyingStretch, BoundaryPoint)| BearingEdge {

@@ -90,7 +90,7 @@ impl SlackSolver<'_> {
             out.push(found.part.clone());
         }
         out.extend(first.map(|(ends, s)| self.hanging_part(ends, s)));
-        self.lay_over_crest(&crest, out)?;
+        self.add_crest(&crest, out)?;
         out.extend(last.map(|(ends, s)| self.hanging_part(ends, s)));
         if let Some(found) = crest.bridge.filter(|_| crest.tight == Some(1)) {
             out.push(found.part);
@@ -155,7 +155,7 @@ impl SlackSolver<'_> {
 
     /// Lays the stretches of a crest from its start to its end, and the spans over kinks between
     /// them.
-    fn lay_over_crest(&self, crest: &CrestTensions, out: &mut Vec<SlackPart>) -> Result<(), Option<usize>> {
+    fn add_crest(&self, crest: &CrestTensions, out: &mut Vec<SlackPart>) -> Result<(), Option<usize>> {
         let CrestTensions { stretches, forth, back, tight, bridge, .. } = crest;
         let range = match bridge {
             Some(found) if *tight == Some(0) => found.line..stretches.len(),

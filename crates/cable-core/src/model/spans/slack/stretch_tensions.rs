@@ -96,7 +96,12 @@ impl SlackSolver<'_> {
 
     /// The span from one edge to the next, from the tension at each p of the first; `way` is 1
     /// along the cable and −1 against it. None if it does not leave and meet them.
-    fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<DirectedSpan> {
+    fn span_between_edges(
+        &self,
+        [from, to]: [&LyingStretch; 2],
+        way: f64,
+        tension: &dyn Fn(f64) -> f64,
+    ) -> Option<DirectedSpan> {
         let end = usize::from(way > 0.0);
         let (kink, next) =
             (from.place(self.context, from.coordinates[end]), to.place(self.context, to.coordinates[1 - end]));
@@ -104,7 +109,7 @@ impl SlackSolver<'_> {
             return None;
         }
         let sight = SpanFrame::new(self, kink.tangent * way)?;
-        let t = [kink.tangent, next.tangent].map(|t| sight.seen(t * way));
+        let t = [kink.tangent, next.tangent].map(|t| sight.split(t * way));
         let det = cross(t[0], t[1]);
         if !(t[1].x > 0.0 && det > 0.0) {
             return None;
@@ -149,13 +154,13 @@ impl SlackSolver<'_> {
         let radius = above.stretch;
         let foot = from.place(self.context, from.coordinates[end]);
         let sight = SpanFrame::new(self, foot.tangent * way)?;
-        let center = sight.seen(above.at - above.normal * radius);
+        let center = sight.split(above.at - above.normal * radius);
         // The catenary from p: its force across the load, its slopes at both ends, its material,
         // and its distance from the round.
         let seen = |p: f64| {
             let place = from.place(self.context, p);
-            let t = sight.seen(place.tangent * way);
-            let begins = sight.seen(place.at);
+            let t = sight.split(place.tangent * way);
+            let begins = sight.split(place.at);
             let (h, m1) = (tension(p) * t.x, t.y / t.x);
             let at = |angle: f64| begins + sight.catenary(h, m1, angle.tan()).1 - center;
             let [low, _] = bisect([m1.atan(), std::f64::consts::FRAC_PI_2], HALVINGS, |angle| {
@@ -242,7 +247,7 @@ impl TensionSweep<'_> {
             }
             None if in_tension && solver.bends_in(&a, &b) => {
                 let enters = self.tensions.enters[k];
-                let span = solver.over([from, to], way, &|p| solver.least(from, side, enters, p))?;
+                let span = solver.span_between_edges([from, to], way, &|p| solver.least(from, side, enters, p))?;
                 self.add_span(k, gap, &span);
             }
             None => {}
@@ -307,7 +312,8 @@ impl<'a> SpanFrame<'a> {
         (across != 0.0).then(|| Self { drape, right: across.signum() })
     }
 
-    fn seen(&self, at: Vec2) -> Vec2 {
+    /// A vector as its components to the right and against the load.
+    fn split(&self, at: Vec2) -> Vec2 {
         let at = self.drape.frame.split(at);
         Vec2::new(at.x * self.right, at.y)
     }

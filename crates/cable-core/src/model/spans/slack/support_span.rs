@@ -60,7 +60,7 @@ impl SlackSolver<'_> {
             let s = &stretches[k];
             let t = s.slide(context, s.coordinates[other], p, tensions[k], sign * s.friction(context)).tension;
             let place = s.place(context, p);
-            self.seen(place.at, -place.tangent * sign, t, support)
+            self.span_to_plumb_line(place.at, -place.tangent * sign, t, support)
         };
         let order: Vec<usize> =
             if side == 0 { (0..stretches.len()).collect() } else { (0..stretches.len()).rev().collect() };
@@ -90,7 +90,7 @@ impl SlackSolver<'_> {
 
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the
     /// support; None if it never reaches that line.
-    fn seen(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
+    fn span_to_plumb_line(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.context.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);

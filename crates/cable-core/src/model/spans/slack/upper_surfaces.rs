@@ -179,6 +179,7 @@ impl UpperSurfaces {
     }
 }
 
+/// Adds the parts of a piece of a boundary on which cable can lie from above.
 fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: LoadFrame, out: &mut Vec<UpperSurface>) {
     let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {

@@ -157,6 +157,7 @@ impl BarChain<'_> {
         }
     }
 
+    /// Adds the axial stiffness of the bars to the matrix and their forces to the right-hand side.
     fn add_bars_to(&self, matrix: &mut BandMatrix, right: &mut [f64], hessian: Hessian) {
         let ea = self.chain_input.problem.axial_stiffness;
         for e in 0..self.positions.len() - 1 {
@@ -212,6 +213,7 @@ impl BarChain<'_> {
         }
     }
 
+    /// Adds the resistance of a relaxation step (N/m per metre of cable) to the diagonal.
     fn add_resistance(&self, matrix: &mut BandMatrix, resistance: f64) {
         let n = self.positions.len();
         for k in 0..n {
@@ -221,6 +223,7 @@ impl BarChain<'_> {
         }
     }
 
+    /// Adds the stiffness of a contact to the matrix and its force to the right-hand side.
     fn add_contact(&self, matrix: &mut BandMatrix, right: &mut [f64], t: &ChainContact, hessian: Hessian) {
         let stiff = self.contact_stiffness();
         let f = (t.gap.normal + self.direction(t.node) * t.mobilised) * (-stiff * t.gap.gap_m);

@@ -148,7 +148,7 @@ impl BarChain<'_> {
                 resistance.raise();
                 continue;
             };
-            self.take_step(&step.moves, part, &positions);
+            self.apply_step(&step.moves, part, &positions);
             let whole = part == 1.0;
             let still = moved < MOVE_TOLERANCE * problem.radius && resistance.now <= REST_RESISTANCE * first;
             if whole && paid_out && step.contacts_settled && still {
@@ -215,7 +215,7 @@ impl BarChain<'_> {
 
     /// Moves the nodes to the positions to which a part of a step leads, with the tensions of the
     /// linearised bars.
-    fn take_step(&mut self, moves: &[Vec2], part: f64, positions: &[Vec2]) {
+    fn apply_step(&mut self, moves: &[Vec2], part: f64, positions: &[Vec2]) {
         for e in 0..self.rest.len() {
             let d = self.positions[e + 1] - self.positions[e];
             let l = d.norm();

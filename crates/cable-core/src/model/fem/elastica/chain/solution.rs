@@ -61,6 +61,7 @@ impl BarChain<'_> {
         }
     }
 
+    /// The nodes of the answer, with one more at each contact inside a bar.
     fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ChainContact]) -> Vec<Node> {
         let p = self.chain_input.problem;
         let area = p.cable.area_m2();
@@ -111,6 +112,7 @@ impl BarChain<'_> {
         out
     }
 
+    /// The reactions of all supports, in their order.
     fn supports(&self, forces: &[Vec2], nodes: &[Node]) -> Vec<SupportReaction> {
         let p = self.chain_input.problem;
         let last = self.positions.len() - 1;
@@ -139,6 +141,7 @@ impl BarChain<'_> {
         p.supports.iter().enumerate().map(reaction).collect()
     }
 
+    /// One report for each run of neighbouring contacts with one obstacle.
     fn reports(&self, pushes: &[ChainContact]) -> Vec<ContactReport> {
         let mut out = Vec::new();
         let mut left: Vec<&ChainContact> = pushes.iter().collect();

@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, BeamOutcome, nearest_turn};
-use crate::model::fem::free::dual_weighted_residual::apart;
+use crate::model::fem::free::dual_weighted_residual::greatest_distance;
 use crate::model::fem::free::stations::Station;
 
 /// Least buckling load of a straight cable in parts of EI/L²: held at one end, free at the other,
@@ -37,7 +37,8 @@ impl Beam {
         for part in alone.chain([None]) {
             let Some(other) = self.bowed(part) else { continue };
             let points = other.node_points();
-            let same = |b: &Self| !(apart(&b.node_points(), &points) > SAME_SHAPE_FRACTION * self.layout.length);
+            let same =
+                |b: &Self| !(greatest_distance(&b.node_points(), &points) > SAME_SHAPE_FRACTION * self.layout.length);
             if !same(self) && !found.iter().any(same) {
                 found.push(other);
             }

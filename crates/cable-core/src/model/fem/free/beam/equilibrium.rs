@@ -154,13 +154,13 @@ impl Beam {
                 stretch: k,
             }));
         }
-        beam.lie_as_flexible();
+        beam.start_as_flexible();
         beam.material.body = body;
         beam
     }
 
     /// Sets the angles of the flexible cable, and those of the clamps.
-    fn lie_as_flexible(&mut self) {
+    fn start_as_flexible(&mut self) {
         let starts = self.stretch_starts();
         let n = self.bars.len();
         self.angles = vec![0.0; 2 * n + 1];
@@ -310,7 +310,8 @@ impl Beam {
             - self.material.body * (bar.start + x * bar.ds - self.layout.stations[bar.stretch].arc_length)
     }
 
-    pub(in crate::model::fem) fn rest(&self, e: usize) -> f64 {
+    /// Length of bar `e` without tension, at the temperature of the scene, m.
+    pub(in crate::model::fem) fn thermal_length(&self, e: usize) -> f64 {
         self.material.thermal_stretch * self.bars[e].ds
     }
 
@@ -323,7 +324,7 @@ impl Beam {
             let along = f.dot(&t);
             GaussPoint {
                 shapes: shapes(x),
-                length: weight * self.rest(e),
+                length: weight * self.thermal_length(e),
                 tangent: t,
                 along,
                 across: f.dot(&perp(t)),
@@ -438,7 +439,7 @@ impl Beam {
         let (ea, starts) = (self.material.axial_stiffness, self.stretch_starts());
         for (e, bar) in self.bars.iter().enumerate() {
             let span = self.ends.iter().position(|ends| ends.first <= bar.stretch && bar.stretch < ends.last);
-            let stiff = bending / (3.0 * self.rest(e));
+            let stiff = bending / (3.0 * self.thermal_length(e));
             for r in 0..3 {
                 g[2 * e + r] += stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]);
                 for s in r..3 {

@@ -33,7 +33,8 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
         steps += fine.steps - coarse.steps;
         let found = dual_weighted_residual::halving_error(&coarse, &fine);
         estimate = Some(found);
-        shape_error = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.node_points(), &fine.node_points()));
+        shape_error =
+            Some(2.0 / 15.0 * dual_weighted_residual::greatest_distance(&coarse.node_points(), &fine.node_points()));
         coarse = fine;
         if found <= wanted {
             break;
@@ -45,7 +46,8 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
         let mut fine = coarse.halved();
         if fine.solve() == BeamOutcome::Stable {
             estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
-            shape_error = Some(2.0 * dual_weighted_residual::apart(&coarse.node_points(), &fine.node_points()));
+            shape_error =
+                Some(2.0 * dual_weighted_residual::greatest_distance(&coarse.node_points(), &fine.node_points()));
         }
     }
     RefinedBeam { beam: coarse, outcome, steps, estimate, shape_error }

@@ -37,7 +37,7 @@ fn greater(before: f64, after: f64) -> f64 {
 impl Beam {
     /// Moments that balance bar `e` at both nodes, N·m.
     fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
-        let stiff = self.bending / (3.0 * self.rest(e));
+        let stiff = self.bending / (3.0 * self.thermal_length(e));
         let mut pull = [0, 2].map(|r| stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]));
         for p in self.samples(e, starts) {
             for (pull, shape) in pull.iter_mut().zip([p.shapes[0], p.shapes[2]]) {
@@ -86,6 +86,7 @@ impl Beam {
         self.points(PointDensity::Drawn)
     }
 
+    /// The points of the answer, from end to end.
     fn points(&self, density: PointDensity) -> Vec<SolutionPoint> {
         let n = self.bars.len();
         let (starts, forces) = (self.stretch_starts(), self.station_forces());
@@ -147,7 +148,8 @@ impl Beam {
             for (part, weight) in GAUSS_3 {
                 let x = from + part * step;
                 let (t, force) = (self.tangent(self.angle(e, x)), self.force(bar, x, starts));
-                let length = weight * step * self.rest(e) * (1.0 + force.dot(&t) / self.material.axial_stiffness);
+                let length =
+                    weight * step * self.thermal_length(e) * (1.0 + force.dot(&t) / self.material.axial_stiffness);
                 at += t * length;
                 bent -= per_moment * force.dot(&perp(t)) * length;
             }

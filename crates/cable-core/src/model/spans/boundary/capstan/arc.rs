@@ -101,7 +101,7 @@ impl ArcPath {
         let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
         let start = ArcPoint::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
         let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
-        let step = rates.on(&SlideResult::none(t), h);
+        let step = rates.extend(&SlideResult::none(t), h);
         let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
@@ -155,6 +155,8 @@ struct ArcPoint {
 }
 
 impl ArcPoint {
+    /// The derivatives of the tension by the angle at a point, to the third, for a tension (N) and
+    /// mobilised friction `m`.
     fn new(law: &CableLaw, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
         let stretch = law.stretch(tension);
         let f = 1.0 / stretch;
@@ -182,7 +184,7 @@ impl ArcPoint {
 
 impl Rates {
     /// The result extended by a short angle.
-    pub fn on(&self, way: &SlideResult, by: f64) -> SlideResult {
+    pub fn extend(&self, way: &SlideResult, by: f64) -> SlideResult {
         let ([first, second, third], [per, change, again]) = (self.tension, self.material);
         let turn = self.m * by;
         SlideResult {

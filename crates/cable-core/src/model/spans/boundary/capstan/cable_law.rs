@@ -97,7 +97,7 @@ impl CableLaw {
 
 impl LocalLoad {
     /// The same at a point that is moved by a distance along its piece.
-    pub fn on(self, way: f64) -> Self {
+    pub fn at_distance(self, way: f64) -> Self {
         if !self.turns || way == 0.0 {
             return self;
         }

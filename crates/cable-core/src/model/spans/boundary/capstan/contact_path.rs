@@ -59,7 +59,7 @@ impl ContactPath<'_> {
     }
 
     /// The piece that contains both p₀ and p₁.
-    pub fn on(&self, p0: f64, p1: f64) -> SegmentCursor<'_> {
+    pub fn segment(&self, p0: f64, p1: f64) -> SegmentCursor<'_> {
         let from = match &self.cached_piece {
             Some(cached_piece) if cached_piece.reaches(p0) && cached_piece.reaches(p1) => cached_piece.local_load(p0),
             _ => {
@@ -166,7 +166,7 @@ impl ContactPath<'_> {
 
     /// From p₀ to p₁ (in either direction) with the tension as constant as friction allows, as for
     /// cable that is laid down.
-    pub fn lay(&self, p0: f64, p1: f64, t: f64) -> SlideResult {
+    pub fn flattest_slide(&self, p0: f64, p1: f64, t: f64) -> SlideResult {
         let (mut at, mut sum) = (p0, SlideResult::none(t));
         while at != p1 {
             let next = self.next_border(at, p1);

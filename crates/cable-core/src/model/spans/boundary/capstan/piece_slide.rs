@@ -22,6 +22,8 @@ pub(in crate::model::spans) fn slide_on_piece(
     ArcPath::new(from, way).slide(law, t, m).0
 }
 
+/// The slide over a distance `x` (m) of an edge from a tension `t` (N), which changes by `rate` per
+/// metre.
 fn slide_on_edge(law: &CableLaw, rate: f64, x: f64, t: f64) -> SlideResult {
     let tension = law.tension(law.theta(t) + rate * x);
     let (a, b) = (1.0 + t * law.compliance, 1.0 + tension * law.compliance);

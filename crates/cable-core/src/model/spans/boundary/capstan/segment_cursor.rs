@@ -92,7 +92,7 @@ impl CachedPiece {
     /// The values at p that the law needs.
     pub fn local_load(&self, p: f64) -> LocalLoad {
         let local_load = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
-        local_load.on(p - self.coordinate)
+        local_load.at_distance(p - self.coordinate)
     }
 }
 
@@ -193,7 +193,7 @@ impl SegmentCursor<'_> {
                 return None;
             }
             if by.abs() <= SHORT_ARC {
-                return Some((self.p0 + next, [one.on(&a, by), two.on(&b, by)]));
+                return Some((self.p0 + next, [one.extend(&a, by), two.extend(&b, by)]));
             }
             way = next;
         }
@@ -214,7 +214,7 @@ impl SegmentCursor<'_> {
         let x = crossing(self.p0, p1, TENSION_ROUNDING * t.abs(), Some(ends), |x| {
             let [a, b] = both(x);
             last.set((x, [a, b]));
-            let local_load = self.from.on(x - self.p0);
+            let local_load = self.from.at_distance(x - self.p0);
             let slope = |t: f64, m: f64| self.law.slope_at(&local_load, t, m);
             ((a.tension - b.tension) * sign, (slope(a.tension, m) - slope(b.tension, n)) * sign)
         });
