@@ -5,7 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// All settings of the model.
+/// All settings of the model. What they were tuned on is not recorded, beside the figures given;
+/// halved and doubled, none moves an answer (`docs/notes/settings.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CatenarySettings {
     /// Most iterations of a loop that ends by itself: Newton's method for one set of modes (60

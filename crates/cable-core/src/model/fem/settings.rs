@@ -27,7 +27,8 @@ pub struct Tuning {
     pub start: StartTuning,
 }
 
-/// Constants of the barrier and of friction.
+/// Constants of the barrier and of friction. The figures beside them are of single scenes; what the
+/// others were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactTuning {
     /// Gap at which contact begins (d̂), m. A corner lifts a taut cable by this: 1e-3 adds 2 % to
@@ -95,7 +96,8 @@ impl Default for ContactTuning {
     }
 }
 
-/// Constants of Newton's method.
+/// Constants of Newton's method. The figures beside them are of drops of cables of 600 and 1000
+/// bars; what the others were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonTuning {
     /// Iterations of the mixed method in contact before the minimiser takes over. Smaller: more
@@ -104,7 +106,8 @@ pub struct NewtonTuning {
     /// 250 of 960 steps with 20 as with 40, after 14 600 and 20 700 iterations.
     pub mixed_iterations: usize,
     /// Iterations of the mixed method without contact. Measured: 2 to 5 in a swing, up to 12 if a
-    /// slack chain snaps taut.
+    /// slack chain snaps taut. Smaller: such steps are left to the minimiser. Larger: a failure
+    /// costs more.
     pub free_iterations: usize,
     /// Fractions of the bars' compression that are kept in the matrix, one after the other, if all
     /// of it makes the matrix indefinite. Iterations over 24 drops of a cable of 1000 bars: 15 %
@@ -192,7 +195,8 @@ impl Default for NewtonTuning {
     }
 }
 
-/// Constants of steps in time.
+/// Constants of steps in time. The figures beside them are of the motions named there; what the
+/// others were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepTuning {
     /// Longest inner step, s, if the user gives none. At 1/240 the tip of a falling chain of 10 m
@@ -213,7 +217,7 @@ pub struct StepTuning {
     /// visible. Smaller: useless short steps. Larger: vibrations are damped.
     pub vibration_fraction: f64,
     /// Greatest factor of the step from one frame to the next; BDF2 is stable up to 2.4. Smaller:
-    /// the step lags behind the motion.
+    /// the step lags behind the motion. Larger: it is unstable.
     pub max_change: f64,
     /// Time constant (s) of the moving average of a motion: about half a period of a motion that
     /// needs shorter steps. Smaller: the step varies within a vibration, short at its turning
@@ -276,7 +280,7 @@ pub struct StepTuning {
     /// its whole speed. Larger: it lags.
     pub kept_support_gap_fraction: f64,
     /// Halvings of the displacement of a support that comes too near, before it stays where it is.
-    /// Smaller: it stops early.
+    /// Smaller: it stops early. Larger: more checks, for displacements that cannot be seen.
     pub stand_off_tries: usize,
 }
 
@@ -310,7 +314,8 @@ impl Default for StepTuning {
     }
 }
 
-/// Constants of steps without inertia and of the search for an equilibrium.
+/// Constants of steps without inertia and of the search for an equilibrium. The figures beside them
+/// are of random scenes; what the others were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EquilibriumTuning {
     /// Work that one search for an equilibrium may do: iterations times nodes. Smaller: scenes that
@@ -355,7 +360,8 @@ pub struct EquilibriumTuning {
     /// balance of the whole.
     pub polish_residual: f64,
     /// Newton iterations of the first stage, which continues a search that used all its iterations.
-    /// Smaller: a cable that slides as a whole on smooth ground does not come to rest.
+    /// Smaller: a cable that slides as a whole on smooth ground does not come to rest. Larger: a
+    /// failure costs more.
     pub polish_iterations: usize,
     /// Maximum number of times that an equilibrium is sought again because corners were met or
     /// left. Smaller: it is refused. Larger: a cycle costs more.
@@ -386,7 +392,7 @@ impl Default for EquilibriumTuning {
     }
 }
 
-/// Constants of the moving outline of a robot.
+/// Constants of the moving outline of a robot. What they were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OutlineTuning {
     /// Greatest displacement of the outline in a step without inertia, m. Smaller: more steps.
@@ -423,7 +429,8 @@ impl Default for OutlineTuning {
     }
 }
 
-/// Constants of changes of the mesh between steps. Lengths of bars are in even bars.
+/// Constants of changes of the mesh between steps. Lengths of bars are in even bars. What they were
+/// tuned on is not recorded; halved and doubled, most move nothing (`docs/notes/settings.md`).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RemeshTuning {
     /// Turn below which a corner gets no sliding node and the barrier carries the cable, and a
@@ -521,17 +528,19 @@ impl Default for RemeshTuning {
     }
 }
 
-/// Constants of the first mesh and of adopted equilibria.
+/// Constants of the first mesh and of adopted equilibria. Those of softer cables (`eased_loads`,
+/// `softest_loads`, `stiffness_ratio`) were tuned on campaigns of slack cables
+/// (`docs/notes/slack-cables.md`); what the others were tuned on is not recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StartTuning {
     /// Length of a bar (m) without obstacles, if neither scene nor settings give a number of bars,
     /// within the bounds of that number. Smaller: more time; larger: less accurate.
     pub free_bar_m: f64,
-    /// Length of a bar (m) with obstacles, under the same conditions.
+    /// Length of a bar (m) with obstacles, under the same conditions. Smaller and larger as above.
     pub bar_m: f64,
-    /// Least number of bars then. With fewer the shape is visibly angular.
+    /// Least number of bars then. Smaller: the shape is visibly angular. Larger: more time.
     pub min_bars: f64,
-    /// Greatest number of bars then. More cost more time.
+    /// Greatest number of bars then. Smaller: long cables have longer bars. Larger: more time.
     pub max_bars: f64,
     /// Least distance of a corner of the route from other nodes, in even bars, to get a node of its
     /// own. Smaller: short bars. Larger: corners of the route are cut.
@@ -543,7 +552,7 @@ pub struct StartTuning {
     /// robot's ground: 220 %).
     pub max_force_change: f64,
     /// The same fraction for a stiff cable, whose initial shape is that of a flexible one: its
-    /// bending contributes to the support forces.
+    /// bending contributes to the support forces. Smaller and larger as above.
     pub max_stiff_force_change: f64,
     /// Least axial stiffness, in whole loads, of a cable whose search for the initial equilibrium
     /// starts from that of a softer one. Smaller: cables that need no help come to other
@@ -555,8 +564,8 @@ pub struct StartTuning {
     /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
     /// does not come to rest from where the one before did.
     pub stiffness_ratio: f64,
-    /// Maximum number of bars of automatic refinement. Larger: more scenes reach 1e-3, each at
-    /// twice the cost for twice the bars.
+    /// Maximum number of bars of automatic refinement. Smaller: fewer scenes reach 1e-3. Larger:
+    /// more do, each at twice the cost for twice the bars.
     pub max_refined_bars: usize,
     /// Number of marks on a round of an adopted equilibrium, for each bar that would lie on it.
     /// Smaller: tension jumps by more (by 1.2e-3 of the greatest with 1 on a post wrapped by 450°,
