@@ -7,7 +7,7 @@
 //! elsewhere within the friction cone about the normals of the obstacles that touch the piece.
 //! Beyond its ends the cable has no internal force.
 
-use super::checked_cable::{AppliedForce, CheckedCable};
+use super::checked_cable::{AppliedForce, CheckedCable, CheckedWheel};
 use super::support_hold::{Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours};
 use super::tolerance::{
@@ -97,6 +97,16 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
     })
 }
 
+/// Friction beyond its cone, of one piece or of all.
+struct ConeExcess {
+    /// Force beyond the cone, N.
+    value: f64,
+    /// The excess that is allowed, N.
+    limit: f64,
+    /// The node where it is reported.
+    node: usize,
+}
+
 /// Checks that the pieces of the cable are in balance, each and together.
 pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
     [Law::Balance, Law::TotalBalance].into_iter().for_each(|law| found.ask(law));
@@ -105,8 +115,7 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
     let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
     let mut rays = Vec::new();
-    // The piece with the largest excess over its own cone, that excess and the allowed one, N.
-    let mut gross: Option<(f64, f64, usize)> = None;
+    let mut gross: Option<ConeExcess> = None;
     for piece in pieces(checked) {
         let Some(excess) = excess(checked, near, &piece, &mut rays) else {
             // In the air residuals add up: each may be small and their sum large.
@@ -130,8 +139,8 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
         pressed += size;
         let [before, after] = piece.nodes.map(|k| checked.answer.nodes[k].force().norm());
         let its_own = limit + PIECE_EXCESS * larger(size, larger(before, after));
-        if !(excess <= its_own) && gross.is_none_or(|(most, ..)| excess > most) {
-            gross = Some((excess, its_own, piece.nodes[0]));
+        if !(excess <= its_own) && gross.as_ref().is_none_or(|g| excess > g.value) {
+            gross = Some(ConeExcess { value: excess, limit: its_own, node: piece.nodes[0] });
         }
         if excess > worst.0 || excess.is_nan() {
             worst = (excess, piece.nodes[0]);
@@ -143,8 +152,12 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     // place.
     let [at_bends, apart] = if beyond <= allowed { [0.0; 2] } else { lumped_friction(checked, near) };
     let hidden = smaller(at_bends, REPORTED_BALANCE * checked.scale);
-    let all = (!(beyond <= allowed + hidden) && !(apart <= allowed)).then_some((beyond, allowed, worst.1));
-    if let Some((value, limit, node)) = all.or(gross) {
+    let all = (!(beyond <= allowed + hidden) && !(apart <= allowed)).then_some(ConeExcess {
+        value: beyond,
+        limit: allowed,
+        node: worst.1,
+    });
+    if let Some(ConeExcess { value, limit, node }) = all.or(gross) {
         let mut finding = checked.finding(Law::Friction, node, value, limit);
         let here = near.of(node).first();
         here.map_or("", |n| checked.surroundings.name(n.body)).clone_into(&mut finding.with);
@@ -221,7 +234,7 @@ fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -
 }
 
 fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {
-    checked.wheels.iter().any(|&(center, radius, _)| {
+    checked.wheels.iter().any(|&CheckedWheel { center, radius, .. }| {
         bars_at(checked, piece).any(|bar| checked.touches_wheel(bar, center, radius).is_some())
     })
 }
@@ -285,7 +298,7 @@ fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPie
     for n in near.around(from, to) {
         add(n.normal, checked.surroundings.friction(n.body, checked.cable.friction));
     }
-    for &(center, radius, friction) in &checked.wheels {
+    for &CheckedWheel { center, radius, friction } in &checked.wheels {
         for k in (from..=to).filter(|&k| checked.is_on_wheel(k, center, radius)) {
             add((checked.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
         }

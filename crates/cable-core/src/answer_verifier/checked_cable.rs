@@ -9,6 +9,17 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, Node};
 use crate::verification_report::{Finding, Law};
 
+/// A wheel that leads the cable.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CheckedWheel {
+    /// Centre, m.
+    pub center: Vec2,
+    /// Radius of the cable's centre line, m.
+    pub radius: f64,
+    /// Coulomb friction coefficient.
+    pub friction: f64,
+}
+
 /// One cable with these quantities.
 pub(super) struct CheckedCable<'a> {
     pub surroundings: &'a Surroundings<'a>,
@@ -17,8 +28,8 @@ pub(super) struct CheckedCable<'a> {
     pub answer: &'a CableSolution,
     /// The actions of its supports on it.
     pub holds: Vec<SupportHold<'a>>,
-    /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
-    pub wheels: Vec<(Vec2, f64, f64)>,
+    /// The wheels that lead the cable now.
+    pub wheels: Vec<CheckedWheel>,
     /// Supports and loads. Wheels are among the obstacles.
     pub points: Vec<AppliedForce>,
     /// Weight and wind, N/m.
@@ -68,7 +79,10 @@ impl<'a> CheckedCable<'a> {
         let thermal = 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k;
         let holds = support_holds(cable, answer, time_s);
         let led = |hold: &SupportHold<'_>| match hold.role {
-            Role::Wheel { radius } => Some((hold.at, radius, hold.support.friction.unwrap_or(0.0))),
+            Role::Wheel { radius } => {
+                let friction = hold.support.friction.unwrap_or(0.0);
+                Some(CheckedWheel { center: hold.at, radius, friction })
+            }
             _ => None,
         };
         let wheels = holds.iter().filter_map(led).collect();
@@ -101,7 +115,7 @@ impl CheckedCable<'_> {
             let meets = |begins: f64, ends: f64| begins <= to + same && ends >= from - same;
             let eyes = self.holds.iter().filter(|hold| matches!(hold.role, Role::Pulley));
             let eyes = eyes.map(|hold| [hold.arc_length; 2]);
-            let wheels = self.wheels.iter().filter_map(|&(center, radius, _)| {
+            let wheels = self.wheels.iter().filter_map(|&CheckedWheel { center, radius, .. }| {
                 let on = |k: &usize| self.is_on_wheel(*k, center, radius);
                 let first = (0..after).rev().take_while(on).last().or((after..nodes.len()).find(on))?;
                 let last = (after..nodes.len()).take_while(on).last().or((0..after).rev().find(on))?;
@@ -226,7 +240,7 @@ impl CheckedCable<'_> {
 
     /// Returns whether an end of the bar from node k to the next is on a wheel.
     pub fn is_at_wheel(&self, k: usize) -> bool {
-        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_on_wheel(k, w.0, w.1)))
+        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_on_wheel(k, w.center, w.radius)))
     }
 
     /// Returns whether a node is on a wheel.

@@ -55,8 +55,9 @@ pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verificati
     let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;
     // A force that may be out of balance is no compression, and a floor that rubs holds some.
     let noise = larger(BALANCE_FRACTION * checked.scale, floor_hold(checked, stiffness));
-    if let Some((bar, push, most)) = excess(&bars, stiffness, ends).filter(|(_, push, _)| !(*push <= noise)) {
-        found.report(checked.finding(Law::Stability, first_node[bar], push, most));
+    if let Some(found_excess) = excess(&bars, stiffness, ends).filter(|e| !(e.push <= noise)) {
+        let ExcessCompression { bar, push, bearable } = found_excess;
+        found.report(checked.finding(Law::Stability, first_node[bar], push, bearable));
     }
 }
 
@@ -85,10 +86,19 @@ pub(super) struct CompressedBar {
     pub clamped: [bool; 2],
 }
 
-/// Index of the bar with the greatest compression, that compression (N), and the greatest fraction
-/// of it that the cable bears; None if it bears all. `ends` are true for ends of the cable that are
-/// held in place.
-pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
+/// A compression that a cable does not bear.
+pub(super) struct ExcessCompression {
+    /// Index of the bar with the greatest compression.
+    bar: usize,
+    /// Its compression, N.
+    push: f64,
+    /// The compression of that bar (N) up to which the cable bears that of all bars in proportion.
+    bearable: f64,
+}
+
+/// The compression that the cable does not bear; None if it bears all. `ends` are true for ends of
+/// the cable that are held in place.
+pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) -> Option<ExcessCompression> {
     let (worst, most) = bars.iter().enumerate().min_by(|a, b| a.1.pull.total_cmp(&b.1.pull))?;
     if !(most.pull < 0.0) || bars.iter().any(|b| !(b.length > 0.0)) {
         return None;
@@ -104,7 +114,7 @@ pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) ->
         let middle = 0.5 * (low + high);
         if holds(middle) { low = middle } else { high = middle }
     }
-    Some((worst, -most.pull, -most.pull * low))
+    Some(ExcessCompression { bar: worst, push: -most.pull, bearable: -most.pull * low })
 }
 
 /// Two for each part between places that are held.
@@ -197,7 +207,7 @@ mod tests {
         bars.iter_mut().for_each(|b| b.touches_obstacle = true);
         assert!(excess(&bars, 1.0, [true; 2]).is_none());
         bars[20..30].iter_mut().for_each(|b| b.touches_obstacle = false);
-        let (_, push, holds) = excess(&bars, 1.0, [true; 2]).unwrap();
+        let ExcessCompression { push, bearable: holds, .. } = excess(&bars, 1.0, [true; 2]).unwrap();
         assert!(push == 1e6 && holds > 30.0 && holds < 600.0, "{push} {holds}");
     }
 

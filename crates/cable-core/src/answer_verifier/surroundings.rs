@@ -155,6 +155,7 @@ pub(super) struct Obstacles {
 }
 
 impl Obstacles {
+    /// The obstacles of a scene, and the outline of its robot.
     pub fn new(scene: &Scene) -> Self {
         let mut edges = Vec::new();
         let mut bodies: Vec<SolidBody> =

@@ -271,7 +271,7 @@ impl Body {
             let gap = self.gap(self.first + 1, (p - c).norm(), unit_or(p - c, Vec2::y()), c);
             return (gap.gap_m <= reach).then_some(gap);
         }
-        let (d, k, f) = self.nearest(p, reach + self.offset)?;
+        let NearestEdge { distance: d, edge: k, fraction: f } = self.nearest(p, reach + self.offset)?;
         let e = self.edges[k];
         let at = e.from + (e.to - e.from) * f;
         let corner = if f == 0.0 {
@@ -301,9 +301,8 @@ impl Body {
         Some(gap)
     }
 
-    /// The edge nearest to a point within `most` (m): its distance (m), its index, and the position
-    /// (0 to 1) along it.
-    fn nearest(&self, p: Vec2, most: f64) -> Option<(f64, usize, f64)> {
+    /// The edge nearest to a point within `most` (m).
+    fn nearest(&self, p: Vec2, most: f64) -> Option<NearestEdge> {
         let to_box = |node: &BvhNode, _: f64| {
             let (low, high) = (node.mins(), node.maxs());
             let out = |x: f64, low: f64, high: f64| {
@@ -323,22 +322,38 @@ impl Body {
             Some(((p - (e.from + (e.to - e.from) * f)).norm(), f))
         };
         let Some(bvh) = &self.bvh else {
-            let of = |k: usize| to_edge(u32::try_from(k).ok()?, 0.0).map(|(d, f)| (d, k, f));
-            let nearer = |a: (f64, usize, f64), b: (f64, usize, f64)| if b.0 < a.0 { b } else { a };
-            return (0..self.edges.len()).filter_map(of).reduce(nearer).filter(|(d, ..)| *d <= most);
+            let of = |edge: usize| {
+                let (distance, fraction) = to_edge(u32::try_from(edge).ok()?, 0.0)?;
+                Some(NearestEdge { distance, edge, fraction })
+            };
+            let nearer = |a: NearestEdge, b: NearestEdge| if b.distance < a.distance { b } else { a };
+            return (0..self.edges.len()).filter_map(of).reduce(nearer).filter(|n| n.distance <= most);
         };
-        let (k, (d, f)) = bvh.find_best(most.next_up(), to_box, to_edge)?;
+        let (k, (distance, f)) = bvh.find_best(most.next_up(), to_box, to_edge)?;
         // Of two edges that share the nearest corner, the one with the lower index is taken,
         // whatever the order of the tree.
         let k = k as usize;
-        Some(match f {
-            0.0 if k > 0 => (d, k - 1, 1.0),
-            1.0 if self.closed && k + 1 == self.edges.len() => (d, 0, 0.0),
-            _ => (d, k, f),
-        })
+        let (edge, fraction) = match f {
+            0.0 if k > 0 => (k - 1, 1.0),
+            1.0 if self.closed && k + 1 == self.edges.len() => (0, 0.0),
+            _ => (k, f),
+        };
+        Some(NearestEdge { distance, edge, fraction })
     }
 }
 
+/// An edge of a body beside a point.
+#[derive(Clone, Copy)]
+struct NearestEdge {
+    /// Distance of the point, m.
+    distance: f64,
+    /// Index of the edge.
+    edge: usize,
+    /// Position along the edge, 0 to 1.
+    fraction: f64,
+}
+
+/// The direction of a vector, or another where it has none.
 fn unit_or(v: Vec2, fallback: Vec2) -> Vec2 {
     let n = v.norm();
     if n == 0.0 { fallback } else { v / n }

@@ -379,7 +379,7 @@ impl Vehicle {
             hold: self.track_friction * normal,
             rolling: self.rolling * normal,
             drive: larger(most * (1.0 - 0.5 * goes / top), 0.0),
-            falls: 0.5 * most / top,
+            drive_slope: 0.5 * most / top,
         }
     }
 

@@ -72,7 +72,7 @@ pub(super) struct TrackGrip {
     /// Pull of the drive in the mean of the step at a last speed of 0, N, and how much it falls by
     /// that speed, N s/m.
     pub(super) drive: f64,
-    pub(super) falls: f64,
+    pub(super) drive_slope: f64,
 }
 
 /// The side from which a speed is approached where forces jump.
@@ -110,7 +110,7 @@ impl TrackGrip {
         (edges[1] + 1.0, None)
     }
 
-    /// The balance at a speed where a force jumps.
+    /// The balance at a speed `q` (m/s) where a force jumps, and the state of the tracks.
     fn balance_at_edge(&self, step: StepForces, q: f64) -> (SpeedBalance, Traction) {
         let total = step.needed(q);
         let tracks = self.share(q, total);
@@ -119,14 +119,15 @@ impl TrackGrip {
         (balance, if slips { Traction::Slips } else { Traction::Holds })
     }
 
-    /// The balance in the range of a speed, where no force jumps.
+    /// The balance in the range of the speed `near` (m/s), where no force jumps, and the state of
+    /// the tracks. The force of the drive falls with the speed by its slope.
     fn balance_beside(&self, step: StepForces, near: f64) -> (SpeedBalance, Traction) {
         let StepForces { mass, step_s: h, speed: v, force: pull } = step;
         let rolling = self.rolls(near, SpeedLimit::Above);
-        let reached = |force: f64, falls: f64| (mass * v / h + pull + rolling + force) / (mass / h + falls);
+        let reached = |force: f64, slope: f64| (mass * v / h + pull + rolling + force) / (mass / h + slope);
         let slipping = if self.tracks(near, SpeedLimit::Above) < 0.0 { -self.hold } else { self.hold };
         let slid = reached(slipping, 0.0);
-        let driven = reached(self.drive, self.falls);
+        let driven = reached(self.drive, self.drive_slope);
         let rolls = SpeedBalance { rolling, ..SpeedBalance::default() };
         if self.is_driven(near, SpeedLimit::Above) && driven <= slid {
             (SpeedBalance { speed: driven, tracks: self.tracks(driven, SpeedLimit::Above), ..rolls }, Traction::Holds)
@@ -149,7 +150,7 @@ impl TrackGrip {
         if Self::is_beyond(q, self.asked, limit) {
             -self.hold
         } else if self.is_driven(q, limit) {
-            smaller(larger(self.drive - self.falls * q, 0.0), self.hold)
+            smaller(larger(self.drive - self.drive_slope * q, 0.0), self.hold)
         } else {
             self.hold
         }

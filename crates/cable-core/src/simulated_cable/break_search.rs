@@ -28,6 +28,11 @@ const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 /// end of that: over a millionth of a step the forces of inertia would be rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
 
+/// The next of equal steps of `step_s` (s): all that is left, if that is less than one and a half.
+fn next_of_equal_steps(left_s: f64, step_s: f64) -> f64 {
+    if left_s < 1.5 * step_s { left_s } else { step_s }
+}
+
 /// The break of a piece.
 pub(super) struct BreakPoint {
     /// Time of the break, s.
@@ -65,8 +70,8 @@ impl CablePiece {
         }
     }
 
-    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
-    /// that happens is taken again in parts, to have the cable where it breaks.
+    /// Advances with inertia. The piece breaks where the gauge says so, which sees the inner steps;
+    /// a step in which that happens is taken again in parts, to have the cable where it breaks.
     fn advance_dynamic(
         &mut self,
         dt_s: f64,
@@ -90,7 +95,7 @@ impl CablePiece {
         let mut peaks: Option<TensionPeaks> = None;
         for _ in 0..parts as usize {
             let start = self.mechanics.state();
-            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let step_s = next_of_equal_steps(left_s, h);
             let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
             let before = breaking_n.map(|_| self.mechanics.boxed_clone());
             let done = self.gauged_step(step_s, breaking_n);
@@ -145,8 +150,8 @@ impl CablePiece {
         }
     }
 
-    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
-    /// break.
+    /// Takes a step with inertia in which the gauge looks for a mean tension of `breaking_n` (N);
+    /// None for a cable that cannot break.
     fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
         let tension_n = breaking_n.unwrap_or(f64::INFINITY);
         let limit = |(within_m, from_s): ([f64; 2], f64)| Limit { tension_n, from_s, within_m };
@@ -156,7 +161,9 @@ impl CablePiece {
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }
 
-    /// Without inertia it breaks at once.
+    /// Advances without inertia, where a cable breaks as soon as its tension reaches `breaking_n`
+    /// (N); a step that ends beyond that is taken again in parts. Returns whether and where it
+    /// broke.
     fn advance_quasi_static(
         &mut self,
         dt_s: f64,
@@ -185,7 +192,7 @@ impl CablePiece {
         let (mut left_s, h) = (dt_s, dt_s / QUASI_STATIC_SUBSTEPS);
         for _ in 0..QUASI_STATIC_SUBSTEPS as usize {
             let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
-            let step_s = if left_s < 1.5 * h { left_s } else { h };
+            let step_s = next_of_equal_steps(left_s, h);
             let done = self.mechanics.advance(step_s, inertia);
             self.refresh_answer();
             sum.add(done?);

@@ -101,7 +101,7 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let least = problem.cable.min_bend_radius_m;
     let radius = if least > 0.0 { least } else { 5.0 * problem.cable.diameter_m };
     let longest = CURL_TURN * CURL_RADII * radius;
-    let mut best: Option<(f64, usize, usize)> = None;
+    let mut tightest: Option<FullTurn> = None;
     let mut start = 0;
     for piece in answer.pieces() {
         let turns = turns(piece);
@@ -110,24 +110,24 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
             if all < CURL_TURN {
                 continue;
             }
-            let found =
-                shortest(piece, |k| sign * turns[k]).filter(|f| f.0 <= longest && best.is_none_or(|b| f.0 < b.0));
-            if let Some((length, i, j)) = found {
+            let is_tightest = |f: &FullTurn| f.length <= longest && tightest.is_none_or(|t| f.length < t.length);
+            if let Some(found) = shortest_turn(piece, |k| sign * turns[k]).filter(is_tightest) {
                 // Only where nothing leads it: the turns of wheels, posts and corners are not its
                 // own.
                 let free = |k: usize| {
                     turns[k].abs() < NEGLIGIBLE_TURN_RAD
                         || matches!(guide_at_node(problem, answer, start + k), Guide::Free)
                 };
-                if (i..=j).all(free) {
-                    best = Some((length, start + i, start + j));
+                if (found.first..=found.last).all(free) {
+                    let (first, last) = (start + found.first, start + found.last);
+                    tightest = Some(FullTurn { first, last, ..found });
                 }
             }
         }
         start += piece.len();
     }
-    if let Some((length, i, j)) = best
-        && let Some(middle) = answer.nodes.get((i + j) / 2)
+    if let Some(FullTurn { length, first, last }) = tightest
+        && let Some(middle) = answer.nodes.get((first + last) / 2)
     {
         let (name, turn) = (&problem.cable.name, CURL_TURN.to_degrees());
         let warning = Warning::new(WarningCause::TightTurn { within_m: length }, name, middle.arc_length_m, [turn; 2]);
@@ -135,11 +135,21 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     }
 }
 
-/// The shortest run of nodes whose turns add up to [`CURL_TURN`]: length, first and last node.
-/// Starts that a later, lower sum makes useless are dropped, so each node is looked at twice at
-/// most.
-fn shortest(nodes: &[Node], turn: impl Fn(usize) -> f64) -> Option<(f64, usize, usize)> {
-    let mut best: Option<(f64, usize, usize)> = None;
+/// A run of nodes whose turns add up to [`CURL_TURN`].
+#[derive(Clone, Copy)]
+struct FullTurn {
+    /// Length of cable, m.
+    length: f64,
+    /// Index of its first node.
+    first: usize,
+    /// Index of its last node.
+    last: usize,
+}
+
+/// The shortest full turn of nodes with these turns (rad). Starts that a later, lower sum makes
+/// useless are dropped, so each node is looked at twice at most.
+fn shortest_turn(nodes: &[Node], turn: impl Fn(usize) -> f64) -> Option<FullTurn> {
+    let mut best: Option<FullTurn> = None;
     let mut starts: std::collections::VecDeque<(usize, f64)> = std::collections::VecDeque::new();
     let mut sum = 0.0;
     for k in 0..nodes.len() {
@@ -152,8 +162,8 @@ fn shortest(nodes: &[Node], turn: impl Fn(usize) -> f64) -> Option<(f64, usize, 
             && sum - s >= CURL_TURN
         {
             let length = nodes[k].arc_length_m - nodes[i].arc_length_m;
-            if best.is_none_or(|(l, ..)| length < l) {
-                best = Some((length, i, k));
+            if best.is_none_or(|b| length < b.length) {
+                best = Some(FullTurn { length, first: i, last: k });
             }
             starts.pop_front();
         }

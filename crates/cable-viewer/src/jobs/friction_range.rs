@@ -77,10 +77,14 @@ const MIN_MOVE_M: f64 = 1e-9;
 #[must_use]
 pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
-        let has_friction = |s: &cable_core::Support| {
+        let is_moved_by_hand = |s: &cable_core::Support| {
             s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)
         };
-        c.supports.iter().enumerate().filter(move |(_, s)| has_friction(s)).map(move |(support, _)| (cable, support))
+        c.supports
+            .iter()
+            .enumerate()
+            .filter(move |(_, s)| is_moved_by_hand(s))
+            .map(move |(support, _)| (cable, support))
     });
     let by_hand: Vec<(usize, usize)> = by_hand.collect();
     let at = |a: &Solution, (cable, support): (usize, usize)| {

@@ -53,35 +53,46 @@ fn cut_at_corners(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2, wid
     pieces
 }
 
+/// The straight stretch of a line that has been followed so far.
+#[derive(Clone, Copy)]
+struct StraightStretch {
+    /// Its first point, on the screen.
+    from: Pos2,
+    /// Its last point, as the line has it.
+    last: [f64; 2],
+    /// Least and greatest slope of the lines from the first point that pass by all others within
+    /// the tolerance.
+    slopes: [f32; 2],
+}
+
 /// The points of a line without those that lie on the straight stretch between others, as seen on
 /// the screen; `to_screen` is where a point stands there.
 pub(super) fn without_straight_points(points: &[[f64; 2]], to_screen: impl Fn([f64; 2]) -> Pos2) -> Vec<[f64; 2]> {
     let mut corners: Vec<[f64; 2]> = Vec::with_capacity(points.len());
-    // The last kept point, the one before this, and the slopes of lines from the one that pass by
-    // all points since within the tolerance.
-    let mut stretch: Option<(Pos2, [f64; 2], [f32; 2])> = None;
+    let mut stretch: Option<StraightStretch> = None;
     for &point in points {
         let at = to_screen(point);
         let slopes_by =
             |from: Pos2| [-STRAIGHT_TOLERANCE, STRAIGHT_TOLERANCE].map(|off| (at.y + off - from.y) / (at.x - from.x));
-        let Some((from, before, slopes @ [least, most])) = stretch.filter(|_| at.is_finite()) else {
-            corners.extend(stretch.map(|(_, before, _)| before));
+        let Some(StraightStretch { from, last, slopes }) = stretch.filter(|_| at.is_finite()) else {
+            corners.extend(stretch.map(|s| s.last));
             corners.push(point);
-            stretch = at.is_finite().then_some((at, point, [f32::NEG_INFINITY, f32::INFINITY]));
+            let slopes = [f32::NEG_INFINITY, f32::INFINITY];
+            stretch = at.is_finite().then_some(StraightStretch { from: at, last: point, slopes });
             continue;
         };
         let slope = (at.y - from.y) / (at.x - from.x);
-        stretch = if at.x > from.x && (least..=most).contains(&slope) {
+        stretch = if at.x > from.x && (slopes[0]..=slopes[1]).contains(&slope) {
             let [low, high] = slopes_by(from);
-            Some((from, point, [slopes[0].max(low), slopes[1].min(high)]))
+            Some(StraightStretch { from, last: point, slopes: [slopes[0].max(low), slopes[1].min(high)] })
         } else {
-            corners.push(before);
-            let from = to_screen(before);
+            corners.push(last);
+            let from = to_screen(last);
             let slopes = if at.x > from.x { slopes_by(from) } else { [f32::INFINITY, f32::NEG_INFINITY] };
-            Some((from, point, slopes))
+            Some(StraightStretch { from, last: point, slopes })
         };
     }
-    corners.extend(stretch.map(|(_, before, _)| before));
+    corners.extend(stretch.map(|s| s.last));
     corners.dedup();
     corners
 }

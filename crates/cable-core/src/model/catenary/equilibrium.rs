@@ -71,7 +71,8 @@ const LEAVING_FRACTION: f64 = 1e-2;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
 
-/// Finds the balance.
+/// Finds the equilibrium: spans and friction for given arcs on the wheels, and arcs for the spans,
+/// in turn.
 pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>) -> Result<Equilibrium, SolveError> {
     let SlidingStart { rest_points, mut sigma, mut modes, mut arcs } = start;
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
@@ -82,11 +83,11 @@ pub(super) fn solve(p: &Problem, layout: &SupportLayout, start: SlidingStart<'_>
         let found = solve_with_friction(&slide, rest_points, sigma, near, modes)?;
         iterations += found.iterations;
         let m = |k: usize| required_friction(&slide, &found.stretches, k, found.modes[k]);
-        let (turned, off, lift) = slide.turned(&found.stretches, m);
-        if !wheels || (off <= ANGLE && lift.is_none()) {
+        let next = slide.turn_arcs(&found.stretches, m);
+        if !wheels || (next.error_rad <= ANGLE && next.lifted.is_none()) {
             return Ok(Equilibrium { iterations, ..found });
         }
-        (sigma, modes, arcs, lifted, near) = (found.sigma, found.modes, turned, lift, Some(found.stretches));
+        (sigma, modes, arcs, lifted, near) = (found.sigma, found.modes, next.arcs, next.lifted, Some(found.stretches));
     }
     match lifted {
         Some(k) => {

@@ -44,6 +44,15 @@ pub(super) enum BalanceForm {
     SlipLaw,
 }
 
+/// The arcs of all wheels after a round of turning them to the cable.
+pub(super) struct TurnedArcs {
+    pub arcs: Vec<WheelArc>,
+    /// Largest error of an angle before it, rad.
+    pub error_rad: f64,
+    /// A wheel that the cable would leave.
+    pub lifted: Option<usize>,
+}
+
 impl BalanceForm {
     /// The form for pulleys in these modes.
     pub fn of(modes: &[PulleyMode]) -> Self {
@@ -275,9 +284,8 @@ impl SlidingProblem<'_> {
         Some((r, [-db(b.d_end[0]), da(a.d_start[0]) - db(b.d_end[1]), da(a.d_start[1])]))
     }
 
-    /// Turns each wheel's arc to the cable's directions; returns the new arcs, the largest
-    /// remaining angle error (rad), and a wheel that the cable would leave.
-    pub fn turned(&self, s: &SpanSolutions, m: impl Fn(usize) -> f64) -> (Vec<WheelArc>, f64, Option<usize>) {
+    /// Turns each wheel's arc to the directions of the spans, with the mobilised friction `m`.
+    pub fn turn_arcs(&self, s: &SpanSolutions, m: impl Fn(usize) -> f64) -> TurnedArcs {
         let (mut worst, mut lifted) = (0.0f64, None);
         let least = self.layout.settings.least_touch_gain;
         let mut out = Vec::with_capacity(self.arcs.len());
@@ -313,6 +321,6 @@ impl SlidingProblem<'_> {
             worst = larger(worst, change);
             out.push(WheelArc { arrive, turn, material: passed.material, ..*arc });
         }
-        (out, worst, lifted)
+        TurnedArcs { arcs: out, error_rad: worst, lifted }
     }
 }

@@ -243,10 +243,22 @@ fn load_nodes(
     }
 }
 
-/// Normal force summed over a contact, its direction, the sum of the load along the cable, and the
-/// turn.
-fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64, Vec2, f64, f64) {
-    let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
+/// Sums over a contact.
+#[derive(Default)]
+struct ContactSums {
+    /// Normal force, N.
+    normal_force: f64,
+    /// Normal force as a vector, N.
+    push: Vec2,
+    /// Load along the cable, N.
+    load_along: f64,
+    /// Turn, rad.
+    turn: f64,
+}
+
+/// The sums over a contact, by quadrature.
+fn sums(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> ContactSums {
+    let mut sums = ContactSums::default();
     for stretch in stretches {
         let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.cached_piece.turns());
         let panels = if turns { (way / LONGEST_PANEL_RAD).ceil().max(1.0) } else { 1.0 };
@@ -257,21 +269,21 @@ fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64
                 let p = a + (k as f64 + u) * h;
                 let (t, place, weight) = (stretch.at(contact_path, p).0, stretch.cached_piece.place(p), weight * h);
                 let press = contact_path.law.press(&place, t);
-                normal += weight * press;
-                push += place.normal * (weight * press);
-                along +=
+                sums.normal_force += weight * press;
+                sums.push += place.normal * (weight * press);
+                sums.load_along +=
                     weight * contact_path.law.load.dot(&place.tangent) * place.stretch / contact_path.law.stretch(t);
-                turned += weight * place.turn;
+                sums.turn += weight * place.turn;
             }
         }
     }
-    (normal, push, along, turned)
+    sums
 }
 
 /// The report of a contact.
 fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &[ContactStretch]) -> ContactReport {
     let friction = contact_path.friction;
-    let (normal_n, push, along, turned) = pressed(contact_path, stretches);
+    let ContactSums { normal_force, push, load_along, turn } = sums(contact_path, stretches);
     let middle = contact_path.place(0.5 * (c.ends.place[0] + c.ends.place[1]));
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
     let [t1, t2] = c.ends.tension;
@@ -282,11 +294,11 @@ fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &
         y_m: middle.at.y,
         arc_length_m: 0.5 * (c.ends.material[0] + c.ends.material[1]),
         normal: [unit.x, unit.y],
-        normal_n,
-        friction_n: t1 - t2 - along,
+        normal_n: normal_force,
+        friction_n: t1 - t2 - load_along,
         force_n: obstacle_force(contact_path, c).into(),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
-        turn_deg: turned.to_degrees(),
+        turn_deg: turn.to_degrees(),
         tension_before_n: t1,
         tension_after_n: t2,
         begins_m: c.ends.material[0],

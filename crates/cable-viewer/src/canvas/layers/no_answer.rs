@@ -7,7 +7,7 @@ use crate::panels::{display_names, scene_errors};
 use crate::state::{AppState, WorkerStatus};
 use crate::units::sentence::sentence;
 
-/// Why the picture is not of the scene as it is now.
+/// Draws the reason why the picture is not of the scene as it is now, and keeps labels off it.
 pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),

@@ -1,6 +1,7 @@
 //! This module finds the active set of an elastica: its contacts, and for each whether it is a
 //! point or a stretch.
 
+use crate::contact::Gap;
 use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, ContactSurface, Elastica, ElasticaPiece, Joint, LENGTH, MOMENT, MOST_WORK, Owner, STATES, force, place,
@@ -73,6 +74,15 @@ fn split(piece: &ElasticaPiece, node: usize) -> (ElasticaPiece, ElasticaPiece) {
         part(&piece.nodes[..=node], &piece.grid[..=node], 0.0, cut),
         part(&piece.nodes[node..], &piece.grid[node..], cut, 1.0),
     )
+}
+
+/// A place of a free piece that is inside an obstacle.
+#[derive(Clone, Copy)]
+struct Overlap {
+    piece: usize,
+    /// The inner node of the piece that is nearest to it.
+    node: usize,
+    gap: Gap,
 }
 
 impl Elastica {
@@ -412,13 +422,13 @@ impl Elastica {
     /// piece is inside one, and None if that piece has no node at which it can be divided.
     fn add_deepest_contact(&mut self, problem: &Problem) -> Option<bool> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
-        let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
+        let mut deepest: Option<Overlap> = None;
         let world = &problem.world;
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.contact.is_none()) {
             let mut measure = |x: Vec2, i: usize| {
                 let Some(gap) = world.signed_gap(x, self.length) else { return };
-                if gap.gap_m < -deep && worst.is_none_or(|w| gap.gap_m < w.0) {
-                    worst = Some((gap.gap_m, k, i, gap));
+                if gap.gap_m < -deep && deepest.is_none_or(|d| gap.gap_m < d.gap.gap_m) {
+                    deepest = Some(Overlap { piece: k, node: i, gap });
                 }
             };
             let last = piece.nodes.len() - 1;
@@ -439,7 +449,7 @@ impl Elastica {
                 });
             }
         }
-        let Some((_, k, i, gap)) = worst else { return Some(false) };
+        let Some(Overlap { piece: k, node: i, gap }) = deepest else { return Some(false) };
         if i + 1 >= self.pieces[k].nodes.len() {
             return None;
         }

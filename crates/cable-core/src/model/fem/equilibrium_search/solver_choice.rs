@@ -22,6 +22,15 @@ use crate::state::State;
 /// answer; larger: hard cables beside a robot take longer to solve.
 const LEAST_ITERATIONS: usize = 1000;
 
+/// The shape from which an equilibrium was sought.
+#[derive(Clone, Copy)]
+pub(in crate::model::fem) enum SearchStart {
+    /// The first shape of the cable along its route.
+    FirstShape,
+    /// The shape that it had already.
+    PresentState,
+}
+
 impl FemModel {
     /// Finds the equilibrium.
     pub(in crate::model::fem) fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
@@ -122,7 +131,7 @@ impl FemModel {
             return Ok(report);
         }
         report.warnings.extend(self.coarse_bend_warning());
-        self.compare_meshes(spans, begins);
+        self.compare_meshes(spans, if begins { SearchStart::FirstShape } else { SearchStart::PresentState });
         report.warnings.extend(self.coarse_mesh_warning());
         Ok(report)
     }
@@ -157,12 +166,16 @@ impl FemModel {
 
     /// Estimates the errors of the mesh against the solution of `spans` or another mesh, and
     /// refines it if the scene leaves its number of bars open.
-    pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>, was_laid: bool) {
+    pub(in crate::model::fem) fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>, start: SearchStart) {
         if self.is_comparison {
             return;
         }
         if self.problem.outline.is_some() {
-            match if was_laid { self.compared_with_own_searches() } else { None } {
+            let found = match start {
+                SearchStart::FirstShape => self.compared_with_own_searches(),
+                SearchStart::PresentState => None,
+            };
+            match found {
                 Some(meshes) => self.meshes = meshes,
                 None => self.meshes.compare_again(&self.problem, self.settings, &self.stepper, &self.dragged),
             }

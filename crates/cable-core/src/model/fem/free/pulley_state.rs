@@ -44,6 +44,17 @@ pub(super) enum Unknown {
     Both,
 }
 
+/// A point of the cable on a wheel.
+#[derive(Clone, Copy, Debug)]
+pub struct PointOnWheel {
+    /// Outward normal of the wheel.
+    pub normal: Vec2,
+    /// Arc length, m.
+    pub arc_length: f64,
+    /// Tension, N.
+    pub tension: f64,
+}
+
 impl PulleyState {
     pub(super) fn unknowns(&self) -> &'static [Unknown] {
         use Unknown::{Angle, Both, Material};
@@ -53,12 +64,11 @@ impl PulleyState {
         }
     }
 
-    /// Tension (N), outward normal and arc length (m) at a fraction of its arc in the last step;
-    /// None for a pulley without a radius.
-    pub fn on_arc(&self, on: &CableProperties, fraction: f64) -> Option<(f64, Vec2, f64)> {
+    /// The cable at a fraction of its arc in the last step; None for a pulley without a radius.
+    pub fn on_arc(&self, on: &CableProperties, fraction: f64) -> Option<PointOnWheel> {
         let FrictionState::Wheel(wheel) = &self.friction else { return None };
         let angle = self.angles[0] + (self.angles[1] - self.angles[0]) * fraction;
-        let (tension, material) = wheel.at(on, angle);
-        Some((tension, wheel.directions(angle)[1], material))
+        let (tension, arc_length) = wheel.at(on, angle);
+        Some(PointOnWheel { normal: wheel.directions(angle)[1], arc_length, tension })
     }
 }

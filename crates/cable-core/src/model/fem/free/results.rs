@@ -3,6 +3,7 @@
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::arc_nodes;
 use crate::model::fem::free::pulley_balance::PulleyNetwork;
+use crate::model::fem::free::pulley_state::PointOnWheel;
 use crate::model::fem::free::span::elements;
 use crate::model::fem::free::stations::{Restraint, SpanEnds, Station, StationLayout};
 use crate::model::fem::free::wheel_arcs;
@@ -158,10 +159,13 @@ fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<So
             for (i, share) in (1..count).zip(material) {
                 let f = i as f64 / count as f64;
                 let n = Vec2::new((start + turn * f).cos(), (start + turn * f).sin());
-                let (n, arc_length, tension) = remembered(network, k, f)
-                    .unwrap_or_else(|| (n, station.arc_length + station.material_on_wheel * share, tension(f)));
-                let force = perp(n) * (turn.signum() * tension);
-                out.push(tangent(wheel.center + n * wheel.radius, arc_length, force, curvature));
+                let point = remembered_point(network, k, f).unwrap_or_else(|| PointOnWheel {
+                    normal: n,
+                    arc_length: station.arc_length + station.material_on_wheel * share,
+                    tension: tension(f),
+                });
+                let force = perp(point.normal) * (turn.signum() * point.tension);
+                out.push(tangent(wheel.center + point.normal * wheel.radius, point.arc_length, force, curvature));
             }
             out.push(tangent(leaves, station.leaves(), after, curvature));
         }
@@ -179,12 +183,10 @@ fn anchor(network: &PulleyNetwork, k: usize, cable_radius: f64, out: &mut Vec<So
     }
 }
 
-/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose
-/// friction remembers them.
-fn remembered(network: &PulleyNetwork, station: usize, fraction: f64) -> Option<(Vec2, f64, f64)> {
+/// The cable at a fraction of the arc of a wheel, if its friction remembers it.
+fn remembered_point(network: &PulleyNetwork, station: usize, fraction: f64) -> Option<PointOnWheel> {
     let k = network.pulleys().iter().position(|&k| k == station)?;
-    let (tension, normal, material) = network.pulley_states.get(k)?.on_arc(&network.cable_properties(), fraction)?;
-    Some((normal, material, tension))
+    network.pulley_states.get(k)?.on_arc(&network.cable_properties(), fraction)
 }
 
 /// Force of the cable on a station, N: the tensions on both sides, the load that acts there, and

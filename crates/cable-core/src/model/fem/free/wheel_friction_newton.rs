@@ -51,8 +51,24 @@ const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
 /// fraction of the cable.
 const CONE_ROUNDING: f64 = 1e-12;
 const STEP_TOLERANCE: f64 = 1e-13;
-/// Entries that a pulley changes: two indices and a force each.
-type ForceEntries = Vec<(usize, usize, Vec2)>;
+/// The change of the force beside a station with an unknown.
+#[derive(Clone, Copy)]
+struct ForceSlope {
+    station: usize,
+    /// 0 before the station, 1 after it.
+    side: usize,
+    slope: Vec2,
+}
+
+/// The change of a residual with the force beside a station.
+#[derive(Clone, Copy)]
+struct ResidualSlope {
+    row: usize,
+    station: usize,
+    /// 0 before the station, 1 after it.
+    side: usize,
+    slope: Vec2,
+}
 
 /// The changes between sticking and sliding that are made at once.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -68,8 +84,8 @@ struct FrictionEquations {
     residual: DVector<f64>,
     /// Derivatives by the unknowns, with the forces frozen.
     own: DMatrix<f64>,
-    /// Derivatives by the force beside a station: row, station, side, slope.
-    by_force: Vec<(usize, usize, usize, Vec2)>,
+    /// Derivatives by the forces beside stations.
+    by_force: Vec<ResidualSlope>,
 }
 
 impl PulleyNetwork {
@@ -151,7 +167,7 @@ impl PulleyNetwork {
                         e.residual[i] = off;
                         e.own[(i, i)] = -cross(n, u);
                         let slope = (perp(t) - u * off) / ends.tension[side];
-                        e.by_force.push((i, k, side, slope));
+                        e.by_force.push(ResidualSlope { row: i, station: k, side, slope });
                     }
                     let rows = w.rows(&on, &ends);
                     for j in 0..2 {
@@ -163,7 +179,7 @@ impl PulleyNetwork {
                             e.own[(i, row + 2 * side)] = rows.by[j][3 * side] * scale;
                             e.own[(i, row + 2 * side + 1)] = rows.by[j][3 * side + 1] * scale;
                             let slope = unit_vectors[side] * (rows.by[j][3 * side + 2] * scale);
-                            e.by_force.push((i, k, side, slope));
+                            e.by_force.push(ResidualSlope { row: i, station: k, side, slope });
                         }
                     }
                 }
@@ -177,7 +193,7 @@ impl PulleyNetwork {
                     for (side, sign) in [(0, -1.0), (1, 1.0)] {
                         let (u, t) = (unit_vectors[side], ends.tension[side]);
                         let slope = (u - perp(u) * (*m * turn.signum())) * (sign / t);
-                        e.by_force.push((row, k, side, slope));
+                        e.by_force.push(ResidualSlope { row, station: k, side, slope });
                     }
                 }
             }
@@ -187,9 +203,8 @@ impl PulleyNetwork {
         e
     }
 
-    /// Changes of the forces beside the stations with an unknown of pulley `k`: station, side,
-    /// slope.
-    fn force_slopes(&self, k: usize, r: &PulleyState, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
+    /// Changes of the forces beside the stations with an unknown of pulley `k`.
+    fn force_slopes(&self, k: usize, r: &PulleyState, unknown: Unknown) -> Vec<ForceSlope> {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;
         for side in 0..2 {
@@ -197,7 +212,7 @@ impl PulleyNetwork {
             let material = both || unknown == Unknown::Material(side);
             let Some(i) = span else {
                 if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stations.len() }) {
-                    out.push((k, side, -self.material.body));
+                    out.push(ForceSlope { station: k, side, slope: -self.material.body });
                 }
                 continue;
             };
@@ -215,23 +230,23 @@ impl PulleyNetwork {
             } else {
                 continue;
             };
-            out.push((ends.first, 1, slopes[0]));
-            out.push((ends.last, 0, slopes[1]));
+            out.push(ForceSlope { station: ends.first, side: 1, slope: slopes[0] });
+            out.push(ForceSlope { station: ends.last, side: 0, slope: slopes[1] });
         }
         out
     }
 
     /// The total derivative of the equations, and the derivatives of the forces by each unknown.
-    fn tangent(&self, pulleys: &[usize], e: &FrictionEquations) -> (DMatrix<f64>, Vec<ForceEntries>) {
+    fn tangent(&self, pulleys: &[usize], e: &FrictionEquations) -> (DMatrix<f64>, Vec<Vec<ForceSlope>>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             for &unknown in r.unknowns() {
                 let column = slopes.len();
                 let of = self.force_slopes(k, r, unknown);
-                for &(row, station, side, by) in &e.by_force {
-                    for &(_, _, d) in of.iter().filter(|s| s.0 == station && s.1 == side) {
-                        matrix[(row, column)] += by.dot(&d);
+                for r in &e.by_force {
+                    for f in of.iter().filter(|f| f.station == r.station && f.side == r.side) {
+                        matrix[(r.row, column)] += r.slope.dot(&f.slope);
                     }
                 }
                 slopes.push(of);
@@ -371,8 +386,8 @@ impl PulleyNetwork {
         let pulleys = self.pulleys();
         let e = self.equations(&pulleys);
         let mut right = DVector::zeros(e.residual.len());
-        for &(row, station, side, by) in &e.by_force {
-            right[row] -= by.dot(&changes[station][side]);
+        for r in &e.by_force {
+            right[r.row] -= r.slope.dot(&changes[r.station][r.side]);
         }
         let (matrix, slopes) = self.tangent(&pulleys, &e);
         let Some(moves) = matrix.lu().solve(&right) else {
@@ -380,8 +395,8 @@ impl PulleyNetwork {
             return;
         };
         for (of, by) in slopes.iter().zip(moves.iter()) {
-            for &(station, side, slope) in of {
-                changes[station][side] += slope * *by;
+            for f in of {
+                changes[f.station][f.side] += f.slope * *by;
             }
         }
     }

@@ -22,7 +22,7 @@
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
-use crate::model::fem::newton::gap_constraint::GapConstraint;
+use crate::model::fem::newton::gap_constraint::{ConstraintChange, GapConstraint};
 use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::{ContactPair, Coupling, StepContext, System, longest};
 
@@ -138,10 +138,10 @@ impl PredictedContacts {
         step.extend_from_slice(direction);
         for _ in 0..mesh.tuning.newton.active_set_rounds {
             let (mut stiffer, mut changed) = (false, false);
-            for stop in gap_constraints.iter_mut() {
-                let [new, moved] = stop.add_to(system, coupling, right, mesh, x, step);
-                stiffer |= new;
-                changed |= moved;
+            for constraint in gap_constraints.iter_mut() {
+                let change = constraint.add_to(system, coupling, right, mesh, x, step);
+                stiffer |= change == ConstraintChange::Matrix;
+                changed |= change != ConstraintChange::None;
             }
             if !changed {
                 break;

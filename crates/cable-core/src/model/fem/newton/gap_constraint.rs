@@ -32,6 +32,16 @@ pub struct GapConstraint {
     gap_goal: Option<f64>,
 }
 
+/// What a round changes in the equations of a constraint.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(in crate::model::fem) enum ConstraintChange {
+    None,
+    /// Its target, on the right-hand side.
+    Target,
+    /// Its target and the matrix, to which its spring was added.
+    Matrix,
+}
+
 impl GapConstraint {
     /// Makes the constraint of a contact with an obstacle.
     pub fn of(touch: &ContactPair, mesh: &Mesh, system: &System, least: f64) -> Self {
@@ -95,8 +105,7 @@ impl GapConstraint {
     }
 
     /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; the target of an
-    /// active one follows the second-order opening. Returns whether the matrix changed, and whether
-    /// anything changed.
+    /// active one follows the second-order opening. Returns what changed.
     pub fn add_to(
         &mut self,
         system: &mut System,
@@ -105,11 +114,11 @@ impl GapConstraint {
         mesh: &Mesh,
         x: &[Vec2],
         step: &[f64],
-    ) -> [bool; 2] {
+    ) -> ConstraintChange {
         let second_order = self.second_order_opening(x, step);
         let new = self.gap_goal.is_none();
         if new && self.gap + self.opening(step) + second_order >= self.least {
-            return [false, false];
+            return ConstraintChange::None;
         }
         let mut way = self.least - self.gap - second_order;
         for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.fixity[s.0]) {
@@ -118,7 +127,7 @@ impl GapConstraint {
         }
         let change = way - self.gap_goal.unwrap_or(0.0);
         if !new && change.abs() <= mesh.tuning.newton.constraint_tolerance * self.least {
-            return [false, false];
+            return ConstraintChange::None;
         }
         self.gap_goal = Some(way);
         let free = |&&(k, part): &&(usize, f64)| part != 0.0 && mesh.is_free(k);
@@ -134,7 +143,7 @@ impl GapConstraint {
                 couple(system, coupling, [k, other], &(n * n.transpose() * (self.stiffness * part * its)));
             }
         }
-        [new, true]
+        if new { ConstraintChange::Matrix } else { ConstraintChange::Target }
     }
 }
 

@@ -57,8 +57,8 @@ pub(in crate::model::fem) fn kinetic_energy_of_step(cable: &CableState, rate: f6
         }
     }
     // The springs of hands are included in that inertia.
-    for &(k, stiffness, _) in &input.inertial.hands {
-        sum -= stiffness * v[k].norm_squared();
+    for hand in &input.inertial.hands {
+        sum -= hand.stiffness * v[hand.node].norm_squared();
     }
     0.5 * sum / (rate * rate)
 }

@@ -248,7 +248,7 @@ pub fn add_all(
     (energy, size)
 }
 
-/// Adds bar `e`, which has no sliding node.
+/// Adds bar `e`, which has no sliding node; returns what [`add_all`] does.
 #[inline(always)]
 fn add(
     s: &mut System,
@@ -283,7 +283,7 @@ fn add(
     (energy, energy + rounding)
 }
 
-/// Adds a bar that has a sliding node at one end or both.
+/// Adds a bar that has a sliding node at one end or both; returns what [`add_all`] does.
 fn add_sliding(
     s: &mut System,
     mesh: &Mesh,

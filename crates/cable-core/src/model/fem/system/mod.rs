@@ -31,6 +31,6 @@ pub(in crate::model::fem) use contact::friction_limits::FrictionLimits;
 pub(in crate::model::fem) use contact::self_contact::{Coupling, SelfContactLaws, couple};
 pub(in crate::model::fem) use step_context::{StepContext, longest};
 pub(in crate::model::fem) use step_input::{
-    Converged, Failure, FailureCause, RoundLoad, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, load_scale,
-    node_scale, tolerance,
+    Converged, Failure, FailureCause, HandSpring, RoundLoad, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget,
+    load_scale, node_scale, tolerance,
 };

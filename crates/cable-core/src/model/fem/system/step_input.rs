@@ -74,9 +74,18 @@ pub struct InertialTerms {
     /// For each bar the inertia that couples its nodes (m a², N/m) and its predicted chord (m);
     /// empty if there is none.
     pub coupling: Vec<(f64, Vec2)>,
-    /// Nodes that hands hold by springs, with the stiffness (N/m) and the position (m) of each
-    /// spring in this step; both are included in inertia and prediction there.
-    pub hands: Vec<(usize, f64, Vec2)>,
+    /// The springs of hands, which are included in inertia and prediction of their nodes.
+    pub hands: Vec<HandSpring>,
+}
+
+/// A spring by which a hand holds a node in a step.
+#[derive(Clone, Copy, Debug)]
+pub struct HandSpring {
+    pub node: usize,
+    /// Stiffness, N/m.
+    pub stiffness: f64,
+    /// Position of its other end, m.
+    pub at: Vec2,
 }
 
 /// Loss in a step.

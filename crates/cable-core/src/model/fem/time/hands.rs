@@ -26,8 +26,8 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
 
 /// Stores the force of the cable on supports that hands hold, at balanced unknowns.
 pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unknowns) {
-    for &(k, stiffness, at) in &cable.input.inertial.hands {
-        cable.answers.reaction[k] = (unknowns.positions[k] - at) * stiffness;
+    for hand in &cable.input.inertial.hands {
+        cable.answers.reaction[hand.node] = (unknowns.positions[hand.node] - hand.at) * hand.stiffness;
     }
 }
 

@@ -79,8 +79,8 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for (k, _) in mesh.fixity.iter().enumerate().filter(|(_, is_fixed)| **is_fixed) {
         sum[SUPPORTS] -= cable.answers.reaction[k];
     }
-    for &(k, stiffness, at) in &input.inertial.hands {
-        sum[SUPPORTS] += (at - x[k]) * stiffness;
+    for hand in &input.inertial.hands {
+        sum[SUPPORTS] += (hand.at - x[hand.node]) * hand.stiffness;
     }
     if cable.meshing.was_contact_free {
         return sum;

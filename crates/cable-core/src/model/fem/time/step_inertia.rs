@@ -3,6 +3,7 @@
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::fem::state::CableState;
+use crate::model::fem::system::HandSpring;
 use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::loss_memory;
 use crate::model::material_loss::damping_time;
@@ -61,7 +62,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
         let (inertia, both) = (input.inertial.stiffness[k], input.inertial.stiffness[k] + stiffness);
         input.inertial.predicted[k] = (input.inertial.predicted[k] * inertia + at * stiffness) / both;
         input.inertial.stiffness[k] = both;
-        input.inertial.hands.push((k, stiffness, at));
+        input.inertial.hands.push(HandSpring { node: k, stiffness, at });
     }
     input.inertial.moves = true;
     let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubbing));

@@ -22,7 +22,7 @@ use crate::model::fem::newton::SolverMemory;
 use crate::model::fem::state::{CableState, Works, bending_energy, gravity_energy};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::{
-    BarBranch, ContactPair, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns,
+    BarBranch, ContactPair, HandSpring, PlainBar, Unknowns, Weight, bar_energy, bends_slope, visit_turns,
 };
 use crate::scene::SupportKind;
 use crate::solution::Energy;
@@ -112,7 +112,7 @@ impl BalancedStep<'_> {
             }
         }
         // The springs of hands are included in that inertia.
-        for &(k, stiffness, at) in &input.inertial.hands {
+        for &HandSpring { node: k, stiffness, at } in &input.inertial.hands {
             sum -= (x[k] - at).dot(&self.ways[k]) * stiffness;
         }
         sum
@@ -195,7 +195,7 @@ impl BalancedStep<'_> {
         for k in (0..mesh.nodes()).filter(|&k| mesh.fixity[k]) {
             support(k, -cable.answers.reaction[k]);
         }
-        for &(k, stiffness, at) in &cable.input.inertial.hands {
+        for &HandSpring { node: k, stiffness, at } in &cable.input.inertial.hands {
             support(k, (at - x[k]) * stiffness);
         }
     }

@@ -72,11 +72,11 @@ pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[Impassable
             let left = leaves(start, &bends, from, way, done);
             let met = first_corner_met(corners, pivot, bends.last().map(|b| b.index), from, way, done, skip);
             match (left, met) {
-                (Some(u), met) if met.is_none_or(|(v, _)| u <= v) => {
+                (Some(u), met) if met.as_ref().is_none_or(|m| u <= m.leg_fraction) => {
                     skip = bends.pop().map(|b| b.index);
                     done = u;
                 }
-                (_, Some((u, index))) => {
+                (_, Some(MetCorner { index, leg_fraction: u, .. })) => {
                     // The string turns in the sense in which its end moves round the corner.
                     let sense = -cross(from + way * u - pivot, way).signum();
                     bends.push(PathCorner { corner: corners[index], index, sense, leg });
@@ -106,7 +106,18 @@ fn leaves(start: Vec2, bends: &[PathCorner], from: Vec2, way: Vec2, done: f64) -
     (u <= 1.0).then_some(u)
 }
 
-/// The first corner that the string meets, and the fraction of the leg there.
+/// A corner that the string meets.
+struct MetCorner {
+    index: usize,
+    /// Fraction of the leg at which its end is then.
+    leg_fraction: f64,
+    /// Place of the corner between the pivot (0) and the end (1).
+    share: f64,
+}
+
+/// The first corner that the string meets: its end goes from `from` along `way`, from the fraction
+/// `done` of that on, and it turns about `pivot`, the corner `own`. The corner `skip` was just
+/// left.
 fn first_corner_met(
     corners: &[ImpassableCorner],
     pivot: Vec2,
@@ -115,8 +126,8 @@ fn first_corner_met(
     way: Vec2,
     done: f64,
     skip: Option<usize>,
-) -> Option<(f64, usize)> {
-    let mut best: Option<(f64, f64, usize)> = None;
+) -> Option<MetCorner> {
+    let mut first: Option<MetCorner> = None;
     for (k, c) in corners.iter().enumerate() {
         if Some(k) == own {
             continue;
@@ -134,9 +145,10 @@ fn first_corner_met(
         let end = from + way * u - pivot;
         // Between the pivot and the end.
         let share = to.dot(&end) / end.norm_squared();
-        if share > 0.0 && share < 1.0 && best.is_none_or(|b| (u, share) < (b.0, b.1)) {
-            best = Some((u, share, k));
+        let is_first = |f: &MetCorner| (u, share) < (f.leg_fraction, f.share);
+        if share > 0.0 && share < 1.0 && first.as_ref().is_none_or(is_first) {
+            first = Some(MetCorner { index: k, leg_fraction: u, share });
         }
     }
-    best.map(|b| (b.0, b.2))
+    first
 }

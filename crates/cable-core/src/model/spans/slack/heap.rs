@@ -25,19 +25,19 @@ pub(super) fn heap(
         _ => None,
     };
     let slack = |part: Option<&SlackPart>, end: usize| part.is_none_or(|p| p.tension[end] == 0.0);
-    let mut best: Option<(f64, usize, Heap)> = None;
+    let mut lowest: Option<(usize, Heap)> = None;
     for k in 0..=parts.len() {
         let [before, after] = [k.checked_sub(1).and_then(|j| parts.get(j)), parts.get(k)];
         if !(slack(before, 1) && slack(after, 0)) {
             continue;
         }
         let Some(found) = carried(context, [side(before, 1), side(after, 0)], -force) else { continue };
-        let height = found.at.dot(&frame.up);
-        if best.is_none_or(|b| height < b.0) {
-            best = Some((height, k, found));
+        let height = |heap: &Heap| heap.at.dot(&frame.up);
+        if lowest.as_ref().is_none_or(|(_, heap)| height(&found) < height(heap)) {
+            lowest = Some((k, found));
         }
     }
-    best.map(|(_, k, found)| (k, found))
+    lowest
 }
 
 /// A heap that one edge with its friction, or two without, can carry under a load (N); None if they

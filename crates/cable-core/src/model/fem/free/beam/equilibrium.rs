@@ -120,6 +120,18 @@ pub(in crate::model::fem) struct GaussPoint {
     pub(in crate::model::fem) tau: f64,
 }
 
+/// The equations of a beam, beside the second derivatives H by the angles.
+struct BeamEquations {
+    /// Derivatives of the energy by the angles, N m: g.
+    gradient: Vec<f64>,
+    /// Derivatives of the closure gaps by the angles, a column for each force component, m: B.
+    columns: Vec<Vec<f64>>,
+    /// Derivatives of the gaps by the forces, m/N: C.
+    compliance: DMatrix<f64>,
+    /// Closure gaps of the spans, m.
+    gap: Vec<f64>,
+}
+
 impl Beam {
     /// Makes the bars and angles from a solved flexible cable, with as many bars in each stretch as
     /// `network.layout` has. `body` is its weight and wind, N/m.
@@ -362,14 +374,15 @@ impl Beam {
         outcome
     }
 
-    /// Solves by Newton's method at one bending stiffness.
+    /// Solves by Newton's method at one bending stiffness (N·m²): the angles by elimination of H,
+    /// the forces of the spans by its Schur complement.
     pub(super) fn newton(&mut self, bending: f64) -> BeamOutcome {
         let n = self.angles.len();
         let Ok(mut factor) = BandFactor::new(n, 2) else { return BeamOutcome::Failed };
         let mut h = BandMatrix::new(n, 2);
         let mut before = f64::INFINITY;
         for _ in 0..MAX_STEPS {
-            let (g, b, c, gap) = self.assemble(bending, &mut h);
+            let BeamEquations { gradient: g, columns: b, compliance: c, gap } = self.assemble(bending, &mut h);
             let _ = factor.factor(&h);
             let negative = factor.negative_pivots();
             let solved: Vec<Vec<f64>> = b
@@ -422,9 +435,9 @@ impl Beam {
         BeamOutcome::Failed
     }
 
-    /// Assembles the gradient, the force columns, C and the closure gaps at the present angles and
-    /// forces, and H into `h`.
-    fn assemble(&self, bending: f64, h: &mut BandMatrix) -> (Vec<f64>, Vec<Vec<f64>>, DMatrix<f64>, Vec<f64>) {
+    /// Assembles the equations at the present angles and forces with a bending stiffness (N·m²),
+    /// and H into `h`.
+    fn assemble(&self, bending: f64, h: &mut BandMatrix) -> BeamEquations {
         let (n, m) = (self.angles.len(), 2 * self.ends.len());
         let (mut g, mut b, mut c) = (vec![0.0; n], vec![vec![0.0; n]; m], DMatrix::zeros(m, m));
         let mut gap = vec![0.0; m];
@@ -475,7 +488,7 @@ impl Beam {
                 column[k] = 0.0;
             }
         }
-        (g, b, c, gap)
+        BeamEquations { gradient: g, columns: b, compliance: c, gap }
     }
 
     /// The stations.

@@ -33,6 +33,15 @@ impl SelfFriction {
     }
 }
 
+/// The slide of a contact at the end of the last step.
+#[derive(Clone, Copy, Debug)]
+struct RememberedSlide {
+    node: usize,
+    segment: usize,
+    /// Slide from the anchor, m.
+    slid: f64,
+}
+
 /// The contacts of a cable with itself, with their history.
 #[derive(Clone, Debug, Default)]
 pub struct SelfContacts {
@@ -42,7 +51,7 @@ pub struct SelfContacts {
     pub friction: f64,
     /// Friction of the present step.
     pub friction_contacts: Vec<SelfFriction>,
-    memory: Vec<(usize, usize, f64)>,
+    memory: Vec<RememberedSlide>,
     scratch: Vec<SelfPair>,
     order: SortedNodes,
 }
@@ -73,8 +82,8 @@ impl SelfContacts {
         for pair in &self.scratch {
             let load = -barrier.at(pair.gap_m).slope * pair.weight;
             if load > 0.0 {
-                let known = |m: &&(usize, usize, f64)| (m.0, m.1) == (pair.node, pair.segment);
-                let slid = self.memory.iter().find(known).map_or(0.0, |m| m.2);
+                let known = |m: &&RememberedSlide| (m.node, m.segment) == (pair.node, pair.segment);
+                let slid = self.memory.iter().find(known).map_or(0.0, |m| m.slid);
                 let origin = pair.difference(start);
                 self.friction_contacts.push(SelfFriction { pair: *pair, limit: self.friction * load, slid, origin });
             }
@@ -85,7 +94,7 @@ impl SelfContacts {
     /// the mesh at positions `x` (m).
     pub fn break_at(&mut self, k: usize, mesh: &Mesh, x: &[Vec2], reach: f64) {
         self.friction_contacts.clear();
-        for (node, segment, _) in &mut self.memory {
+        for RememberedSlide { node, segment, .. } in &mut self.memory {
             *node += usize::from(*node > k);
             *segment += usize::from(*segment >= k);
         }
@@ -100,7 +109,7 @@ impl SelfContacts {
         for rub in &mut self.friction_contacts {
             rub.slid = friction::return_map(rub.sliding(end), slip);
             rub.origin = rub.pair.difference(end);
-            self.memory.push((rub.pair.node, rub.pair.segment, rub.slid));
+            self.memory.push(RememberedSlide { node: rub.pair.node, segment: rub.pair.segment, slid: rub.slid });
         }
     }
 

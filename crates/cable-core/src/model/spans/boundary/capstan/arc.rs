@@ -76,28 +76,28 @@ impl ArcPath {
     /// The result of sliding along it with m from the tension `t`, and the derivatives at its end.
     pub fn slide(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         if self.h.abs() <= SHORT_ARC {
-            return self.hair(law, t, m);
+            return self.slide_short(law, t, m);
         }
         let ((sin, cos), mut load) = (self.turn, self.load);
         let grown = if m == 0.0 { 1.0 } else { exp(m * self.h) };
-        let mut on = |t: f64| {
+        let mut next_panel = |t: f64| {
             let [bt, bn] = load;
             let end = [bt * cos - bn * sin, bn * cos + bt * sin];
-            let found = self.stretch(law, [load, end], t, m, grown);
+            let found = self.slide_panel(law, [load, end], t, m, grown);
             load = end;
             found
         };
-        let (mut sum, mut rates) = on(t);
+        let (mut sum, mut rates) = next_panel(t);
         for _ in 1..self.count {
-            let (step, next) = on(sum.tension);
+            let (step, next) = next_panel(sum.tension);
             rates = Rates { by_tension: next.by_tension * sum.by_tension, ..next };
             sum = sum.then(step);
         }
         (sum, rates)
     }
 
-    /// Handles a path of at most `SHORT_ARC`.
-    fn hair(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
+    /// As [`Self::slide`] for a path of at most `SHORT_ARC`.
+    fn slide_short(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
         let start = ArcPoint::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
         let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
@@ -106,8 +106,9 @@ impl ArcPath {
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
 
-    /// Handles one stretch, with the loads at its start and end; `grown` = e^{mh}.
-    fn stretch(&self, law: &CableLaw, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (SlideResult, Rates) {
+    /// As [`Self::slide`] for one of its panels, with the loads at its start and end; `grown` =
+    /// e^{mh}.
+    fn slide_panel(&self, law: &CableLaw, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (SlideResult, Rates) {
         let (c, h, [[bt, bn], [bt1, bn1]]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
         let start = ArcPoint::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
