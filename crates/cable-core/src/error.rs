@@ -346,7 +346,7 @@ pub enum SolveError {
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     Neither {
         /// The error that says more of the scene.
-        told: Box<Self>,
+        clearer: Box<Self>,
         /// The other model's error.
         other: Box<Self>,
     },
@@ -436,8 +436,8 @@ impl SolveError {
             // A third reason would say no more.
             (false, false) if matches!(first, Self::Neither { .. }) => first,
             (false, false) => {
-                let (told, other) = if ended(&first) { (second, first) } else { (first, second) };
-                Self::Neither { told: Box::new(told), other: Box::new(other) }
+                let (clearer, other) = if ended(&first) { (second, first) } else { (first, second) };
+                Self::Neither { clearer: Box::new(clearer), other: Box::new(other) }
             }
         }
     }
@@ -489,13 +489,13 @@ mod tests {
         let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();
         assert!(both.contains("spans") && both.contains("fem"), "{both}");
         let lifts = SolveError::Unsupported { model: Model::Spans, feature: Unsupported::NothingHolds };
-        let told = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
+        let clearer = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
         assert!(
-            told.starts_with(
+            clearer.starts_with(
                 "spans cannot answer this scene: no support holds the cable, only loads, loose ends or obstacles; and"
             ),
-            "{told}"
+            "{clearer}"
         );
-        assert_eq!(told.matches("fem").count(), 1, "{told}");
+        assert_eq!(clearer.matches("fem").count(), 1, "{clearer}");
     }
 }

@@ -552,9 +552,9 @@ impl Simulation {
         if !(dt_s > 0.0) {
             return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
-        let taken = if dt_s > MAX_FRAME_S { MAX_FRAME_S } else { dt_s };
-        self.step(taken)?;
-        Ok(taken)
+        let step_s = if dt_s > MAX_FRAME_S { MAX_FRAME_S } else { dt_s };
+        self.step(step_s)?;
+        Ok(step_s)
     }
 
     /// A new simulation of the same scene by the same model at its start, with so many times as

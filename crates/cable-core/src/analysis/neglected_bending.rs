@@ -47,9 +47,9 @@ pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -
     let mut stiff = scene.clone();
     let mut found = Vec::new();
     for (k, cable) in stiff.cables.iter_mut().enumerate() {
-        let taken = answer.cables.get(k).map(|c| c.assumptions.bending_stiffness_n_m2);
+        let assumed = answer.cables.get(k).map(|c| c.assumptions.bending_stiffness_n_m2);
         let likely = cable.preset.as_deref().and_then(cable_preset).map(|p| &p.likely_bending_stiffness_n_m2);
-        if let (Some(likely), Some(0.0)) = (likely.filter(|f| f.value > 0.0), taken) {
+        if let (Some(likely), Some(0.0)) = (likely.filter(|f| f.value > 0.0), assumed) {
             cable.bending_stiffness_n_m2 = likely.value;
             let neglected = NeglectedBending {
                 cable: cable.name.clone(),
@@ -98,15 +98,15 @@ pub enum Bending {
 /// None if it is known for none of them.
 fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, Vec<AssumedStiffness>)> {
     let mut stiff = scene.clone();
-    let mut taken = Vec::new();
+    let mut assumed = Vec::new();
     for cable in stiff.cables.iter_mut().filter(|c| c.bending_stiffness_n_m2 == 0.0 && counts(&c.name)) {
         let likely = cable.likely_bending_stiffness_n_m2();
         if likely > 0.0 {
             cable.bending_stiffness_n_m2 = likely;
-            taken.push(AssumedStiffness { cable: cable.name.clone(), bending_stiffness_n_m2: likely });
+            assumed.push(AssumedStiffness { cable: cable.name.clone(), bending_stiffness_n_m2: likely });
         }
     }
-    (!taken.is_empty()).then_some((stiff, taken))
+    (!assumed.is_empty()).then_some((stiff, assumed))
 }
 
 /// Returns whether a warning shows a shape that no real cable could have: folds of a flexible line
@@ -135,16 +135,16 @@ fn choose(scene: &Scene, model: Model, settings: Settings, bending: Bending) -> 
     match bending {
         Bending::AsWritten => Ok(as_written(None)),
         Bending::Likely => Ok(match with_likely(scene, |_| true) {
-            Some((scene, taken)) => Chosen { scene, bending: Some(LikelyBending::Assumed(taken)), answer: None },
+            Some((scene, assumed)) => Chosen { scene, bending: Some(LikelyBending::Assumed(assumed)), answer: None },
             None => as_written(None),
         }),
         Bending::WhereItMatters => {
             let flexible = settle(scene, model, settings)?;
             let tight = |name: &str| flexible.warnings.iter().any(|w| matters(w) && w.cable == name);
-            let Some((stiff, taken)) = with_likely(scene, tight) else { return Ok(as_written(Some(flexible))) };
+            let Some((stiff, assumed)) = with_likely(scene, tight) else { return Ok(as_written(Some(flexible))) };
             match settle(&stiff, model, settings) {
                 Ok(answer) => {
-                    let bending = Some(LikelyBending::AssumedWhereItMatters(taken));
+                    let bending = Some(LikelyBending::AssumedWhereItMatters(assumed));
                     Ok(Chosen { scene: stiff, bending, answer: Some(answer) })
                 }
                 Err(Error::Solve(error)) => {

@@ -28,9 +28,9 @@ struct PulleyContact<'a> {
 /// Checks the friction of pulleys, and the tensions reported beside them.
 pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification) {
     let nodes = &checked.answer.nodes;
-    for led in pulley_contacts(checked) {
+    for contact in pulley_contacts(checked) {
         found.ask(Law::Friction);
-        let [first, last] = led.nodes;
+        let [first, last] = contact.nodes;
         // A node without material before or after it is an end of the cable, so no cable leads to
         // the pulley.
         if first == 0 || last + 1 >= nodes.len() {
@@ -38,24 +38,25 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
         }
         let before = checked.force_before(first);
         let after = nodes[last].force();
-        let [least, most] = [-led.friction, led.friction].map(|m| tension_after_pulley(checked, &led, before, m));
+        let [least, most] =
+            [-contact.friction, contact.friction].map(|m| tension_after_pulley(checked, &contact, before, m));
         let value = larger(after.norm() - most, least - after.norm());
         let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE_FRACTION * checked.scale;
         let mut tell = |law: Law, value: f64, limit: f64| {
             if !(value <= limit) {
                 let mut finding = checked.finding(law, first, value, limit);
-                finding.with.clone_from(&led.reaction.name);
+                finding.with.clone_from(&contact.reaction.name);
                 found.report(finding);
             }
         };
         tell(Law::Friction, value, limit);
         // Nodes just off the wheel count as on it: from there to the wheel the cable carries
         // its weight.
-        let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
+        let on = |k: &usize| contact.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
         let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
         for (reported_n, force, beside) in [
-            (led.reaction.tension_before_n, before, [first - 1, touches[0]]),
-            (led.reaction.tension_after_n, after, [touches[1], last + 1]),
+            (contact.reaction.tension_before_n, before, [first - 1, touches[0]]),
+            (contact.reaction.tension_after_n, after, [touches[1], last + 1]),
         ] {
             let [a, b] = beside.map(|k| nodes[k].arc_length_m);
             let limit = REPORTED_BALANCE * checked.scale + checked.body.norm() * (b - a);
@@ -65,15 +66,15 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
 }
 
 /// The tension after a pulley that follows from the force before it with friction m, N.
-fn tension_after_pulley(checked: &CheckedCable<'_>, led: &PulleyContact<'_>, before: Vec2, m: f64) -> f64 {
+fn tension_after_pulley(checked: &CheckedCable<'_>, contact: &PulleyContact<'_>, before: Vec2, m: f64) -> f64 {
     let nodes = &checked.answer.nodes;
     let turn = |a: Vec2, b: Vec2| cross(a, b).atan2(a.dot(&b)).abs();
-    let [first, last] = led.nodes;
+    let [first, last] = contact.nodes;
     let mut tension = before.norm() * (m * turn(before, nodes[first].force())).exp();
     for pair in nodes[first..=last].windows(2) {
         let grown = (m * turn(pair[0].force(), pair[1].force())).exp();
         let way = (pair[1].at() - pair[0].at()).try_normalize(0.0).unwrap_or_default();
-        let out = led.wheel.map_or_else(Vec2::zeros, |(center, _)| {
+        let out = contact.wheel.map_or_else(Vec2::zeros, |(center, _)| {
             ((pair[0].at() + pair[1].at()) * 0.5 - center).try_normalize(0.0).unwrap_or_default()
         });
         let load = checked.body * (pair[1].arc_length_m - pair[0].arc_length_m);

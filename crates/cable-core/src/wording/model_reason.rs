@@ -39,7 +39,7 @@ impl Sentence for ModelReason {
 
 impl Sentence for LikelyBending {
     fn sentence(&self, units: UnitSystem) -> String {
-        let taken = |cables: &[AssumedStiffness]| {
+        let listed = |cables: &[AssumedStiffness]| {
             let each = cables.iter().map(|c| {
                 let stiffness = Figures(units).given(Quantity::BendingStiffness, c.bending_stiffness_n_m2);
                 format!("`{}` with {stiffness}", c.cable)
@@ -48,11 +48,11 @@ impl Sentence for LikelyBending {
             format!("the likely bending stiffness of its preset was used: {all}")
         };
         match self {
-            Self::Assumed(cables) => taken(cables),
+            Self::Assumed(cables) => listed(cables),
             Self::AssumedWhereItMatters(cables) => {
                 format!(
                     "without bending stiffness it bends too tightly, lies in folds or crosses itself, so {}",
-                    taken(cables)
+                    listed(cables)
                 )
             }
             Self::NoAnswer(error) => {

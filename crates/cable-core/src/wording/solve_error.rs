@@ -86,7 +86,7 @@ impl Sentence for SolveError {
                 f.given(Quantity::Force, *breaking_n),
                 why.sentence(units)
             ),
-            Self::Neither { told, other } => format!("{}; and {}", told.sentence(units), other.sentence(units)),
+            Self::Neither { clearer, other } => format!("{}; and {}", clearer.sentence(units), other.sentence(units)),
             Self::Unsupported { model, feature } => {
                 format!("{model} cannot answer this scene: {}", feature.sentence(units))
             }

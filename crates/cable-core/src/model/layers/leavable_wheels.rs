@@ -89,7 +89,7 @@ pub struct LeavableWheels {
     /// which the cable bends by its own stiffness, or of a cable that meets itself.
     as_moving_post: Vec<bool>,
     /// Places to which supports were moved, m, and by what.
-    led: Vec<Option<SupportMove>>,
+    support_moves: Vec<Option<SupportMove>>,
     /// Present places of wheels that were led while the cable was clear of them, m.
     places: Vec<Option<Vec2>>,
     robot_pose: Option<RigidPose>,
@@ -160,7 +160,7 @@ fn wheels_left_by(error: &SolveError) -> Vec<&str> {
     match error {
         SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley } } => vec![pulley],
         SolveError::Unsupported { feature: Unsupported::OffWheel { support }, .. } => vec![support],
-        SolveError::Neither { told, other } => [wheels_left_by(told), wheels_left_by(other)].concat(),
+        SolveError::Neither { clearer, other } => [wheels_left_by(clearer), wheels_left_by(other)].concat(),
         _ => Vec::new(),
     }
 }
@@ -169,7 +169,7 @@ fn wheels_left_by(error: &SolveError) -> Vec<&str> {
 fn asks_for_posts(error: &SolveError) -> bool {
     match error {
         SolveError::Unsupported { feature, .. } => *feature == Unsupported::SelfContactWithPulleys,
-        SolveError::Neither { told, other } => asks_for_posts(told) || asks_for_posts(other),
+        SolveError::Neither { clearer, other } => asks_for_posts(clearer) || asks_for_posts(other),
         _ => false,
     }
 }
@@ -184,7 +184,7 @@ impl LeavableWheels {
         inner: Box<dyn Mechanics>,
     ) -> Self {
         let n = problem.supports.len();
-        let (led, places) = (vec![None; n], vec![None; n]);
+        let (support_moves, places) = (vec![None; n], vec![None; n]);
         Self {
             problem,
             wheels,
@@ -194,7 +194,7 @@ impl LeavableWheels {
             left: None,
             let_go: false,
             as_moving_post: vec![false; n],
-            led,
+            support_moves,
             places,
             robot_pose: None,
             rests: false,
@@ -222,7 +222,7 @@ impl LeavableWheels {
     fn continue_without_wheels(&mut self, before: &ContinuationWithoutWheels) -> bool {
         let are_wheels =
             |replaced: &[bool]| replaced.iter().zip(&self.wheels.wheels).all(|(replaced, wheel)| !replaced || *wheel);
-        if self.left.is_some() || before.replaced.len() != self.led.len() || !are_wheels(&before.replaced) {
+        if self.left.is_some() || before.replaced.len() != self.support_moves.len() || !are_wheels(&before.replaced) {
             return false;
         }
         let moves = |k: usize| before.posts[k] && !self.wheels.standing[k];
@@ -232,14 +232,16 @@ impl LeavableWheels {
         if (0..moving.len()).filter(|k| moving[*k]).any(|k| lets_go(&k)) {
             return false;
         }
-        let places = before.centers.iter().zip(&self.led).map(|(center, led)| center.filter(|_| led.is_some()));
+        let places =
+            before.centers.iter().zip(&self.support_moves).map(|(center, moved)| center.filter(|_| moved.is_some()));
         let places_before = std::mem::replace(&mut self.places, places.collect());
         let as_moving_post = std::mem::replace(&mut self.as_moving_post, moving);
         let continued = self.without(&before.replaced, Inertia::Dynamic).and_then(|left| {
             let going_on = || left.going_on(&self.problem, &self.problem, &self.places, before.time_s);
             let problem = if before.let_go { going_on()? } else { left.problem.clone() };
             let inner = (self.construct)(problem, self.settings).ok()?;
-            let mut next = Self { led: self.led.clone(), let_go: before.let_go, ..Self::empty(self, inner) };
+            let mut next =
+                Self { support_moves: self.support_moves.clone(), let_go: before.let_go, ..Self::empty(self, inner) };
             next.left = Some(left);
             if let Some(pose) = self.robot_pose {
                 next.inner.set_robot_pose(pose);
@@ -256,9 +258,9 @@ impl LeavableWheels {
 
     /// Moves all supports of the inner model that were moved.
     fn move_all_inner_supports(&mut self) {
-        for k in 0..self.led.len() {
-            if let Some(lead) = self.led[k] {
-                self.move_support(k, lead);
+        for k in 0..self.support_moves.len() {
+            if let Some(target) = self.support_moves[k] {
+                self.move_support(k, target);
             }
         }
     }
@@ -268,7 +270,7 @@ impl LeavableWheels {
         let problem = left.map_or(&self.problem, |left| &left.problem);
         let mut this =
             Self { left: left.cloned(), ..Self::empty(self, (self.construct)(problem.clone(), self.settings)?) };
-        this.led.clone_from(&self.led);
+        this.support_moves.clone_from(&self.support_moves);
         if let Some(pose) = self.robot_pose {
             this.inner.set_robot_pose(pose);
         }
@@ -301,8 +303,8 @@ impl LeavableWheels {
 
     /// Moves a support; a wheel that was left goes there when the cable is next solved.
     fn move_support(&mut self, support: usize, target: SupportMove) {
-        if let Some(led) = self.led.get_mut(support) {
-            *led = Some(target);
+        if let Some(move_of_it) = self.support_moves.get_mut(support) {
+            *move_of_it = Some(target);
         }
         match (self.inner_index(support), target) {
             (Some(inner), SupportMove::Dragged(at)) => self.inner.drag_support(inner, at),
@@ -323,29 +325,29 @@ impl LeavableWheels {
         self.places[wheel.support].or_else(by_motion).unwrap_or(wheel.center)
     }
 
-    /// The wheels that were left and have been led from where they are, with their targets, m.
-    fn led_away(&self) -> Vec<(usize, Vec2)> {
+    /// The wheels that were left and have targets elsewhere than they are, with these targets, m.
+    fn wheels_to_move(&self) -> Vec<(usize, Vec2)> {
         let wheels = self.left.iter().flat_map(|left| &left.wheels);
-        let led = wheels.filter_map(|wheel| {
-            let to = self.led[wheel.support].map(SupportMove::place)?;
+        let moved = wheels.filter_map(|wheel| {
+            let to = self.support_moves[wheel.support].map(SupportMove::place)?;
             (self.place_of(wheel) != to).then_some((wheel.support, to))
         });
-        led.collect()
+        moved.collect()
     }
 
-    /// Puts wheels that were left where they have been led, at once. One stays left if its path is
+    /// Puts wheels that were left at their targets, at once. One stays left if its path is
     /// clear of the cable, and no post moves in its place; else all become wheels again.
     fn put_at_rest(&mut self) {
-        let led = self.led_away();
-        if led.is_empty() {
+        let moved = self.wheels_to_move();
+        if moved.is_empty() {
             return;
         }
         let is_post = |support: usize| self.wheel_left(support).is_some_and(|wheel| wheel.post.is_some());
         let moves = |support: usize| self.as_moving_post[support] && is_post(support);
         let stays = |support: usize, to: Vec2| !moves(support) && self.goes_clear(support, to);
-        let clear = led.iter().all(|(support, to)| stays(*support, *to));
+        let clear = moved.iter().all(|(support, to)| stays(*support, *to));
         let before = self.places.clone();
-        for (support, to) in led {
+        for (support, to) in moved {
             self.places[support] = Some(to);
         }
         if clear && self.move_posts() {
@@ -359,14 +361,14 @@ impl LeavableWheels {
         }
     }
 
-    /// Moves the wheels that were left to where they have been led in a step of `dt_s` (s), no
+    /// Moves the wheels that were left towards their targets in a step of `dt_s` (s), no
     /// faster than a hand; those that were `known` to be left have been moved already.
     ///
-    /// # Errors Those of the model without the posts of wheels that are led.
-    fn move_led(&mut self, dt_s: f64, known: &[bool]) -> Result<(), SolveError> {
+    /// # Errors Those of the model without the posts of wheels that move.
+    fn move_left_wheels(&mut self, dt_s: f64, known: &[bool]) -> Result<(), SolveError> {
         self.remove_moved_posts()?;
         let most = self.settings.hand_speed_m_per_s * dt_s;
-        for (support, to) in self.led_away() {
+        for (support, to) in self.wheels_to_move() {
             let from = self.wheel_left(support).map(|wheel| self.place_of(wheel));
             let Some(from) = from.filter(|_| !known[support]) else { continue };
             let way = to - from;
@@ -376,18 +378,18 @@ impl LeavableWheels {
         Ok(())
     }
 
-    /// Posts follow no hand: a cable that lies on the post of a wheel that is led is laid on the
-    /// wheel again; else the post is taken away.
+    /// Posts follow no hand: a cable that lies on the post of a wheel that moves is laid on the
+    /// wheel again; else the post is removed.
     ///
     /// # Errors Those of the model without the post.
     fn remove_moved_posts(&mut self) -> Result<(), SolveError> {
-        let led = self.led_away();
-        if led.is_empty() {
+        let moved = self.wheels_to_move();
+        if moved.is_empty() {
             return Ok(());
         }
         let mut replaced = self.replaced();
         let (mut any, answer) = (false, self.inner.solution());
-        for (support, _) in led {
+        for (support, _) in moved {
             let Some(post) = self.wheel_left(support).and_then(|wheel| wheel.post.as_ref()) else { continue };
             any = true;
             replaced[support] = answer.contacts.iter().all(|c| c.obstacle != *post);
@@ -417,7 +419,7 @@ impl LeavableWheels {
     fn note_places(&mut self, replaced: &[bool]) {
         let (answer, before) = (self.outer_solution(self.inner.solution()), self.replaced());
         for (k, support) in answer.supports.iter().enumerate() {
-            if replaced[k] && !before[k] && self.led[k].is_some() {
+            if replaced[k] && !before[k] && self.support_moves[k].is_some() {
                 self.places[k] = Some(Vec2::new(support.x_m, support.y_m));
             }
         }
@@ -444,12 +446,12 @@ impl LeavableWheels {
     /// ever, and that no hand leads.
     fn can_be_post(&self, support: usize) -> bool {
         let lets_go = self.problem.supports[support].release.is_some();
-        self.wheels.wheels[support] && !lets_go && self.led[support].is_none()
+        self.wheels.wheels[support] && !lets_go && self.support_moves[support].is_none()
     }
 
     /// The things in place of wheels, some of which the cable has left.
     fn stand_ins(&self, replaced: &[bool], inertia: Inertia) -> Vec<StandIn> {
-        let stand_in = |k: usize| match (replaced[k], self.led[k]) {
+        let stand_in = |k: usize| match (replaced[k], self.support_moves[k]) {
             (false, _) => StandIn::Wheel,
             (true, Some(_)) if inertia == Inertia::Dynamic => StandIn::Nothing,
             (true, _) if self.wheels.standing[k] => StandIn::Post,
@@ -464,7 +466,7 @@ impl LeavableWheels {
     /// a hand leads.
     fn without(&self, replaced: &[bool], inertia: Inertia) -> Option<Arc<WheelsLeft>> {
         let stand_ins = self.stand_ins(replaced, inertia);
-        let at_rest = |k: usize| self.led[k].filter(|_| replaced[k] && inertia == Inertia::QuasiStatic);
+        let at_rest = |k: usize| self.support_moves[k].filter(|_| replaced[k] && inertia == Inertia::QuasiStatic);
         let place = |k: usize| self.places[k].or(at_rest(k).map(SupportMove::place));
         let places: Vec<Option<Vec2>> = (0..replaced.len()).map(place).collect();
         let changed = replaced.contains(&true) || places.iter().any(Option::is_some);
@@ -500,7 +502,7 @@ impl LeavableWheels {
                 let known = self.replaced();
                 for k in (0..known.len()).filter(|&k| left.replaced[k] && !known[k] && inertia == Inertia::QuasiStatic)
                 {
-                    self.places[k] = self.places[k].or(self.led[k].map(SupportMove::place));
+                    self.places[k] = self.places[k].or(self.support_moves[k].map(SupportMove::place));
                 }
                 self.continue_with(inner, Some(left));
                 return Some(report);
@@ -549,7 +551,7 @@ impl LeavableWheels {
                 self.keep_account();
                 // A wheel that a hand leads goes on.
                 if inertia == Inertia::Dynamic {
-                    self.move_led(end_s - self.inner.time_s(), &known)?;
+                    self.move_left_wheels(end_s - self.inner.time_s(), &known)?;
                 }
                 continue;
             }
@@ -810,7 +812,7 @@ impl Layer for LeavableWheels {
             left: self.left.clone(),
             let_go: self.let_go,
             as_moving_post: self.as_moving_post.clone(),
-            led: self.led.clone(),
+            support_moves: self.support_moves.clone(),
             places: self.places.clone(),
             robot_pose: self.robot_pose,
             rests: self.rests,
@@ -893,7 +895,7 @@ impl Layer for LeavableWheels {
     ) -> Result<StepReport, SolveError> {
         self.account = None;
         match inertia {
-            Inertia::Dynamic => self.move_led(dt_s, &vec![false; self.led.len()])?,
+            Inertia::Dynamic => self.move_left_wheels(dt_s, &vec![false; self.support_moves.len()])?,
             Inertia::QuasiStatic => self.put_at_rest(),
         }
         if std::mem::take(&mut self.rests) {
@@ -938,7 +940,7 @@ impl Layer for LeavableWheels {
         }
         // Posts that move are for stiff cables: `spans` knows none.
         let moves = |k: usize| self.problem.bending_stiffness > 0.0 && !self.wheels.standing[k] && self.can_be_post(k);
-        let moving: Vec<bool> = (0..self.led.len()).map(moves).collect();
+        let moving: Vec<bool> = (0..self.support_moves.len()).map(moves).collect();
         let all: Vec<bool> =
             moving.iter().zip(&self.wheels.standing).map(|(moves, stands)| *moves || *stands).collect();
         let cuts_posts = self.inner.model() == Model::MassSpring;
@@ -963,10 +965,10 @@ impl Layer for LeavableWheels {
         answer.momentum = self.whole_account(answer.momentum);
         let Some(left) = &self.left else { return answer };
         for wheel in &left.wheels {
-            let led = self.places.get(wheel.support).copied().flatten();
+            let placed = self.places.get(wheel.support).copied().flatten();
             let moved = || self.problem.supports.get(wheel.support)?.place_at(self.inner.time_s()).map(|place| place.0);
             let may_move = wheel.post.is_none() || self.as_moving_post[wheel.support];
-            let center = led.or_else(moved).filter(|_| may_move).unwrap_or(wheel.center);
+            let center = placed.or_else(moved).filter(|_| may_move).unwrap_or(wheel.center);
             let reaction = reaction(&self.problem, wheel, center, &answer);
             match answer.supports.get_mut(wheel.support).filter(|_| self.let_go) {
                 Some(of_let_go) => *of_let_go = reaction,

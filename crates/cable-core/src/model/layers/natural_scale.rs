@@ -288,8 +288,8 @@ impl Layer for ScaledModel {
                 place: self.place_back(&place),
                 cause: cause.with_speed(|v| v * t / l),
             },
-            SolveError::Neither { told, other } => SolveError::Neither {
-                told: Box::new(self.outer_error(*told)),
+            SolveError::Neither { clearer, other } => SolveError::Neither {
+                clearer: Box::new(self.outer_error(*clearer)),
                 other: Box::new(self.outer_error(*other)),
             },
             SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {

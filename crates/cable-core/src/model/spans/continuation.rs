@@ -75,9 +75,9 @@ impl<'a> StepSize<'a> {
 
     /// True if a solved step has to be shorter: a contact has no friction in the step in which it
     /// comes down.
-    fn is_too_long(&self, taken: &StepStats) -> bool {
+    fn is_too_long(&self, stats: &StepStats) -> bool {
         self.shortens
-            && taken.missing_friction > self.tuned.missing_friction_fraction
+            && stats.missing_friction > self.tuned.missing_friction_fraction
             && self.step > self.tuned.landing_step_fraction
     }
 
@@ -157,14 +157,14 @@ impl CableEquilibrium {
         routes: &[Vec<Vec2>],
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        let mut taken = StepStats::default();
+        let mut stats = StepStats::default();
         workspace.before.clone_from(&self.sections);
         workspace.instants[0].clone_from(&self.instant);
         self.instant.clone_from(to);
         layout.set_context(&mut self.context, to);
         for k in 0..self.sections.len() {
             match self.solve_section(layout, k, routes.get(k).map(Vec::as_slice), workspace) {
-                Ok(one) => taken = taken.plus(one),
+                Ok(one) => stats = stats.plus(one),
                 Err(failure) => {
                     self.undo(layout, workspace);
                     return Err(failure);
@@ -175,7 +175,7 @@ impl CableEquilibrium {
             self.undo(layout, workspace);
             return Err(failure);
         }
-        Ok(taken)
+        Ok(stats)
     }
 
     /// Restores the start of the last step.
@@ -217,9 +217,9 @@ impl CableEquilibrium {
             return self.renew_loose_section(layout, k);
         }
         let solved = self.find_section_equilibrium(layout, k, route, [&mut *start, moved], workspace)?;
-        let mut taken = StepStats { solved, ..StepStats::default() };
+        let mut stats = StepStats { solved, ..StepStats::default() };
         if route.is_none() {
-            taken.missing_friction = point_load::unremembered_friction(&self.sections[k], &self.context);
+            stats.missing_friction = point_load::unremembered_friction(&self.sections[k], &self.context);
         }
         for c in &mut self.sections[k].contacts {
             let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.place[0]);
@@ -238,7 +238,7 @@ impl CableEquilibrium {
         if !layout.problem.world.is_empty() && route.is_none() {
             self.refuse_passing(layout, k, start, workspace)?;
         }
-        Ok(taken)
+        Ok(stats)
     }
 
     /// Finds the equilibrium of one section: from its shape with the predicted slip; else from the
@@ -364,7 +364,7 @@ impl CableEquilibrium {
         let tuned = &layout.settings.continuation;
         let (before, old) = (self.sections.clone(), self.instant.clone());
         let size = to.load.norm();
-        let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
+        let (mut drag, mut stats, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
         for _ in 0..layout.settings.changes.max_changes {
             self.context.drag = drag;
@@ -373,13 +373,13 @@ impl CableEquilibrium {
             match result {
                 Ok(t) => {
                     pushed = None;
-                    taken = taken.plus(t);
+                    stats = stats.plus(t);
                     drag *= if raised > 0 { DRAG_DECREASE_AFTER_RAISE } else { DRAG_DECREASE };
                     raised = 0;
                     if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
                         && let Ok(t) = self.step(layout, to, workspace)
                     {
-                        return Ok(taken.plus(t));
+                        return Ok(stats.plus(t));
                     }
                 }
                 Err(failure) => {
@@ -466,7 +466,7 @@ impl CableEquilibrium {
         workspace: &mut Workspace,
     ) -> Result<StepStats, AdvanceFailure> {
         let tuned = &layout.settings.continuation;
-        let (mut done, mut taken) = (0.0, StepStats::default());
+        let (mut done, mut stats) = (0.0, StepStats::default());
         let mut size = StepSize::new(tuned, first);
         while done < 1.0 {
             let next = if done + END_ROUNDING * size.step >= 1.0 { 1.0 } else { done + size.step };
@@ -475,12 +475,12 @@ impl CableEquilibrium {
                 Ok(t) if size.is_too_long(&t) => {
                     self.undo(layout, workspace);
                     size.shorten();
-                    taken.halvings += 1;
+                    stats.halvings += 1;
                     continue;
                 }
                 Ok(t) => {
                     size.grow();
-                    (taken, done) = (taken.plus(t), next);
+                    (stats, done) = (stats.plus(t), next);
                     continue;
                 }
                 Err(failure) => {
@@ -491,7 +491,7 @@ impl CableEquilibrium {
                 }
             };
             size.halve();
-            taken.halvings += 1;
+            stats.halvings += 1;
             if size.is_exhausted() {
                 // No nearby equilibrium holds the cable: it runs away to the next one that does.
                 let next = smaller(done + tuned.runaway_step_fraction, 1.0);
@@ -501,12 +501,12 @@ impl CableEquilibrium {
                     failure: self.failure_to_report(failure, held_back),
                     done,
                 })?;
-                (taken, done) = (taken.plus(slid), next);
-                taken.runaways += 1;
+                (stats, done) = (stats.plus(slid), next);
+                stats.runaways += 1;
                 size.restart();
             }
         }
-        Ok(taken)
+        Ok(stats)
     }
 }
 

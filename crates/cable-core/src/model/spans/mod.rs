@@ -228,12 +228,12 @@ impl SpansModel {
             self.layout.instant(&self.dragged, time_s, &mut instant);
             self.move_dragged_supports([&first, &last], f, &mut instant);
             match cable_equilibrium.advance_load(&self.layout, &instant, 1.0, &mut workspace) {
-                Ok(taken) => {
-                    let one = self.report_of(taken).cost;
+                Ok(stats) => {
+                    let one = self.report_of(stats).cost;
                     sum.cost.iterations += one.iterations;
                     sum.cost.halved_steps += one.halved_steps;
                     sum.cost.residual_n = one.residual_n;
-                    ran += taken.runaways;
+                    ran += stats.runaways;
                     self.time_s = time_s;
                     on = stays(&cable_equilibrium);
                 }
@@ -324,7 +324,7 @@ impl SpansModel {
             Some(loose) => Ok((loose, StepStats::default())),
             None => CableEquilibrium::along_route(&self.layout, instant, workspace),
         };
-        let (cable_equilibrium, taken) = match along_route {
+        let (cable_equilibrium, stats) = match along_route {
             Ok(found) => found,
             Err(not_found) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
@@ -346,17 +346,17 @@ impl SpansModel {
             }
         };
         self.cable_equilibrium = Some(cable_equilibrium);
-        Ok(taken)
+        Ok(stats)
     }
 
     /// The report of a step from its statistics.
-    fn report_of(&self, taken: StepStats) -> StepReport {
+    fn report_of(&self, stats: StepStats) -> StepReport {
         let scale = self.layout.problem.force_scale();
         StepReport {
             cost: Cost {
-                iterations: taken.solved.iterations,
-                halved_steps: taken.halvings,
-                residual_n: taken.solved.residual * scale,
+                iterations: stats.solved.iterations,
+                halved_steps: stats.halvings,
+                residual_n: stats.solved.residual * scale,
                 inner_step_s: 0.0,
             },
             warnings: Vec::new(),
@@ -450,7 +450,7 @@ impl SpansModel {
     }
 
     /// The warning of other equilibria that another history of the cable would have left.
-    fn history_warning(&self, taken: StepStats, histories: Histories) -> Option<Warning> {
+    fn history_warning(&self, stats: StepStats, histories: Histories) -> Option<Warning> {
         let cable_equilibrium = self.cable_equilibrium.as_ref()?;
         if let Some([material_m, ground_m]) = cable_equilibrium.loose_lengths() {
             // For any history, only friction on the loose cable can hold more.
@@ -461,7 +461,7 @@ impl SpansModel {
         if !self.rubs() || !mobilised.is_default() || self.is_history_independent(&histories) {
             return None;
         }
-        let shown = match taken.found_without_friction {
+        let shown = match stats.found_without_friction {
             true => ShownEquilibrium::Frictionless,
             false => ShownEquilibrium::LeastSliding,
         };
@@ -556,7 +556,7 @@ impl Mechanics for SpansModel {
         };
         let (found, stable) = match &mut self.cable_equilibrium {
             Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut workspace) {
-                Ok(left) => (found.map(|taken| taken.plus(left)), true),
+                Ok(left) => (found.map(|stats| stats.plus(left)), true),
                 Err(_) => (found, false),
             },
             _ => (found, true),
@@ -566,8 +566,8 @@ impl Mechanics for SpansModel {
             if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut workspace) } else { None };
         let loose = self.cable_equilibrium.as_ref().and_then(CableEquilibrium::loose_lengths);
         let histories = match &found {
-            Ok(taken) if self.histories && loose.is_none() && self.rubs() => {
-                let start = if taken.found_without_friction { SearchStart::Rubbing } else { SearchStart::Either };
+            Ok(stats) if self.histories && loose.is_none() && self.rubs() => {
+                let start = if stats.found_without_friction { SearchStart::Rubbing } else { SearchStart::Either };
                 self.histories(start, &mut workspace)
             }
             _ => Histories::NotSought,
@@ -578,15 +578,15 @@ impl Mechanics for SpansModel {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });
         }
-        let taken = found.map_err(|not_found| match slides && !self.rubs() {
+        let stats = found.map_err(|not_found| match slides && !self.rubs() {
             true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
             false => self.solve_error(not_found.let_out.as_deref(), not_found.failure),
         })?;
-        let mut report = self.report_of(taken);
+        let mut report = self.report_of(stats);
         if !stable {
             report.warnings.push(self.warning(WarningCause::Unstable));
         }
-        report.warnings.extend(self.history_warning(taken, histories));
+        report.warnings.extend(self.history_warning(stats, histories));
         report.warnings.extend(others);
         if instant.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.present_report().nodes));
@@ -640,9 +640,9 @@ impl Mechanics for SpansModel {
         let mut workspace = std::mem::take(&mut self.workspace);
         let nodes = self.layout.is_reversed().then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
-        let taken = CableEquilibrium::from_answer(&self.layout, &instant, nodes, &mut workspace);
+        let adopted = CableEquilibrium::from_answer(&self.layout, &instant, nodes, &mut workspace);
         self.workspace = workspace;
-        self.cable_equilibrium = Some(taken.map_err(|t| self.plain_error(t))?);
+        self.cable_equilibrium = Some(adopted.map_err(|t| self.plain_error(t))?);
         self.time_s = time_s;
         Ok(())
     }

@@ -100,9 +100,9 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
         (0..=PLACEMENT_TRIALS.1).flat_map(|k| [-1.0, 1.0].map(|side| below + side * PLACEMENT_TRIALS.0 * f64::from(k)));
     let at_m = places.into_iter().find_map(stands).unwrap_or([below, at[1] - p.hitch_up_m.value]);
     scene.robot = Some(Robot { preset: p.id.to_owned(), at_m, heading, ..Robot::default() });
-    let taken = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);
+    let may_be_hitched = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);
     let last = scene.cables.get_mut(cable).and_then(|c| c.supports.last_mut());
-    if let Some(support) = last.filter(|s| taken(s.kind)) {
+    if let Some(support) = last.filter(|s| may_be_hitched(s.kind)) {
         *support = support_kind::of_kind(support, SupportKind::Robot, at, 0.0, support_kind::SupportPlace::CableEnd);
     }
 }

@@ -66,12 +66,12 @@ fn adapt(cable: &mut CableState, inertia: Inertia, passage: LoadPassage) -> Reme
         return Remeshed::default();
     }
     let mut changed = remove_sliding_nodes(cable, &[], inertia);
-    let taken = add_sliding_nodes(cable, inertia);
-    if !taken.is_empty() {
+    let added = add_sliding_nodes(cable, inertia);
+    if !added.is_empty() {
         // A new sliding node may lift its neighbour off. At rest it is not itself removed before
         // the next step: it took over weight of the nodes beside it, which under a corner pulls it
         // away until they have moved.
-        let new_nodes: &[SlideOver] = if inertia == Inertia::QuasiStatic { &taken } else { &[] };
+        let new_nodes: &[SlideOver] = if inertia == Inertia::QuasiStatic { &added } else { &[] };
         remove_sliding_nodes(cable, new_nodes, inertia);
         changed = true;
     }
@@ -268,9 +268,9 @@ fn place_at_path_length(cable: &mut CableState, k: usize, whole: f64, from: Vec2
 
 /// Puts sliding nodes where corners and circles press; returns what they slide over.
 fn add_sliding_nodes(cable: &mut CableState, inertia: Inertia) -> Vec<SlideOver> {
-    let mut taken = Vec::new();
+    let mut added = Vec::new();
     if cable.problem.world.is_empty() || !cable.meshing.slides {
-        return taken;
+        return added;
     }
     let mut touches = std::mem::take(&mut cable.meshing.found);
     for _ in 0..cable.mesh.tuning.remesh.max_changes {
@@ -301,10 +301,10 @@ fn add_sliding_nodes(cable: &mut CableState, inertia: Inertia) -> Vec<SlideOver>
             None => insert(cable, bar + 1, arc_length, Some(sliding)),
         }
         clear_around(cable, node.unwrap_or(bar + 1));
-        taken.push(sliding.slide_over);
+        added.push(sliding.slide_over);
     }
     cable.meshing.found = touches;
-    taken
+    added
 }
 
 /// Removes material nodes in the way of a new sliding node.

@@ -195,12 +195,12 @@ impl NeighbouringContacts<'_> {
     fn friction(&self) -> StretchFriction {
         let (d, x) = (self.state, self.positions);
         let mut out = StretchFriction { force_n: 0.0, sliding_n: 0.0 };
-        for rub in self.friction_contacts() {
-            let e = rub.touch.node.min(x.len() - 2);
+        for contact in self.friction_contacts() {
+            let e = contact.touch.node.min(x.len() - 2);
             let along = d.mesh.direction(e, x);
-            out.force_n += d.contacts.friction_force(rub, x).dot(&along) * self.part(&rub.touch);
-            if rub.sliding(x).abs() > SLIDING_SLIP_FRACTION * d.contacts.slip {
-                out.sliding_n += rub.limit;
+            out.force_n += d.contacts.friction_force(contact, x).dot(&along) * self.part(&contact.touch);
+            if contact.sliding(x).abs() > SLIDING_SLIP_FRACTION * d.contacts.slip {
+                out.sliding_n += contact.limit;
             }
         }
         out
@@ -227,9 +227,9 @@ impl NeighbouringContacts<'_> {
         let press = |t: &ContactPair| t.pair.gap.normal * (t.load(&contacts.barrier) * self.part(t));
         let mut samples: Vec<ContactSample> =
             self.pairs.iter().map(|t| ContactSample::new(self.arc_length(t), press(t))).collect();
-        for rub in self.friction_contacts() {
-            let force = contacts.friction_force(rub, self.positions) * self.part(&rub.touch);
-            samples.push(ContactSample::new(self.arc_length(&rub.touch), force));
+        for contact in self.friction_contacts() {
+            let force = contacts.friction_force(contact, self.positions) * self.part(&contact.touch);
+            samples.push(ContactSample::new(self.arc_length(&contact.touch), force));
         }
         samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
         samples

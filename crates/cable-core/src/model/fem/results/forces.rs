@@ -109,7 +109,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
         if let Some(hung) = free_end(d, node) {
             // The ground carries the normal force there, and friction a part of the tangential
             // force, within the friction cone.
-            let taken = ground.map_or(Vec2::zeros(), |g| {
+            let borne = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
                 let half = d.problem.body_force(d.time()) * d.mesh.tributary_length(node);
@@ -117,7 +117,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
                 let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
                 g.normal * pressed - along * rubbed
             });
-            return (taken - floor_force_on_lump(d, node) - hung) * sign;
+            return (borne - floor_force_on_lump(d, node) - hung) * sign;
         }
         let middle = d.mesh.direction(e, x) * tension[e];
         let half = half(d, node, usize::from(sign > 0.0), x);
@@ -183,8 +183,9 @@ fn floor_force_on_lump(d: &CableState, node: usize) -> Vec2 {
 /// Normal and friction force of edges and floor on a node, N.
 fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
-    for rub in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
-        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + d.contacts.friction_force(rub, x);
+    for contact in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
+        sum += contact.touch.pair.gap.normal * contact.touch.load(&d.contacts.barrier)
+            + d.contacts.friction_force(contact, x);
     }
     if let Some(&limit) = d.input.loads.floor_limit.get(node) {
         sum -= friction::at_plane(d.contacts.floor_slip[node], limit, d.contacts.slip).1;
@@ -211,8 +212,8 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
     for touch in &touches {
         sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
     }
-    for rub in &d.contacts.friction_contacts {
-        sum += d.contacts.friction_force(rub, x);
+    for contact in &d.contacts.friction_contacts {
+        sum += d.contacts.friction_force(contact, x);
     }
     for k in 0..x.len() {
         let floor = d

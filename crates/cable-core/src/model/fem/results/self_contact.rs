@@ -10,11 +10,11 @@ use crate::solution::{ContactReport, ContactSample, ContactState};
 pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
     let own = &cable.contacts.self_contacts;
     let mut last = None;
-    for rub in &own.friction_contacts {
-        let (k, pair) = (rub.pair.node, &rub.pair);
+    for contact in &own.friction_contacts {
+        let (k, pair) = (contact.pair.node, &contact.pair);
         let load = -cable.contacts.barrier.at(pair.gap_m).slope * pair.weight;
         let along = cable.mesh.direction(k.min(tension.len().saturating_sub(1)), x);
-        let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.tuning.slip_m);
+        let (_, rubbing, _) = friction::at(contact.sliding(x), contact.limit, cable.contacts.tuning.slip_m);
         let new = last.is_none_or(|l| k > l + 1);
         last = Some(k);
         if new {
@@ -42,7 +42,7 @@ pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[
             report.ends_m = cable.mesh.arc_length[k];
             report.friction_n -= rubbing * pair.tangent().dot(&along);
             report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
-            if rubbing.abs() >= rub.limit {
+            if rubbing.abs() >= contact.limit {
                 report.state = ContactState::Slip;
             }
         }

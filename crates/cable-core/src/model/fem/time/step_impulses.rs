@@ -89,9 +89,9 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for touch in touches {
         sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&cable.contacts.barrier) * touch.material_share(moves));
     }
-    for rub in &cable.contacts.friction_contacts {
-        let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.slip);
-        sum[CONTACTS] -= rub.tangent * (slope * rub.touch.material_share(moves));
+    for contact in &cable.contacts.friction_contacts {
+        let (_, slope, _) = friction::at(contact.sliding(x), contact.limit, cable.contacts.slip);
+        sum[CONTACTS] -= contact.tangent * (slope * contact.touch.material_share(moves));
     }
     for (k, &limit) in input.loads.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
         let slid = cable.contacts.floor_slip[k] + (x[k] - input.supports.start[k]);

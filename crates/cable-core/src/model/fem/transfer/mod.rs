@@ -44,11 +44,11 @@ impl Stepper {
             return Ok(());
         }
         self.rollback.save(&self.cable);
-        let taken = self.adopt_state(state);
-        if taken.is_err() {
+        let adopted = self.adopt_state(state);
+        if adopted.is_err() {
             self.rollback.restore(&mut self.cable);
         }
-        taken
+        adopted
     }
 
     /// Continues from an answer of the same cable at rest, with its friction.

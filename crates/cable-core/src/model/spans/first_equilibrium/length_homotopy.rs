@@ -49,19 +49,19 @@ impl CableEquilibrium {
             }
         }
         self.instant = begin.clone();
-        let mut taken = self.step_from(layout, &begin, &routes, workspace)?;
+        let mut stats = self.step_from(layout, &begin, &routes, workspace)?;
         let frictionless = self.contacts_with_friction().all(|c| c.smooth);
         if self.end_smoothness() {
-            taken = taken.plus(self.step(layout, &begin, workspace)?);
+            stats = stats.plus(self.step(layout, &begin, workspace)?);
             let holds = self.contacts_with_friction().all(|c| c.mode == Mode::Stick);
-            taken.found_without_friction = frictionless && holds && taut.is_none();
+            stats.found_without_friction = frictionless && holds && taut.is_none();
         }
         if taut.is_none() {
-            return Ok(taken);
+            return Ok(stats);
         }
         let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
-        taken = taken.plus(self.advance_load(layout, &heavy, tuned.first_step, workspace)?);
-        Ok(taken.plus(self.advance_load(layout, goal, tuned.first_step, workspace)?))
+        stats = stats.plus(self.advance_load(layout, &heavy, tuned.first_step, workspace)?);
+        Ok(stats.plus(self.advance_load(layout, goal, tuned.first_step, workspace)?))
     }
 
     /// Lays each section along its route; returns the routes, an empty one for a loose section.

@@ -31,8 +31,8 @@ impl CableEquilibrium {
         let mut rests = |part: f64, shape: FirstShape| {
             let begin = BoundaryConditions { friction: part, ..instant.clone() };
             let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
-            let taken = cable_equilibrium.settle_along_route(layout, &begin, shape, workspace).ok()?;
-            (taken.runaways == 0).then_some(cable_equilibrium)
+            let stats = cable_equilibrium.settle_along_route(layout, &begin, shape, workspace).ok()?;
+            (stats.runaways == 0).then_some(cable_equilibrium)
         };
         let (mut low, mut step) = (1.0, tuned.first_missing_part);
         let (mut high, shape) = loop {

@@ -103,9 +103,9 @@ impl CableEquilibrium {
             let found = cable_equilibrium.find_from(layout, shape, [begin, instant], workspace);
             work_left -= most - workspace.work_left.take().unwrap_or(most);
             match found {
-                Ok(taken) => {
+                Ok(stats) => {
                     cable_equilibrium.context.loose_where_tension_ends = false;
-                    return Ok((cable_equilibrium, taken));
+                    return Ok((cable_equilibrium, stats));
                 }
                 Err(failure) => {
                     pushes |= matches!(failure, Failure::Compressed { .. });
@@ -129,12 +129,12 @@ impl CableEquilibrium {
         [begin, goal]: [&BoundaryConditions; 2],
         workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        let taken = self.settle_along_route(layout, begin, shape, workspace)?;
+        let stats = self.settle_along_route(layout, begin, shape, workspace)?;
         if !(begin.friction < goal.friction) {
-            return Ok(taken);
+            return Ok(stats);
         }
         let more = self.apply_friction(layout, goal, workspace)?;
-        Ok(StepStats { found_without_friction: true, ..taken.plus(more) })
+        Ok(StepStats { found_without_friction: true, ..stats.plus(more) })
     }
 
     /// The equilibrium of a cable in heaps where it comes down, hanging over crests, and without

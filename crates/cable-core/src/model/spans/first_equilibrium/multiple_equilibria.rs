@@ -113,7 +113,7 @@ impl CableEquilibrium {
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
         let size = to.load.norm();
-        let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
+        let (mut drag, mut stats, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
         let mut raised = 0;
         for (k, c) in self.sections.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
             let by = passed_on_m(k);
@@ -136,7 +136,7 @@ impl CableEquilibrium {
                 (drag, raised) = (DRAG_RISE * drag, raised + 1);
                 continue;
             };
-            (taken, raised) = (taken.plus(one), 0);
+            (stats, raised) = (stats.plus(one), 0);
             let slips = self.material_at_contacts().into_iter().zip(materials).map(|(a, b)| (a - b).abs());
             let force = drag * slips.fold(0.0, larger);
             drag *= left.map_or(1.0, |left| bounded(force / left, LEAST_DRAG_FALL, 1.0));
@@ -145,7 +145,7 @@ impl CableEquilibrium {
                 && let Ok(one) = self.step(layout, to, workspace)
                 && self.is_stable(workspace)
             {
-                return Ok(taken.plus(one));
+                return Ok(stats.plus(one));
             }
         }
         Err(Failure::ContactCycling { s: 0.0 })

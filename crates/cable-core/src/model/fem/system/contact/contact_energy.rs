@@ -93,16 +93,16 @@ pub fn add_friction(
     x: &[Vec2],
 ) -> f64 {
     let mut value = 0.0;
-    for (k, rub) in contacts.friction_contacts.iter().enumerate() {
-        let scale = input.scale.get(rub.touch.node).copied().unwrap_or(node_scale(input, rub.touch.node));
-        let y = rub.sliding(x);
-        let (d, mut slope, mut bend) = friction::at(y, rub.limit, contacts.slip);
+    for (k, contact) in contacts.friction_contacts.iter().enumerate() {
+        let scale = input.scale.get(contact.touch.node).copied().unwrap_or(node_scale(input, contact.touch.node));
+        let y = contact.sliding(x);
+        let (d, mut slope, mut bend) = friction::at(y, contact.limit, contacts.slip);
         if let Some(branch) = branches.get(k) {
-            (slope, bend) = branch.force(y, rub.limit, contacts.slip);
+            (slope, bend) = branch.force(y, contact.limit, contacts.slip);
         }
         value += d * scale;
-        let block = rub.tangent * rub.tangent.transpose() * (bend * scale);
-        add_pair(s, mesh, &rub.touch, rub.tangent * (slope * scale), &block);
+        let block = contact.tangent * contact.tangent.transpose() * (bend * scale);
+        add_pair(s, mesh, &contact.touch, contact.tangent * (slope * scale), &block);
     }
     value
 }

@@ -172,8 +172,8 @@ impl ContactSet {
                 .rev()
                 .take_while(|r| r.touch.node == touch.node)
                 .find(|r| r.is_of(touch));
-            if let Some(rub) = same {
-                rub.limit += limit;
+            if let Some(contact) = same {
+                contact.limit += limit;
             } else if limit != 0.0 {
                 let slid = self.memory.slid(touch);
                 let was = touch.interpolate(start);
@@ -208,8 +208,8 @@ impl ContactSet {
             of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
         };
         let (mut change, mut most) = (0.0, 0.0);
-        for rub in self.friction_contacts.iter().chain(&self.before) {
-            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.friction_contacts, &rub.touch));
+        for contact in self.friction_contacts.iter().chain(&self.before) {
+            let (was, is) = (limit(&self.before, &contact.touch), limit(&self.friction_contacts, &contact.touch));
             (change, most) = (larger(change, (is - was).abs()), larger(most, larger(is, was)));
         }
         let renewed = !same(change, most);
@@ -239,8 +239,8 @@ impl ContactSet {
 
     /// Friction force of a contact along its tangent at `x` (m), N.
     pub fn tangential_force(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
-        let rub = of_node(&self.friction_contacts, touch.node).find(|r| r.is_of(touch));
-        rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
+        let contact = of_node(&self.friction_contacts, touch.node).find(|r| r.is_of(touch));
+        contact.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
     /// Accepts the step from `start` to `end` (m): anchors follow sliding contacts; `slide` is the
@@ -271,8 +271,8 @@ impl ContactSet {
 
     /// Friction force of a contact on the cable at `x` (m), N.
     #[must_use]
-    pub fn friction_force(&self, rub: &FrictionContact, x: &[Vec2]) -> Vec2 {
-        -rub.tangent * friction::at(rub.sliding(x), rub.limit, self.slip).1
+    pub fn friction_force(&self, contact: &FrictionContact, x: &[Vec2]) -> Vec2 {
+        -contact.tangent * friction::at(contact.sliding(x), contact.limit, self.slip).1
     }
 
     /// Force of the cable on an obstacle, N.
@@ -284,8 +284,8 @@ impl ContactSet {
         for touch in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             sum -= touch.pair.gap.normal * touch.load(&self.barrier);
         }
-        for rub in self.friction_contacts.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
-            sum -= self.friction_force(rub, x);
+        for contact in self.friction_contacts.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
+            sum -= self.friction_force(contact, x);
         }
         sum
     }

@@ -97,8 +97,8 @@ impl FrictionMemory {
         let mut old = std::mem::take(&mut self.contacts);
         let mut all = std::mem::take(&mut self.spare);
         all.clear();
-        for rub in contacts.iter() {
-            all.push(RememberedContact::new(&rub.touch, friction::return_map(rub.sliding(end), slip)));
+        for contact in contacts.iter() {
+            all.push(RememberedContact::new(&contact.touch, friction::return_map(contact.sliding(end), slip)));
         }
         let now = all.len();
         for m in old.iter().filter(|m| m.age < remembered_steps) {
@@ -113,9 +113,9 @@ impl FrictionMemory {
         merge(known, lost, &mut old);
         (self.contacts, self.spare) = (old, all);
         // The friction in them is that of the accepted state, without a further slide.
-        for (rub, memory) in contacts.iter_mut().zip(&self.spare) {
-            rub.slid = memory.slid;
-            rub.origin = rub.touch.interpolate(end);
+        for (contact, memory) in contacts.iter_mut().zip(&self.spare) {
+            contact.slid = memory.slid;
+            contact.origin = contact.touch.interpolate(end);
         }
     }
 

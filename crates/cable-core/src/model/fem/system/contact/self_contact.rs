@@ -106,10 +106,14 @@ impl SelfContacts {
     pub fn commit(&mut self, end: &[Vec2], slip: f64, reach: f64) {
         self.shape.part(end, reach);
         self.memory.clear();
-        for rub in &mut self.friction_contacts {
-            rub.slid = friction::return_map(rub.sliding(end), slip);
-            rub.origin = rub.pair.difference(end);
-            self.memory.push(RememberedSlide { node: rub.pair.node, segment: rub.pair.segment, slid: rub.slid });
+        for contact in &mut self.friction_contacts {
+            contact.slid = friction::return_map(contact.sliding(end), slip);
+            contact.origin = contact.pair.difference(end);
+            self.memory.push(RememberedSlide {
+                node: contact.pair.node,
+                segment: contact.pair.segment,
+                slid: contact.slid,
+            });
         }
     }
 
@@ -180,9 +184,9 @@ pub fn add(
         value += b.value * pair.weight;
         size += b.value;
     }
-    for rub in &self_contacts.friction_contacts {
-        let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, slip);
-        let (t, shares) = (rub.pair.tangent(), rub.pair.shares());
+    for contact in &self_contacts.friction_contacts {
+        let (d, slope, bend) = friction::at(contact.sliding(x), contact.limit, slip);
+        let (t, shares) = (contact.pair.tangent(), contact.pair.shares());
         for (j, &(node, part)) in shares.iter().enumerate() {
             s.add_gradient(node, t * (slope * part));
             for &(other, its) in &shares[j..] {
