@@ -4,7 +4,7 @@
 
 use cable_core::record::Fingerprint;
 use cable_core::scene::catalog;
-use cable_core::solution::Going;
+use cable_core::solution::DriveState;
 use cable_core::{Model, Scene, Simulation, Solution};
 
 const FRAME_S: f64 = 1.0 / 60.0;
@@ -50,7 +50,7 @@ fn the_cable_ends_on_the_hitch_and_follows_it() {
     // Its speed comes smoothly: within 2 √(u/J) = 1.1 s.
     run(&mut s, &[], 0.5, |_| {});
     let r = s.solution().robot.unwrap();
-    assert!((r.speed_m_per_s - 0.6).abs() < 1e-9 && r.going == Going::Driving, "{r:?}");
+    assert!((r.speed_m_per_s - 0.6).abs() < 1e-9 && r.going == DriveState::Driving, "{r:?}");
     assert!(far < 1e-9, "the cable's end is {far} m off the hitch");
 }
 
@@ -64,7 +64,7 @@ fn at_the_end_of_its_cable_it_comes_to_a_stand() {
     run(&mut s, &[(0.0, Some(0.6))], 6.0, |_| {});
     let (r, answer) = (s.solution().robot.unwrap(), s.solution());
     assert!(r.speed_m_per_s.abs() < 0.02, "{r:?}");
-    assert!(matches!(r.going, Going::Stalled | Going::Slipping), "{r:?}");
+    assert!(matches!(r.going, DriveState::Stalled | DriveState::Slipping), "{r:?}");
     let pull = (r.hitch_x_n.powi(2) + r.hitch_y_n.powi(2)).sqrt();
     assert!(pull > 2000.0 && pull < 4600.0, "{pull} N, {} N", answer.max_tension().tension_n);
     assert!(answer.cables[0].breaks.is_empty());

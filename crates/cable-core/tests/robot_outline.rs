@@ -9,7 +9,7 @@ use cable_core::contact::Outline;
 use cable_core::problem::robot_outline;
 use cable_core::record::Fingerprint;
 use cable_core::scene::{Shape, catalog};
-use cable_core::solution::{ContactReport, Going, ModelReason, RobotReport, WarningKind};
+use cable_core::solution::{ContactReport, DriveState, ModelReason, RobotReport, WarningKind};
 use cable_core::{Model, Obstacle, Scene, Simulation, SolveError, Vec2};
 use segments::cross_properly;
 
@@ -190,7 +190,7 @@ fn squeezed_against_a_wall_it_jams() {
         // Its rear is 0.8 m behind its middle; not nearer to the wall than the cable is thick.
         let left = r.x_m - 0.8 - 7.0;
         assert!(left > 0.02 && left < 0.6, "{left}: {r:?}");
-        assert!(matches!(r.going, Going::Jammed | Going::Stalled | Going::Slipping), "{r:?}");
+        assert!(matches!(r.going, DriveState::Jammed | DriveState::Stalled | DriveState::Slipping), "{r:?}");
         // And it comes away again.
         drive(&mut s, 0.6, 2.0);
         assert!(robot(&s).x_m > r.x_m + 0.8, "{speed} m/s: {:?}", robot(&s));

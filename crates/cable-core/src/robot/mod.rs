@@ -57,7 +57,7 @@ use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
 use crate::scene::robot::{Pose, ROLLING_RESISTANCE, TRACK_FRICTION};
 use crate::scene::{Robot, RobotTask, Scene, View};
-use crate::solution::robot_report::{Going, RobotReport};
+use crate::solution::robot_report::{DriveState, RobotReport};
 
 /// Longest step of the vehicle, s: that of the cable. The taut spring of 10 m of a 2 MN cable and 1
 /// t swing at 14 rad/s, 17 times slower.
@@ -145,7 +145,7 @@ impl Vehicle {
         };
         let (sin, cos) = pose.pitch.sin_cos();
         let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
-        vehicle.update_report(Pulls::default(), forces, 0.0, Going::Standing);
+        vehicle.update_report(Pulls::default(), forces, 0.0, DriveState::Standing);
         Some(vehicle)
     }
 
@@ -230,7 +230,7 @@ impl Vehicle {
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
         self.report.pitch_deg = placement.angle.to_degrees();
         (self.report.speed_m_per_s, self.report.governor_m_per_s2) = (0.0, 0.0);
-        self.report.going = Going::Jammed;
+        self.report.going = DriveState::Jammed;
     }
 
     /// Kinetic energy, J.
@@ -339,7 +339,7 @@ impl Vehicle {
     }
 
     /// Ends a step in which the robot cannot advance: it stays in its place.
-    pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: Going) {
+    pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: DriveState) {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
         self.speed = 0.0;
@@ -428,7 +428,7 @@ impl Vehicle {
     }
 
     /// Renews the report of the vehicle.
-    fn update_report(&mut self, pulls: Pulls, forces: Forces, commanded: f64, going: Going) {
+    fn update_report(&mut self, pulls: Pulls, forces: Forces, commanded: f64, going: DriveState) {
         let Pulls { hitch, outline: push } = pulls;
         self.report = RobotReport {
             x_m: self.pose.at_m[0],

@@ -2,7 +2,7 @@
 //! resistance and the pull of the cable: this is where the cable holds the vehicle back.
 
 use crate::math::{bounded, larger, smaller};
-use crate::solution::robot_report::Going;
+use crate::solution::robot_report::DriveState;
 
 /// Slower than this it stands, m/s.
 const STANDSTILL_M_PER_S: f64 = 1e-4;
@@ -25,7 +25,7 @@ pub struct SpeedBalance {
     /// True if the tracks slip.
     pub(super) slips: bool,
     /// The state of the drive, and the reason why the vehicle is not faster.
-    pub(super) going: Going,
+    pub(super) going: DriveState,
 }
 
 /// The forces on a vehicle in a step other than those of its tracks, positive in the commanded
@@ -174,16 +174,16 @@ impl TrackGrip {
 
     /// Returns what a vehicle does that comes from one speed to another (m/s), and why it goes no
     /// faster.
-    fn going(&self, from: f64, to: f64, traction: Traction) -> Going {
+    fn going(&self, from: f64, to: f64, traction: Traction) -> DriveState {
         let against = if self.drives { -to } else { to.abs() };
         match (self.drives, traction) {
-            (_, Traction::Slips) if against > STANDSTILL_M_PER_S => Going::Dragged,
-            (_, Traction::Slips) => Going::Slipping,
-            (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
-            (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
+            (_, Traction::Slips) if against > STANDSTILL_M_PER_S => DriveState::Dragged,
+            (_, Traction::Slips) => DriveState::Slipping,
+            (false, _) if to.abs() < STANDSTILL_M_PER_S => DriveState::Standing,
+            (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => DriveState::Stalled,
             // A vehicle that still accelerates with its full drive counts as driving.
-            (true, _) if to < self.asked && to - from < STANDSTILL_M_PER_S => Going::Slowed,
-            _ => Going::Driving,
+            (true, _) if to < self.asked && to - from < STANDSTILL_M_PER_S => DriveState::Slowed,
+            _ => DriveState::Driving,
         }
     }
 }

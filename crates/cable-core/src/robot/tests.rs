@@ -29,7 +29,7 @@ fn step(v: &mut Vehicle, hitch: Vec2) {
             let balance = v.balance(drive, pulls);
             v.arrive(drive, to, speed, balance, balance.speed, pulls);
         }
-        None => v.stop(drive, pulls, Going::Blocked),
+        None => v.stop(drive, pulls, DriveState::Blocked),
     }
 }
 
@@ -58,7 +58,7 @@ fn its_speed_on_a_slope_is_that_of_the_balance() {
         let expected = (top * (1.0 - resistance / p)).min(top);
         assert!((v.speed - expected).abs() < 1e-9, "slope {slope}, {back_n} N: {} m/s, by hand {expected}", v.speed);
         let slowed = expected < top;
-        assert_eq!(v.report.going, if slowed { Going::Slowed } else { Going::Driving }, "slope {slope}");
+        assert_eq!(v.report.going, if slowed { DriveState::Slowed } else { DriveState::Driving }, "slope {slope}");
         assert!((v.report.thrust_n - resistance).abs() < 1e-6, "{} {resistance}", v.report.thrust_n);
         assert!((v.report.pitch_deg - theta.to_degrees()).abs() < 1e-9);
     }
@@ -69,7 +69,7 @@ fn half_speed_asked_is_half_speed_driven() {
     let mut v = on_slope(0.1, |_| {});
     v.command(Some(-0.3));
     run(&mut v, 5.0, Vec2::zeros());
-    assert!((v.speed + 0.3).abs() < 1e-12 && v.report.going == Going::Driving);
+    assert!((v.speed + 0.3).abs() < 1e-12 && v.report.going == DriveState::Driving);
     // It gains its speed u within 2 √(u/J), with half of it on average.
     let way = 0.3 * 5.0 - 0.3 * (0.3 / governor::MAX_JERK).sqrt();
     assert!((v.pose.at_m[0] + way * v.pose.pitch.cos()).abs() < 0.3 * STEP_S, "{:?}", v.pose);
@@ -85,7 +85,7 @@ fn it_stalls_just_beyond_its_drive_and_holds() {
         v.command(Some(top));
         run(&mut v, 20.0, Vec2::new(-most * share, 0.0));
         assert_eq!(v.speed > 1e-3, moves, "{share}: {}", v.speed);
-        assert_eq!(v.report.going, if moves { Going::Slowed } else { Going::Stalled }, "{share}");
+        assert_eq!(v.report.going, if moves { DriveState::Slowed } else { DriveState::Stalled }, "{share}");
         assert!(v.pose.at_m[0] >= 0.0, "brakes hold it: {:?}", v.pose);
     }
 }
@@ -99,16 +99,16 @@ fn it_slips_where_the_pull_exceeds_what_its_tracks_hold() {
     // The vehicle can only move if μN ≥ H + cN.
     let most = (mu - c) * m * G;
     for (pull, seconds, expected) in [
-        (0.98 * most, 60.0, Going::Slowed),
-        (1.02 * most, 4.0, Going::Slipping),
-        (0.99 * (mu + c) * m * G, 4.0, Going::Slipping),
-        (1.05 * (mu + c) * m * G, 4.0, Going::Dragged),
+        (0.98 * most, 60.0, DriveState::Slowed),
+        (1.02 * most, 4.0, DriveState::Slipping),
+        (0.99 * (mu + c) * m * G, 4.0, DriveState::Slipping),
+        (1.05 * (mu + c) * m * G, 4.0, DriveState::Dragged),
     ] {
         let mut v = on_slope(0.0, slippery);
         v.command(Some(top));
         run(&mut v, seconds, Vec2::new(-pull, 0.0));
         assert_eq!(v.report.going, expected, "{pull} N of {most} N: {} m/s", v.speed);
-        if expected == Going::Dragged {
+        if expected == DriveState::Dragged {
             // It slides back with what friction and rolling leave.
             let slid = -(pull - (mu + c) * m * G) / m * 4.0;
             assert!((v.speed / slid - 1.0).abs() < 1e-9, "{} {slid}", v.speed);
@@ -118,7 +118,7 @@ fn it_slips_where_the_pull_exceeds_what_its_tracks_hold() {
     let mut v = on_slope(0.0, slippery);
     v.command(Some(top));
     run(&mut v, 4.0, Vec2::new(-0.8 * most, 0.5 * m * G));
-    assert_eq!(v.report.going, Going::Slipping);
+    assert_eq!(v.report.going, DriveState::Slipping);
     assert!((v.report.normal_n - 0.5 * m * G).abs() < 1e-9);
 }
 
@@ -127,7 +127,7 @@ fn brakes_hold_on_a_slope_that_friction_holds() {
     for (slope, holds) in [(0.19, true), (0.3, false)] {
         let mut v = on_slope(slope, |r| r.track_friction = Some(0.2));
         run(&mut v, 2.0, Vec2::zeros());
-        let expected = if holds { Going::Standing } else { Going::Dragged };
+        let expected = if holds { DriveState::Standing } else { DriveState::Dragged };
         assert_eq!((v.speed == 0.0, v.report.going), (holds, expected), "{slope}: {}", v.speed);
     }
 }
@@ -167,11 +167,11 @@ fn it_stops_at_a_wall_and_at_the_end_of_the_ground() {
     v.command(Some(0.8));
     run(&mut v, 20.0, Vec2::zeros());
     assert!(v.pose.at_m[0] < 5.0 && v.pose.at_m[0] > 4.0, "{:?}", v.report);
-    assert_eq!(v.report.going, Going::Blocked);
+    assert_eq!(v.report.going, DriveState::Blocked);
     let mut v = on_slope(0.0, |r| r.at_m[0] = 499.0);
     v.command(Some(0.8));
     run(&mut v, 10.0, Vec2::zeros());
-    assert!(v.report.going == Going::Blocked && v.pose.at_m[0] < 500.0);
+    assert!(v.report.going == DriveState::Blocked && v.pose.at_m[0] < 500.0);
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn a_swinging_pull_draws_it_on_only_while_it_is_less_than_the_drive() {
         let mut v = on_slope(0.0, |_| {});
         v.command(Some(top));
         run(&mut v, 3.0, Vec2::new(-mean * most, 0.0));
-        assert!(v.speed == 0.0 && v.report.going == Going::Stalled, "{:?}", v.report);
+        assert!(v.speed == 0.0 && v.report.going == DriveState::Stalled, "{:?}", v.report);
         let x = v.pose.at_m[0];
         for k in 0..1200_u32 {
             let swing = if k % 24 < 12 { 0.15 } else { -0.15 };
@@ -269,7 +269,7 @@ fn dragged_back_it_slides_until_its_tracks_have_stopped_it() {
     let [m, _, top, c] = figures(&v);
     v.command(Some(top));
     run(&mut v, 1.0, Vec2::new(-1.2 * (0.45 + c) * m * G, 0.0));
-    assert!(v.speed < -0.5 && v.report.going == Going::Dragged, "{:?}", v.report);
+    assert!(v.speed < -0.5 && v.report.going == DriveState::Dragged, "{:?}", v.report);
     let (mut before, brakes) = (v.speed, (0.45 + c) * G);
     while v.speed < 0.0 {
         step(&mut v, Vec2::zeros());

@@ -22,7 +22,7 @@ use crate::model::Inertia;
 use crate::robot::{self, Drive, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
 use crate::simulated_cable::SimulatedCable;
-use crate::solution::{Cost, Going, Warning, WarningCause};
+use crate::solution::{Cost, DriveState, Warning, WarningCause};
 
 /// Part of a step by which a time may exceed a whole number of steps: round-off. Smaller: one more
 /// step of nearly no length; larger: steps longer than the longest.
@@ -58,7 +58,7 @@ enum TrialOutcome {
     /// The speed to try next, m/s.
     Again(f64),
     /// It cannot go on, and why.
-    Stuck(Going),
+    Stuck(DriveState),
 }
 
 impl Simulation {
@@ -133,12 +133,12 @@ impl Simulation {
         speed: f64,
         search: &mut SpeedSearch,
     ) -> TrialOutcome {
-        let Some(to) = start.pose_at_speed(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
+        let Some(to) = start.pose_at_speed(drive, speed) else { return TrialOutcome::Stuck(DriveState::Blocked) };
         self.send_robot_pose(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
         if self.for_each_cable(|c| c.advance(step.step_s, step.inertia)).is_err() {
             // The cable cannot move out of the robot's way.
-            return TrialOutcome::Stuck(Going::Jammed);
+            return TrialOutcome::Stuck(DriveState::Jammed);
         }
         let pulls = self.pulls(step.hitches);
         let balance = start.balance(drive, pulls);

@@ -37,7 +37,7 @@ pub use self::energy_account::EnergyAccount;
 pub use self::error_estimates::ErrorEstimates;
 pub use self::inertia_effect::{InertiaEffect, MotionNumbers};
 pub use self::model_reason::{AssumedStiffness, LikelyBending, ModelReason};
-pub use self::robot_report::{Going, RobotReport, RobotWork};
+pub use self::robot_report::{DriveState, RobotReport, RobotWork};
 pub use self::shared_nodes::SharedNodes;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};

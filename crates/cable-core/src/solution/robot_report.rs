@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// State of its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Going {
+pub enum DriveState {
     /// The robot has no command and stands.
     #[default]
     Standing,
@@ -26,7 +26,7 @@ pub enum Going {
     Jammed,
 }
 
-impl Going {
+impl DriveState {
     /// In words.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -108,7 +108,7 @@ pub struct RobotReport {
     #[serde(default)]
     pub work: RobotWork,
     /// The reason for the present speed.
-    pub going: Going,
+    pub going: DriveState,
     /// The leg of its path it is on; None by hand or at the end.
     pub leg: Option<usize>,
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Energy, Going, ModelReason, Node, RobotReport, RobotWork,
+    CableSolution, ContactReport, ContactState, Cost, DriveState, Energy, ModelReason, Node, RobotReport, RobotWork,
     Solution, SupportReaction, Warning, WarningCause, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
@@ -225,7 +225,7 @@ pub fn driven() -> AppState {
         traction_n: 4325.0,
         hitch_x_n: -980.0,
         hitch_y_n: 212.0,
-        going: Going::Slowed,
+        going: DriveState::Slowed,
         leg: Some(0),
         work: RobotWork {
             drive_j: 2874.0,

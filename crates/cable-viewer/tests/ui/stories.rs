@@ -2,7 +2,7 @@
 
 use cable_core::record::read_history;
 use cable_core::scene::catalog;
-use cable_core::solution::{Going, RobotReport};
+use cable_core::solution::{DriveState, RobotReport};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
 use cable_viewer::state::Item;
@@ -41,14 +41,14 @@ fn s06_keys_drive_the_robot_and_the_cable_follows() {
     assert_eq!(state.live.snapshot.error, None);
     assert!(!state.live.playback.paused, "who drives sees time run");
     let driven = robot(&harness);
-    assert!(driven.x_m > start.x_m + 0.3 && driven.going == Going::Driving, "{driven:?}");
+    assert!(driven.x_m > start.x_m + 0.3 && driven.going == DriveState::Driving, "{driven:?}");
     let end = harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().copied().unwrap();
     assert!((end.x_m - (driven.x_m - 0.9)).abs() < 0.02, "{} {}", end.x_m, driven.x_m);
     // With limited acceleration and jerk it stops from its 0.8 m/s within 1.3 s.
     hold(&mut harness, Key::D, false);
     harness.run_steps(90);
     let stopped = robot(&harness);
-    assert!(stopped.speed_m_per_s == 0.0 && stopped.going == Going::Standing, "{stopped:?}");
+    assert!(stopped.speed_m_per_s == 0.0 && stopped.going == DriveState::Standing, "{stopped:?}");
     hold(&mut harness, Key::A, true);
     harness.run_steps(30);
     assert!(robot(&harness).speed_m_per_s < -0.2);
@@ -153,7 +153,7 @@ fn s17_the_robot_says_that_its_cable_holds_it() {
     let r = robot(&harness);
     assert!(r.speed_m_per_s.abs() < 0.05, "{r:?}");
     // While its tracks slip, the swing of the cable may draw it back at this instant.
-    let held = [Going::Stalled, Going::Slipping, Going::Slowed, Going::Dragged];
+    let held = [DriveState::Stalled, DriveState::Slipping, DriveState::Slowed, DriveState::Dragged];
     assert!(held.contains(&r.going), "{r:?}");
     harness.get_by_label(r.going.name());
     assert!(!harness.state().state.live.recording.events().is_empty(), "the pull beyond the service tension is marked");

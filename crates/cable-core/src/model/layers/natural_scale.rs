@@ -248,6 +248,8 @@ impl Layer for ScaledModel {
         StepReport { cost, warnings: report.warnings.into_iter().map(warning).collect() }
     }
 
+    /// An error of the inner model with the lengths, places and times of the outer scene; forces
+    /// are the same in both.
     fn outer_error(&self, error: SolveError) -> SolveError {
         let (l, t) = (self.by.length, self.by.time);
         match error {

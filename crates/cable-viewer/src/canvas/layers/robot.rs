@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::problem::OUTLINE_NAME;
 use cable_core::scene::preset::RobotPreset;
 use cable_core::scene::{Heading, Pose, View};
-use cable_core::solution::Going;
+use cable_core::solution::DriveState;
 use egui::{Color32, Mesh, Pos2, Stroke};
 
 use crate::canvas::canvas_view::CanvasView;
@@ -25,7 +25,7 @@ pub fn title(state: &AppState) -> Option<(Point, String)> {
     let (pose, preset) = robot_pose(state)?;
     let going = state.live.snapshot.solution.as_ref().and_then(|s| s.robot).map(|r| r.going);
     let text = match going {
-        None | Some(Going::Standing | Going::Driving) => preset.name.clone(),
+        None | Some(DriveState::Standing | DriveState::Driving) => preset.name.clone(),
         Some(going) => format!("{}: {}", preset.name, going.name()),
     };
     let top = match state.document.scene.view {

@@ -149,7 +149,7 @@ impl Exploration<'_> {
         for low in cells {
             let agree = self.agree(low, stride);
             if agree {
-                self.fill(low, stride);
+                self.interpolate_cell(low, stride);
             }
             for at in self.cell(low, stride) {
                 (if agree { &mut inside } else { &mut open })[at] = true;
@@ -296,7 +296,7 @@ impl Exploration<'_> {
         for low in around.iter().copied() {
             let is_known = |k: &usize| around.contains(k) && self.is_decided(*k);
             if self.corners(low, stride).iter().all(is_known) && self.is_empty(low, stride) {
-                self.fill(low, stride);
+                self.interpolate_cell(low, stride);
             }
         }
     }
@@ -307,8 +307,9 @@ impl Exploration<'_> {
         (known || settled) && self.found.most_n[place].is_finite()
     }
 
-    /// Fills a cell of a grid from its corners.
-    fn fill(&mut self, low: usize, stride: usize) {
+    /// Gives the places of a cell whose tension is not known that between its corners (N),
+    /// bilinear; the cell has `stride` places a side from its lower left one, `low`.
+    fn interpolate_cell(&mut self, low: usize, stride: usize) {
         let [a, b, c, d] = self.corners(low, stride).map(|k| self.found.most_n[k]);
         for k in 0..(stride + 1) * (stride + 1) {
             let [i, j] = [k % (stride + 1), k / (stride + 1)];
@@ -385,7 +386,7 @@ impl Exploration<'_> {
         let mut most = self.tension_n(simulation);
         for k in 1..=steps as usize {
             let ends = [k - 1, k].map(|k| from + (to - from) * (k as f64 / steps));
-            most = larger(most, self.go_with_retries(simulation, ends)?);
+            most = larger(most, self.step_with_retries(simulation, ends)?);
             if !(most <= UNREACHABLE_FACTOR * self.found.breaking_n) {
                 return Some(f64::INFINITY);
             }
@@ -393,9 +394,10 @@ impl Exploration<'_> {
         Some(most)
     }
 
-    /// Takes a step; if it has no answer, or a doubtful one, it is taken in parts and with the
-    /// cable laid anew.
-    fn go_with_retries(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
+    /// Moves the end from one place to another in a step; without an answer, or with a doubtful
+    /// one, it tries again in parts and from the cable at rest. Returns the smallest tension found
+    /// (N), None without an answer.
+    fn step_with_retries(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
         let before = simulation.clone();
         let before_n = self.tension_n(&before);
         let good = |simulation: &Simulation, n: Option<f64>| {
@@ -404,13 +406,13 @@ impl Exploration<'_> {
         };
         let mut found_n = self.step(simulation, ends, 1);
         for (parts, start) in
-            [(RETRY_PARTS, RetryStart::AsItIs), (1, RetryStart::LaidAnew), (RETRY_PARTS, RetryStart::LaidAnew)]
+            [(RETRY_PARTS, RetryStart::AsItIs), (1, RetryStart::AtRest), (RETRY_PARTS, RetryStart::AtRest)]
         {
             if good(simulation, found_n) {
                 break;
             }
             let mut other = before.clone();
-            if start == RetryStart::LaidAnew && other.resume(&at_rest(&before.solution())).is_err() {
+            if start == RetryStart::AtRest && other.resume(&at_rest(&before.solution())).is_err() {
                 continue;
             }
             if let Some(n) = self.step(&mut other, ends, parts)
@@ -448,5 +450,5 @@ enum RetryStart {
     /// The state before it.
     AsItIs,
     /// The state before, with the cable brought to rest anew.
-    LaidAnew,
+    AtRest,
 }

@@ -82,13 +82,14 @@ impl RoutePolyline {
         found
     }
 
-    /// The stretch about a length along it that is no farther than `within` (m) from a point.
-    pub fn beside(&self, center: Vec2, w: f64, within: f64) -> [f64; 2] {
+    /// The stretch about the length `w` along it that is no farther than `within` (m) from a point:
+    /// the lengths along it at which it begins and ends, m.
+    pub fn stretch_within(&self, center: Vec2, w: f64, within: f64) -> [f64; 2] {
         let leg = self.leg(w);
         let Some(at) = self.point(w) else { return [w; 2] };
         let before = (0..=leg).rev().map(|k| (self.along[k], self.points[k]));
         let after = (leg + 1..self.points.len()).map(|k| (self.along[k], self.points[k]));
-        let goes = |way: &mut dyn Iterator<Item = (f64, Vec2)>| {
+        let last_within = |way: &mut dyn Iterator<Item = (f64, Vec2)>| {
             let mut last = (w, at);
             for next in way {
                 if (next.1 - center).norm() > within {
@@ -98,7 +99,7 @@ impl RoutePolyline {
             }
             last.0
         };
-        [goes(&mut before.into_iter()), goes(&mut after.into_iter())]
+        [last_within(&mut before.into_iter()), last_within(&mut after.into_iter())]
     }
 
     /// Distance of the point at a length along it from another, m.

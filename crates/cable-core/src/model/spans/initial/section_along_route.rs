@@ -60,7 +60,8 @@ struct TautString {
 }
 
 impl FirstGuess<'_> {
-    /// The section laid along the route.
+    /// The section laid along the route; None if its string is not found, or one of its spans has
+    /// no solution.
     fn section(&self) -> Option<CableSection> {
         let Self { layout, part, context, instant, way, .. } = *self;
         if !(way.total() > 0.0) {
@@ -244,7 +245,7 @@ impl FirstGuess<'_> {
                 // The route may be drawn round it: these are its first and last points there.
                 let radius = context.curves[curve].place(0.0, chain_range).stretch;
                 let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
-                let round = way.beside(stop, w, near);
+                let round = way.stretch_within(stop, w, near);
                 out.push(RouteWrap {
                     curve,
                     chain_range,
@@ -313,7 +314,7 @@ impl SpreadAlongRoute {
     }
 }
 
-/// Solves the forces of spans whose ends and material are known.
+/// Solves the forces of spans whose ends and material are known; None if one has no solution.
 pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, context: &SolveContext) -> Option<()> {
     for k in 0..section.spans() {
         if section.has_span(k) {

@@ -195,7 +195,8 @@ impl RouteDraining<'_> {
         Some(())
     }
 
-    /// The surface on which it falls, on a stretch where the order of the surfaces does not change.
+    /// Appends the surfaces on which the route falls to `out`, with their ranges of u, on a stretch
+    /// where the order of the surfaces does not change; None if there is none below a part of it.
     fn between(
         &self,
         low: f64,
