@@ -9,7 +9,7 @@
 use cable_core::contact::World;
 use cable_core::math::vec2;
 use cable_core::scene::Cable;
-use cable_core::{Model, Simulation, SolveError};
+use cable_core::{Model, Robot, Simulation, SolveError};
 
 use crate::worker::request::Edit;
 use crate::worker::timing::FRAME_S;
@@ -155,6 +155,14 @@ fn reaches_into_new_obstacle(edit: &Edit, old: &Simulation, depth: impl Fn(&Cabl
         let mut points = state.position_m.iter().skip(1).take(inner);
         points.any(|&p| world.signed_gap(p, SEARCH_RADIUS_M).is_some_and(|gap| gap.gap_m < -depth))
     })
+}
+
+/// Returns whether an edit puts the robot elsewhere, turns it or makes it another one: in motion the
+/// cable would be carried to a place that the robot has left, and the hitch with it.
+#[must_use]
+pub fn begins_another_run(edit: &Edit, old: &Simulation) -> bool {
+    let start = |robot: &Robot| (robot.preset.clone(), robot.at_m, robot.heading);
+    edit.scene.robot.as_ref().map(start) != old.scene().robot.as_ref().map(start)
 }
 
 /// Returns whether the cables are the same ones, so that where they are can be carried over.

@@ -21,6 +21,7 @@ mod layers;
 mod layout;
 mod leaving;
 mod outline;
+mod pauses;
 mod pictures;
 mod playing;
 mod precision;

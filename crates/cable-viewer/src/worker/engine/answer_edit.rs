@@ -26,6 +26,10 @@ impl Engine {
         let (true, Some(old)) = (later && same && slow, self.run.as_ref().map(Run::simulation)) else {
             return false;
         };
+        // The answer is another run from its start on, not a splice of both.
+        if old.time_s() > 0.0 && draft::begins_another_run(edit, old) {
+            return false;
+        }
         let falls = draft::settling_draft(edit, old);
         let settling = falls.is_some();
         // Models without a mesh have no fewer segments to be asked with.
@@ -63,6 +67,7 @@ impl Engine {
         // model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.filter(|o| same_model || o.time_s() > 0.0);
+        let from = from.filter(|o| o.time_s() <= 0.0 || !draft::begins_another_run(&edit, o));
         // Before time has run there is nothing to go on from, whether or not it is to run next.
         let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
         self.outbox.routes.clear();

@@ -1,0 +1,100 @@
+//! These tests edit the scene in a pause, when time has run: what the edit concerns changes, the
+//! rest of the motion stays as it is, and what cannot go on is another run.
+
+use cable_core::scene::{Heading, catalog};
+use cable_core::wording::Sentence;
+use cable_core::{Robot, Solution, UnitSystem};
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::state::{AppState, Item};
+use egui::{Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::{apply, open, select};
+
+fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
+    &harness.state().state
+}
+
+fn answer(harness: &Harness<'_, ViewerApp>) -> Solution {
+    state(harness).live.snapshot.solution.as_deref().expect("an answer").clone()
+}
+
+/// Lets time run for a number of frames, and pauses.
+fn run(harness: &mut Harness<'_, ViewerApp>, frames: usize) {
+    harness.key_press(Key::Space);
+    harness.run_steps(frames);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    assert!(state(harness).live.playback.paused);
+}
+
+fn undo(harness: &mut Harness<'_, ViewerApp>) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(4);
+}
+
+/// Returns time, places, tensions and velocities of all nodes.
+fn motion(answer: &Solution) -> impl PartialEq + std::fmt::Debug + use<> {
+    let nodes = answer.cables.iter().flat_map(|c| &c.nodes);
+    let nodes = nodes.map(|n| [n.arc_length_m, n.x_m, n.y_m, n.tension_n, n.vx_m_per_s, n.vy_m_per_s]);
+    (answer.time_s, nodes.collect::<Vec<_>>())
+}
+
+fn edit_cable(harness: &mut Harness<'_, ViewerApp>, change: impl FnOnce(&mut cable_core::Cable)) {
+    let mut cable = state(harness).document.scene.cables[0].clone();
+    change(&mut cable);
+    apply(harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    apply(harness, Command::Scene(SceneCommand::EditDone));
+}
+
+/// Issue 20: after four seconds of play the start of the robot was typed 4 m from where it had
+/// been. Time stayed at 4.05 s, the robot stood at its new start and the cable over it, the sign of
+/// the hitch beside both, and undo did not lead back.
+#[test]
+fn issue_020_a_far_start_of_the_robot_is_another_run_and_not_a_splice() {
+    let scene = catalog::tank_robot();
+    let robot = scene.robot.clone().unwrap();
+    let far = Robot { at_m: [1.6, robot.at_m[1]], ..robot.clone() };
+    let turned = Robot { at_m: [2.6, robot.at_m[1]], heading: Heading::Left, ..robot };
+    for robot in [far, turned] {
+        let mut harness = open(scene.clone());
+        run(&mut harness, 240);
+        let end = answer(&harness);
+        assert!(end.time_s > 3.9);
+        apply(&mut harness, Command::Scene(SceneCommand::SetRobot(Some(robot.clone()))));
+        apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+        let now = answer(&harness);
+        assert_eq!(now.time_s, 0.0, "{robot:?}: another start is another run");
+        let said: Vec<String> = now.warnings.iter().map(|w| w.sentence(UnitSystem::Si)).collect();
+        assert!(!said.iter().any(|w| w.contains("cannot reach")), "{said:?}");
+        let hitch = state(&harness).document.scene.hitch_m().unwrap();
+        let end_of_cable = now.cables[0].nodes.last().unwrap();
+        assert!((end_of_cable.x_m - hitch[0]).hypot(end_of_cable.y_m - hitch[1]) < 1e-3);
+        undo(&mut harness);
+        assert_eq!(state(&harness).document.scene, scene);
+        assert_eq!(motion(&answer(&harness)), motion(&end), "undo leads back to the end of the first run");
+    }
+}
+
+/// Issue 20: a robot that was dragged at the start, and whose drag was taken back after some time,
+/// was put into the motion of the other run.
+#[test]
+fn issue_020_the_undo_of_a_robots_start_is_the_start_of_that_scene() {
+    let scene = catalog::tank_robot();
+    let mut harness = open(scene.clone());
+    let first = answer(&harness);
+    let at = scene.robot.as_ref().unwrap().at_m;
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m: [at[0] - 1.0, at[1]] }));
+    apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+    run(&mut harness, 120);
+    let recorded = state(&harness).live.recording.span_s();
+    undo(&mut harness);
+    assert_eq!(state(&harness).document.scene, scene);
+    assert_eq!(motion(&answer(&harness)), motion(&first));
+    // What has run is kept.
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run_steps(4);
+    assert_eq!(state(&harness).live.recording.span_s(), recorded);
+}
