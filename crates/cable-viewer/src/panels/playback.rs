@@ -196,7 +196,15 @@ fn pace(state: &AppState) -> StatusItem {
     let item = |text: String, help: String, tone| StatusItem { text, help, tone, importance: Importance::Time };
     // The last frame keeps the speed that it was reached at.
     let Some(reached) = state.live.snapshot.real_speed.filter(|_| !state.live.playback.paused) else {
+        let at_rest = state.live.snapshot.brought_to_rest && state.live.recording.shown_s.is_none();
         return match state.live.playback.paused {
+            true if at_rest => item(
+                "Brought to rest by the edit".to_owned(),
+                "The edit changes what moves the cable: the place where it rests at this time is shown, and time goes on from \
+                 there"
+                    .to_owned(),
+                Tone::Plain,
+            ),
             true => item("Paused".to_owned(), "Time stands still".to_owned(), Tone::Weak),
             false => item("Starting…".to_owned(), "The first step is being made".to_owned(), Tone::Weak),
         };

@@ -280,6 +280,8 @@ pub struct Snapshot {
     pub draft: bool,
     /// `solution` says nothing yet of what other histories would have left: they are being sought.
     pub seeks_histories: bool,
+    /// `solution` was in motion until the last edit, which brought it to rest.
+    pub brought_to_rest: bool,
     /// Simulated seconds per second actually reached; None while paused.
     pub real_speed: Option<f64>,
     /// Number of the last edit it includes.

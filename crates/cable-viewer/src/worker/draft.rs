@@ -9,7 +9,7 @@
 use cable_core::contact::World;
 use cable_core::math::vec2;
 use cable_core::scene::Cable;
-use cable_core::{Model, Robot, Simulation, SolveError};
+use cable_core::{Model, Robot, Scene, Simulation, SolveError};
 
 use crate::worker::request::Edit;
 use crate::worker::timing::FRAME_S;
@@ -157,19 +157,42 @@ fn reaches_into_new_obstacle(edit: &Edit, old: &Simulation, depth: impl Fn(&Cabl
     })
 }
 
-/// Returns whether an edit puts the robot elsewhere, turns it or makes it another one: in motion the
-/// cable would be carried to a place that the robot has left, and the hitch with it.
+/// Returns whether an edit puts the robot elsewhere, turns it or makes it another one: in motion
+/// the cable would be carried to a place that the robot has left, and the hitch with it.
 #[must_use]
 pub fn begins_another_run(edit: &Edit, old: &Simulation) -> bool {
     let start = |robot: &Robot| (robot.preset.clone(), robot.at_m, robot.heading);
     edit.scene.robot.as_ref().map(start) != old.scene().robot.as_ref().map(start)
 }
 
-/// Returns whether the cables are the same ones, so that where they are can be carried over.
+/// Returns whether two scenes differ at most in names and limits, which no motion depends on.
+#[must_use]
+pub fn have_the_same_motion(a: &Scene, b: &Scene) -> bool {
+    of_motion(a.clone()) == of_motion(b.clone())
+}
+
+/// A scene without names and limits: cables are told apart by their place.
+fn of_motion(mut scene: Scene) -> Scene {
+    scene.name.clear();
+    for (k, cable) in scene.cables.iter_mut().enumerate() {
+        let name = std::mem::replace(&mut cable.name, k.to_string());
+        for load in scene.loads.iter_mut().filter(|load| load.cable == name) {
+            load.cable.clone_from(&cable.name);
+        }
+        (cable.service_tension_n, cable.breaking_tension_n) = (0.0, 0.0);
+        (cable.min_bend_radius_m, cable.sidewall_limit_n_per_m) = (0.0, None);
+        cable.preset = None;
+        cable.supports.iter_mut().for_each(|support| support.name.clear());
+    }
+    scene.obstacles.iter_mut().for_each(|obstacle| obstacle.name.clear());
+    scene
+}
+
+/// Returns whether the cables are the same ones, so that where they are can be carried over: they
+/// are told apart by their place, since a name may be edited.
 #[must_use]
 pub fn same_cables(edit: &Edit, old: &Simulation) -> bool {
-    let (a, b) = (&old.scene().cables, &edit.scene.cables);
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
+    old.scene().cables.len() == edit.scene.cables.len()
 }
 
 #[cfg(test)]

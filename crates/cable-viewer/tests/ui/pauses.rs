@@ -98,3 +98,59 @@ fn issue_020_the_undo_of_a_robots_start_is_the_start_of_that_scene() {
     harness.run_steps(4);
     assert_eq!(state(&harness).live.recording.span_s(), recorded);
 }
+
+/// Issue 20: in a pause a service tension was typed, and the cable was at rest without a word:
+/// 211.4 for 212.3 N, which undo did not bring back.
+#[test]
+fn issue_020_a_limit_or_a_name_typed_in_a_pause_leaves_the_motion_to_the_bit() {
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 180);
+    let before = answer(&harness);
+    let figures = motion(&before);
+    let service_n = 0.5 * before.max_tension().tension_n;
+    edit_cable(&mut harness, |c| c.service_tension_n = service_n);
+    let now = answer(&harness);
+    assert_eq!(motion(&now), figures);
+    let said: Vec<String> = now.warnings.iter().map(|w| w.sentence(UnitSystem::Si)).collect();
+    assert!(said.iter().any(|w| w.contains("service")), "it is judged anew: {said:?}");
+    edit_cable(&mut harness, |c| c.breaking_tension_n *= 2.0);
+    edit_cable(&mut harness, |c| c.min_bend_radius_m *= 2.0);
+    edit_cable(&mut harness, |c| c.supports[0].name = "entry".to_owned());
+    apply(&mut harness, Command::Scene(SceneCommand::SetName("Another name".to_owned())));
+    assert_eq!(motion(&answer(&harness)), figures);
+    for _ in 0..5 {
+        undo(&mut harness);
+        assert_eq!(motion(&answer(&harness)), figures);
+    }
+    assert!(harness.query_by_label_contains("Brought to rest").is_none());
+    assert!(!state(&harness).live.snapshot.peaks.is_empty(), "the greatest of the run is known on");
+}
+
+/// Issue 20: what changes the motion brings the cable to rest in a pause, and nothing said so.
+#[test]
+fn issue_020_an_edit_that_brings_the_cable_to_rest_says_so() {
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 60);
+    edit_cable(&mut harness, |c| c.linear_density_kg_per_m *= 1.1);
+    assert!(answer(&harness).time_s > 0.9);
+    harness.get_by_label("Brought to rest by the edit");
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Brought to rest by the edit").is_none());
+}
+
+/// Issue 20: another name for a cable, typed in a pause, ended the run.
+#[test]
+fn issue_020_a_cable_that_gets_another_name_in_a_pause_goes_on() {
+    for frames in [0, 60] {
+        let mut harness = open(catalog::tank_robot());
+        if frames > 0 {
+            run(&mut harness, frames);
+        }
+        let before = answer(&harness);
+        edit_cable(&mut harness, |c| c.name = "tether".to_owned());
+        let now = answer(&harness);
+        assert_eq!(motion(&now), motion(&before));
+        assert_eq!(now.cables[0].name, "tether");
+    }
+}

@@ -26,14 +26,14 @@ impl Engine {
         let (true, Some(old)) = (later && same && slow, self.run.as_ref().map(Run::simulation)) else {
             return false;
         };
-        // The answer is another run from its start on, not a splice of both.
-        if old.time_s() > 0.0 && draft::begins_another_run(edit, old) {
+        // The answer is another run from its start on, or the same motion: neither is drafted.
+        if old.time_s() > 0.0 && (draft::begins_another_run(edit, old) || self.keeps_motion(edit)) {
             return false;
         }
         let falls = draft::settling_draft(edit, old);
         let settling = falls.is_some();
         // Models without a mesh have no fewer segments to be asked with.
-        let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.0);
+        let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.simulation);
         let draft = if is_quasi_static(old.model()) { falls } else { falls.or_else(coarse) };
         let Some(draft) = draft else { return false };
         self.run = Some(Run::new(draft, RunStart::Lost));
@@ -56,11 +56,12 @@ impl Engine {
     /// Answers an edit: from the present state, or at rest if time has not run.
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
+        let keeps_motion = self.keeps_motion(&edit);
         if edit.start == EditStart::NewScene {
             (self.run, self.ended_run) = (None, None);
             self.outbox.restart();
         }
-        let before = self.run.take();
+        let mut before = self.run.take();
         let old = before.as_ref().map(Run::simulation);
         self.steering.hand = None;
         // Models are compared by what they answer for the scene as laid, not for where another
@@ -78,7 +79,12 @@ impl Engine {
         let rebuilt = if at_rest {
             self.settle_edit(&mut edit, from).map(|s| Run::new(s, RunStart::Settled))
         } else {
-            self.rebuild(&edit, from).map(|(s, start)| Run::after(before.as_ref(), s).with_start(start))
+            self.rebuild(&edit, from).map(|rebuilt| rebuilt.run(before.as_ref()))
+        };
+        let rebuilt = match (rebuilt, &mut before) {
+            // The figures of the run so far are those of the same motion.
+            (Ok(run), before) if keeps_motion && !at_rest => Ok(run.with_figures_of(before.take())),
+            (rebuilt, _) => rebuilt,
         };
         self.edit = Some(edit);
         self.wall_times.solve_s = began.elapsed().as_secs_f64();
@@ -140,31 +146,42 @@ impl Engine {
         }
     }
 
-    /// The simulation of an edited scene, carrying over where the cables are, and its start.
-    pub(super) fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, RunStart), Error> {
+    /// Returns whether an edit leaves the motion of the answer on screen as it is.
+    fn keeps_motion(&self, edit: &Edit) -> bool {
+        let same = |last: &Edit| {
+            last.model == edit.model
+                && last.settings == edit.settings
+                && draft::have_the_same_motion(&last.scene, &edit.scene)
+        };
+        matches!(self.phase, Phase::Answer) && self.edit.as_ref().is_some_and(same)
+    }
+
+    /// The simulation of an edited scene, carrying over where the cables are.
+    fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<Rebuilt, Error> {
         let time_s = old.map_or(0.0, Simulation::time_s);
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
         let question = if moves { MOTION } else { Question::Rest };
         let mut is_new_scene = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
         let is_playing = time_s > 0.0 && !self.playback.paused;
+        let keeps_motion = self.keeps_motion(edit);
         let stays_inside = if is_playing { draft::is_left_inside_new_obstacle } else { draft::penetrates_new_obstacle };
         if let Some(old) = old
             && draft::same_cables(edit, old)
-            && !stays_inside(edit, old)
+            && (keeps_motion || !stays_inside(edit, old))
         {
             let mut carried = is_new_scene.clone();
             if carried.carry(old).is_ok() {
-                if !self.playback.paused {
-                    return Ok((carried, RunStart::Lost));
+                if !self.playback.paused || (keeps_motion && time_s > 0.0) {
+                    return Ok(Rebuilt { simulation: carried, outcome: EditOutcome::GoesOn });
                 }
                 if carried.settle().is_ok() {
-                    let start = if time_s <= 0.0 { RunStart::Settled } else { RunStart::Lost };
-                    return Ok((carried, start));
+                    let outcome = if time_s <= 0.0 { EditOutcome::Settled } else { EditOutcome::BroughtToRest };
+                    return Ok(Rebuilt { simulation: carried, outcome });
                 }
             }
         }
         is_new_scene.settle()?;
-        Ok((is_new_scene, RunStart::Settled))
+        Ok(Rebuilt { simulation: is_new_scene, outcome: EditOutcome::Settled })
     }
 
     /// Lays the scene on screen once more and asks what other histories would have left. The rest
@@ -177,6 +194,35 @@ impl Engine {
         }
         self.sample();
         self.show(Ok(()));
+    }
+}
+
+/// The simulation of an edited scene.
+struct Rebuilt {
+    simulation: Simulation,
+    outcome: EditOutcome,
+}
+
+/// The effect of an edit on the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum EditOutcome {
+    /// The motion goes on.
+    GoesOn,
+    /// The cables were moving, and rest where they are now.
+    BroughtToRest,
+    /// The cables rest, and a run begins.
+    Settled,
+}
+
+impl Rebuilt {
+    /// The run that takes the place of the one `before`.
+    fn run(self, before: Option<&Run>) -> Run {
+        let run = Run::after(before, self.simulation);
+        match self.outcome {
+            EditOutcome::GoesOn => run,
+            EditOutcome::BroughtToRest => run.at_rest(),
+            EditOutcome::Settled => run.with_start(RunStart::Settled),
+        }
     }
 }
 

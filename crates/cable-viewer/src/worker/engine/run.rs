@@ -18,6 +18,8 @@ pub(super) struct Run {
     monitor: Option<RunMonitor>,
     /// Time that has passed on screen since the last whole step.
     debt: TimeDebt,
+    /// An edit brought it to rest at its present time.
+    brought_to_rest: bool,
 }
 
 /// The start of a run, to which a reset goes back.
@@ -36,7 +38,7 @@ pub(super) enum RunStart {
 impl Run {
     /// A run that goes on from a simulation as it is.
     pub fn new(simulation: Simulation, start: RunStart) -> Self {
-        Self { simulation, start, monitor: None, debt: TimeDebt::default() }
+        Self { simulation, start, monitor: None, debt: TimeDebt::default(), brought_to_rest: false }
     }
 
     /// The same for a simulation that takes the place of that of `before` at the same time.
@@ -49,10 +51,32 @@ impl Run {
         Self { start, ..self }
     }
 
+    /// The same, which an edit has brought to rest.
+    pub fn at_rest(self) -> Self {
+        Self { brought_to_rest: true, ..self }
+    }
+
+    /// The same with the figures of a run of the same motion.
+    pub fn with_figures_of(self, before: Option<Self>) -> Self {
+        let Some(before) = before else { return self };
+        Self { monitor: before.monitor, brought_to_rest: before.brought_to_rest, ..self }
+    }
+
+    /// Returns whether an edit has brought it to rest, and no time has passed since.
+    pub fn is_brought_to_rest(&self) -> bool {
+        self.brought_to_rest
+    }
+
     /// A copy without the figures of the run: the two coarser runs beside it begin again with the
     /// next start.
     pub fn checkpoint(&self) -> Self {
-        Self { simulation: self.simulation.clone(), start: self.start.clone(), monitor: None, debt: self.debt }
+        Self {
+            simulation: self.simulation.clone(),
+            start: self.start.clone(),
+            monitor: None,
+            debt: self.debt,
+            brought_to_rest: self.brought_to_rest,
+        }
     }
 
     /// The same run without its figures.
@@ -124,6 +148,7 @@ impl Run {
 
     /// Makes a number of whole steps and reads the answer after them.
     pub fn make_steps(&mut self, count: u64, inertia: Inertia) -> Result<(), Error> {
+        self.brought_to_rest = false;
         Ok(make_steps(&mut self.simulation, inertia, count, self.monitor.as_mut())?)
     }
 

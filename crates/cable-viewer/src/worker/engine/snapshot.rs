@@ -40,10 +40,12 @@ impl Engine {
                 let solution = self.solution_of(run.simulation());
                 let (peaks, seeks_histories) = (run.peaks(), self.seeks_histories());
                 let draft = self.draft() || self.coarse();
+                let brought_to_rest = run.is_brought_to_rest();
                 let snapshot = &mut self.outbox.snapshot;
                 snapshot.solution = Some(Arc::new(solution));
                 snapshot.seeks_histories = seeks_histories;
                 snapshot.peaks = peaks;
+                snapshot.brought_to_rest = brought_to_rest;
                 snapshot.error = match &self.phase {
                     Phase::Refused { reason } => Some(reason.clone()),
                     _ => None,
