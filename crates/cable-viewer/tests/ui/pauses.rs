@@ -154,3 +154,18 @@ fn issue_020_a_cable_that_gets_another_name_in_a_pause_goes_on() {
         assert_eq!(now.cables[0].name, "tether");
     }
 }
+
+/// Issue 20: “Greatest tension so far 573 N” stood beside an earlier picture, and was that of the
+/// end of the recording.
+#[test]
+fn issue_020_the_greatest_tension_of_a_run_names_its_span_beside_an_earlier_picture() {
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 120);
+    harness.get_by_label("Greatest tension of the run");
+    let end_s = answer(&harness).time_s;
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.5))));
+    assert!(harness.query_by_label("Greatest tension of the run").is_none());
+    harness.get_by_label(&format!("Greatest of 0 to {end_s:.1} s"));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(None)));
+    harness.get_by_label("Greatest tension of the run");
+}

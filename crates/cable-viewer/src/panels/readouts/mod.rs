@@ -116,7 +116,8 @@ pub fn below_headline(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>
         shape(ui, scene.view, &first, commands);
         material(ui, cable, solved, &first, commands);
         if let (Some(run), true) = (state.live.snapshot.peaks.get(index), answer.time_s > 0.0) {
-            greatest_so_far(ui, run);
+            let end_s = state.live.recording.shown_s.map(|_| state.live.now_s());
+            greatest_of_run(ui, run, end_s);
         }
         accuracy(ui, solved, &first);
         bending_stiffness(ui, state, cable, solved, commands);
@@ -322,8 +323,9 @@ const NEGLIGIBLE_FRICTION_FRACTION: f64 = 1e-6;
 /// fine are called exact; less: models without a mesh show their rounding as if it mattered.
 const ROUNDING_FRACTION: f64 = 1e-9;
 
-/// The greatest tension since the run began, and what coarser runs beside it leave open.
-fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
+/// The greatest tension since the run began, and what coarser runs beside it leave open. `end_s`:
+/// the end of the run, s, where an earlier instant is on screen.
+fn greatest_of_run(ui: &mut Ui, run: &RunPeaks, end_s: Option<f64>) {
     let most = format::force(run.peaks.greatest.tension_n);
     let help = match run.ranges.is_some_and(|r| r.depend_on_small_differences()) {
         true => {
@@ -331,7 +333,8 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
         }
         false => "Greatest tension of any inner step since the start, with its range estimated from two coarser runs",
     };
-    figure(ui, "Greatest tension so far", most, help, None);
+    let name = end_s.map_or_else(|| "Greatest tension of the run".to_owned(), |s| format!("Greatest of 0 to {s:.1} s"));
+    figure(ui, &name, most, help, None);
     if let Some(TensionRanges { greatest_n: [from, to], .. }) = run.ranges {
         figure(ui, "  range", format!("{} to {}", format::force(from), format::force(to)), help, None);
     }
