@@ -88,6 +88,48 @@ pub fn drop_lost_selection(state: &mut AppState) {
     state.selection.also_selected = also;
 }
 
+/// After an undo or redo from the scene `before` no other thing is selected than before: what has
+/// taken the place of one that is gone is not selected.
+pub fn drop_changed_selection(state: &mut AppState, before: &Scene) {
+    let scene = &state.document.scene;
+    let stays = |item: &Item| is_same_item(before, scene, *item);
+    let selected = state.selection.selected.filter(stays);
+    let also: Vec<Item> = state.selection.also_selected.iter().copied().filter(stays).collect();
+    (state.selection.selected, state.selection.also_selected) = (selected, also);
+    drop_lost_selection(state);
+}
+
+/// Returns whether an item is the same thing in two scenes: there are as many of its kind, so that
+/// one was edited at most, or it is known by its name or its value.
+fn is_same_item(a: &Scene, b: &Scene, item: Item) -> bool {
+    fn same<T, K: PartialEq>(a: &[T], b: &[T], k: usize, key: impl Fn(&T) -> K) -> bool {
+        a.len() == b.len() || a.get(k).map(&key) == b.get(k).map(&key)
+    }
+    let corners = |scene: &Scene, k: usize| match scene.obstacles.get(k).map(|o| &o.shape) {
+        Some(Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. }) => {
+            points_m.clone()
+        }
+        Some(Shape::Circle { .. }) | None => Vec::new(),
+    };
+    let supports = |scene: &Scene, k: usize| scene.cables.get(k).map_or_else(Vec::new, |c| c.supports.clone());
+    let path = |scene: &Scene| scene.robot.as_ref().map_or_else(Vec::new, |r| r.path.clone());
+    match item {
+        Item::Cable(k) => same(&a.cables, &b.cables, k, |c| c.name.clone()),
+        Item::Support { cable, support } => {
+            is_same_item(a, b, Item::Cable(cable))
+                && same(&supports(a, cable), &supports(b, cable), support, |s| s.name.clone())
+        }
+        Item::Obstacle(k) => same(&a.obstacles, &b.obstacles, k, |o| o.name.clone()),
+        Item::Corner { obstacle, corner } => {
+            is_same_item(a, b, Item::Obstacle(obstacle))
+                && same(&corners(a, obstacle), &corners(b, obstacle), corner, |p| *p)
+        }
+        Item::Load(k) | Item::LoadHead(k) => same(&a.loads, &b.loads, k, Clone::clone),
+        Item::PathLeg(k) => same(&path(a), &path(b), k, Clone::clone),
+        Item::Robot | Item::Scene | Item::Environment | Item::Solver => true,
+    }
+}
+
 /// True if the scene has the item.
 fn exists(state: &AppState, item: Item) -> bool {
     let scene = &state.document.scene;

@@ -8,7 +8,7 @@ use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::command::move_item::{move_item, set};
 use crate::command::playback::{self, PlaybackCommand};
-use crate::command::remove_item::{drop_lost_selection, remove_all};
+use crate::command::remove_item::{drop_changed_selection, drop_lost_selection, remove_all};
 use crate::command::robot_hitch::{SupportMove, hitched_support, set_robot};
 use crate::command::unique_name::unique;
 use crate::command::waypoint::add_waypoint;
@@ -146,8 +146,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
             return playback::apply(state, PlaybackCommand::UndoRestart, effects);
         }
         SceneCommand::Undo | SceneCommand::Redo if ends_at_earlier_run(state, &command) => {
+            let before = state.document.scene.clone();
             playback::apply(state, PlaybackCommand::UndoRestart, effects);
-            return drop_lost_selection(state);
+            return drop_changed_selection(state, &before);
         }
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
@@ -155,8 +156,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
                 _ => state.document.undo.redo(&state.document.scene),
             };
             let Some(other) = other else { return };
-            state.document.scene = other;
-            drop_lost_selection(state);
+            let before = std::mem::replace(&mut state.document.scene, other);
+            drop_changed_selection(state, &before);
             state.document.validate();
             submit_undone(state, effects);
             return;

@@ -169,3 +169,28 @@ fn issue_020_the_greatest_tension_of_a_run_names_its_span_beside_an_earlier_pict
     apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(None)));
     harness.get_by_label("Greatest tension of the run");
 }
+
+/// Issue 20: the undo of a waypoint left the next support selected, which Delete then took off the
+/// robot.
+#[test]
+fn issue_020_an_undo_leaves_no_other_thing_selected() {
+    let scene = catalog::tank_robot();
+    let mut harness = open(scene.clone());
+    let node = answer(&harness).cables[0].nodes[20];
+    let (arc_length_m, at_m) = (node.arc_length_m, [node.x_m, node.y_m + 0.1]);
+    apply(&mut harness, Command::Scene(SceneCommand::AddWaypoint { cable: 0, arc_length_m, at_m }));
+    assert_eq!(state(&harness).selection.selected, Some(Item::Support { cable: 0, support: 1 }));
+    undo(&mut harness);
+    assert_eq!(state(&harness).selection.selected, None);
+    harness.key_press(Key::Delete);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene, scene);
+    // By redo as well; what stays the same thing stays selected.
+    select(&mut harness, Item::Support { cable: 0, support: 1 });
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run_steps(4);
+    assert_eq!(state(&harness).selection.selected, None);
+    select(&mut harness, Item::Support { cable: 0, support: 0 });
+    undo(&mut harness);
+    assert_eq!(state(&harness).selection.selected, Some(Item::Support { cable: 0, support: 0 }));
+}
