@@ -1,6 +1,6 @@
 //! The pointer on the canvas can hover, pick, drag, frame, pan, zoom, and add a waypoint or a leg.
 
-use cable_core::scene::Shape;
+use cable_core::scene::{Shape, SupportKind};
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};
 
 use crate::canvas::canvas_view::CanvasView;
@@ -81,7 +81,7 @@ fn hover(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comm
     let icon = match (state.selection.grab.is_some(), item) {
         (true, _) => CursorIcon::Grabbing,
         (false, Some(Item::Cable(_))) => CursorIcon::PointingHand,
-        (false, Some(item)) if handles::of(state, item).is_some() => CursorIcon::Grab,
+        (false, Some(item)) if handles::of(state, dragged_with(state, item)).is_some() => CursorIcon::Grab,
         (false, Some(_)) => CursorIcon::PointingHand,
         (false, None) if response.dragged() => CursorIcon::AllScroll,
         (false, None) => CursorIcon::Default,
@@ -113,6 +113,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
             }
             return;
         };
+        let item = dragged_with(state, item);
         if !state.selection.contains(item) {
             commands.push(Command::View(ViewCommand::Select(Some(item))));
         }
@@ -147,6 +148,13 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
             }
         }
     }
+}
+
+/// The item that a drag moves: a support on the hitch goes where its robot goes.
+fn dragged_with(state: &AppState, item: Item) -> Item {
+    let Item::Support { cable, support } = item else { return item };
+    let support = state.document.scene.cables.get(cable).and_then(|c| c.supports.get(support));
+    if support.is_some_and(|s| s.kind == SupportKind::Robot) { Item::Robot } else { item }
 }
 
 /// Moves what is grabbed to the pointer at `p`: a load along its cable, other things freely or on

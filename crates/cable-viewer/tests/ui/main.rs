@@ -31,6 +31,7 @@ mod reach;
 mod recovery;
 mod rows;
 mod runs;
+mod seen;
 mod session;
 mod sliders;
 mod spans;
