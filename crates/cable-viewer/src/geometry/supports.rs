@@ -40,12 +40,21 @@ pub fn support_position(state: &AppState, cable: usize, support: usize) -> Optio
     }
     let solved = state.live.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
     let answer = solved.and_then(|c| c.supports.get(support)).map(|r| [r.x_m, r.y_m]);
-    // A moving or free support is where the answer says; a still one where it is being edited.
+    let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped) && !is_broken(state, cable);
+    // A moving or free support is where the answer says, and so is a still one on its way; while an
+    // edit has no answer it is where it is put.
     match (s.at_m, &s.motion) {
+        (Some(at), None) if held && answers_the_scene(state) => answer.or(Some(at)),
         (Some(at), None) => Some(at),
         (Some(at), Some(_)) => answer.or(Some(at)),
         (None, _) => answer,
     }
+}
+
+/// The answer on screen is of the scene as it is.
+fn answers_the_scene(state: &AppState) -> bool {
+    let shown = &state.live.snapshot;
+    state.is_answered() && shown.error.is_none() && !shown.stale
 }
 
 /// Returns where a support is that a hand draws while masses move, and where the spring between

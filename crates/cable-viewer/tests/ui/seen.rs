@@ -38,6 +38,44 @@ fn issue_020_a_drag_of_the_hitch_drags_the_robot() {
     assert!((now[0] - at[0] + 30.0 / camera.points_per_m).abs() < 0.02, "{at:?} {now:?}");
 }
 
+/// Issue 20: an end that had been pulled past the length, and was on its way back in a pause, was
+/// drawn where it was sent and not at its cable.
+#[test]
+fn issue_020_a_support_on_its_way_is_drawn_at_its_cable() {
+    let mut harness = open_span();
+    let hand_stiffness_n_per_m = Some(2e4);
+    let settings = Settings { hand_stiffness_n_per_m, hand_speed_m_per_s: 4.0, ..state(&harness).solver.settings };
+    apply(&mut harness, Command::SetSettings(settings));
+    apply(&mut harness, Command::Playback(PlaybackCommand::PullPastLength(true)));
+    apply(&mut harness, Command::View(ViewCommand::Zoom { about_m: [3.0, 4.0], factor: 0.6 }));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    let from = support(&harness, "right");
+    harness.hover_at(from);
+    harness.step();
+    press(&harness, from, true);
+    harness.step();
+    let points = 4.0 * state(&harness).view.camera.points_per_m;
+    for k in 1..=40 {
+        harness.hover_at(from + Vec2::new((points * f64::from(k) / 40.0) as f32, 0.0));
+        harness.run_steps(2);
+    }
+    press(&harness, from + Vec2::new(points as f32, 0.0), false);
+    harness.step();
+    let mut was_away = false;
+    for _ in 0..6 {
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+        harness.run_steps(2);
+        let end = *state(&harness).live.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().unwrap();
+        let drawn = geometry::supports::support_position(state(&harness), 0, 1).unwrap();
+        let to = state(&harness).document.scene.cables[0].supports[1].at_m.unwrap();
+        was_away |= (to[0] - end.x_m).hypot(to[1] - end.y_m) > 2e-3;
+        assert!((drawn[0] - end.x_m).hypot(drawn[1] - end.y_m) < 1e-6, "{drawn:?} at {} {}", end.x_m, end.y_m);
+        apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+        harness.run_steps(2);
+    }
+    assert!(was_away, "the test sees a support on its way");
+}
+
 /// Everything that stands in the window's panel of figures, with its row.
 fn texts(harness: &Harness<'_, ViewerApp>) -> Vec<String> {
     let mut all = Vec::new();
