@@ -151,6 +151,11 @@ impl ColourMap {
     }
 }
 
+/// Least width of the range of colours, as a part of the greatest size in it. Smaller: noise is
+/// drawn in all colours, as if much went on; larger: the tension of a span, which differs by what
+/// the cable weighs, is hard to see.
+const LEAST_RANGE: f64 = 0.1;
+
 impl ColourScale {
     /// Least and greatest value shown, SI; never empty.
     #[must_use]
@@ -168,9 +173,9 @@ impl ColourScale {
         if !(low <= high) {
             return [0.0, 1.0];
         }
-        // A constant field would divide by zero.
-        let least = 1e-9 * high.abs().max(1e-9);
-        [low, high.max(low + least)]
+        let least = LEAST_RANGE * low.abs().max(high.abs());
+        // A field of zeros would divide by zero.
+        [low.min(high - least), high.max(low + 1e-18)]
     }
 
     /// Returns where a value lies in a range, 0 to 1 inside.

@@ -76,6 +76,21 @@ fn issue_020_a_support_on_its_way_is_drawn_at_its_cable() {
     assert!(was_away, "the test sees a support on its way");
 }
 
+/// Issue 20: 3153.1 to 3155.8 N, which is noise, was drawn from violet to yellow.
+#[test]
+fn issue_020_colours_do_not_spread_over_noise() {
+    let harness = open(catalog::near_taut());
+    let mut solution = state(&harness).live.snapshot.solution.as_deref().unwrap().clone();
+    for (k, node) in solution.cables[0].nodes.iter_mut().enumerate() {
+        node.tension_n = 3153.1 + 2.7 * (k % 2) as f64;
+    }
+    let scale = ColourScale { quantity: CableQuantity::Tension, fixed: None, ..ColourScale::default() };
+    let [low, high] = scale.range(&solution);
+    assert!((high - 3155.8).abs() < 1e-9 && (high - low - 315.58).abs() < 1e-6, "{low} to {high}");
+    let fixed = ColourScale { fixed: Some([3153.0, 3156.0]), ..scale };
+    assert_eq!(fixed.range(&solution), [3153.0, 3156.0], "a range that was asked for stays");
+}
+
 /// Everything that stands in the window's panel of figures, with its row.
 fn texts(harness: &Harness<'_, ViewerApp>) -> Vec<String> {
     let mut all = Vec::new();
