@@ -98,6 +98,37 @@ fn texts(harness: &Harness<'_, ViewerApp>) -> Vec<String> {
     all.into_iter().map(|(text, ..)| text).collect()
 }
 
+/// Issue 20: “Tightest bend 14.00 mm”, “allowed ≥ 140.0 mm”, and no warning: the bend that is
+/// judged is that of a guide, computed with the bending stiffness.
+#[test]
+fn issue_020_the_bend_that_is_judged_stands_beside_its_limit() {
+    let mut seen = 0;
+    for (id, scene) in catalog::all() {
+        let harness = open(scene);
+        let Some(answer) = state(&harness).live.snapshot.solution.clone() else { continue };
+        let (cable, scene) = (&answer.cables[0], state(&harness).document.scene.clone());
+        let limit = scene.cables[0].min_bend_radius_m;
+        let (Some(raw), Some(judged)) = (cable.tightest_bend, cable.judged_bend) else { continue };
+        if limit == 0.0 || judged.bend.radius_m <= raw.radius_m {
+            continue;
+        }
+        seen += 1;
+        let texts = texts(&harness);
+        let at = texts.iter().position(|t| t == "Tightest bend").expect("the row");
+        let value = &texts[at + 1];
+        let unit = value.split(' ').next_back().unwrap();
+        let limit_text = geometry_length(limit);
+        assert!(value.contains(limit_text.split(' ').next().unwrap()), "{id}: {value}");
+        assert!(limit_text.ends_with(unit), "{id}: {value}, {limit_text}");
+        assert_eq!(
+            (value.contains('<'), value.contains('≥')),
+            (judged.bend.radius_m < limit, judged.bend.radius_m >= limit),
+            "{id}"
+        );
+    }
+    assert!(seen > 0);
+}
+
 fn geometry_length(value_m: f64) -> String {
     cable_viewer::units::format::length(value_m)
 }

@@ -280,35 +280,36 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
         figure(ui, "Tightest bend", "straight".to_owned(), "No bend anywhere", None);
         return;
     };
-    let help = "Tightest bend of the cable's line; what a support of no radius turns sharply is not counted";
     let limit = cable.min_bend_radius_m;
+    // The value that warnings judge stands beside its limit.
     let radius = |radius_m: f64| {
-        let tight = if radius_m < limit { ", too tight" } else { "" };
-        format!("{}{tight}", format::length(radius_m))
+        if limit > 0.0 { format::length_beside_limit(radius_m, limit) } else { format::length(radius_m) }
     };
     let judged = first.judged_bend.filter(|j| j.bend.radius_m > bend.radius_m);
-    let text = if judged.is_none() { radius(bend.radius_m) } else { format::length(bend.radius_m) };
-    figure(ui, "Tightest bend", text, help, Some((&place(bend), &mut *commands)));
-    if let Some(j) = judged {
-        let help = format!(
-            "Tightest bend at a guide, computed at sharp corners with a bending stiffness of {}; warnings use this value",
-            unit::Unit::N_M2.text(j.bending_stiffness_n_m2)
-        );
-        figure(ui, "  at a guide", radius(j.bend.radius_m), &help, Some((&place(j.bend), &mut *commands)));
-    }
-    if let Some(free) = solved.free_bend.filter(|b| judged.is_some() && b.radius_m < limit) {
+    let Some(judged) = judged else {
+        let help = "Tightest bend of the cable's line, and the smallest allowed one; what a support of no radius turns \
+                    sharply is not counted";
+        figure(ui, "Tightest bend", radius(bend.radius_m), help, Some((&place(bend), &mut *commands)));
+        sidewall(ui, first, commands);
+        return;
+    };
+    let help = format!(
+        "Tightest bend at a guide, computed at sharp corners with a bending stiffness of {}, and the smallest allowed one; \
+         warnings use these values",
+        unit::Unit::N_M2.text(judged.bending_stiffness_n_m2)
+    );
+    figure(ui, "Tightest bend", radius(judged.bend.radius_m), &help, Some((&place(judged.bend), &mut *commands)));
+    let help = "Tightest bend of the computed line. It is not judged: at a corner it depends on the length of the elements";
+    figure(ui, "  of the line", format::length(bend.radius_m), help, Some((&place(bend), &mut *commands)));
+    if let Some(free) = solved.free_bend.filter(|b| b.radius_m < limit) {
         let help = "Tightest bend where nothing guides the cable: it kinks there";
         figure(ui, "  away from guides", radius(free.radius_m), help, Some((&place(free), &mut *commands)));
     }
-    if limit > 0.0 {
-        figure(
-            ui,
-            "  allowed",
-            format!("≥ {}", format::length(limit)),
-            "The cable's smallest allowed bend radius",
-            None,
-        );
-    }
+    sidewall(ui, first, commands);
+}
+
+/// The pressure on what leads the cable, where there is a limit for it.
+fn sidewall(ui: &mut Ui, first: &CableSummary, commands: &mut Vec<Command>) {
     if let (Some(p), Some(ratio)) = (first.sidewall_pressure, first.utilisation.sidewall_pressure_ratio) {
         let at = node(CablePlace { arc_length_m: p.arc_length_m, x_m: p.x_m, y_m: p.y_m });
         let help = "Pressure between the cable and its guide, as a share of the allowed value";
