@@ -133,6 +133,16 @@ fn geometry_length(value_m: f64) -> String {
     cable_viewer::units::format::length(value_m)
 }
 
+/// Issue 20: “Position” of a robot that drives was where it had started.
+#[test]
+fn issue_020_the_place_of_a_robot_is_called_its_start() {
+    let mut harness = open(catalog::tank_robot());
+    select(&mut harness, Item::Robot);
+    run(&mut harness, 60);
+    harness.get_by_label("Start position, m");
+    assert!(harness.query_by_label("Position, m").is_none());
+}
+
 fn rail(harness: &Harness<'_, ViewerApp>) -> f32 {
     harness.get_by_label("Timeline").rect().width()
 }

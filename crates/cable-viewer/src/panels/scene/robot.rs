@@ -7,7 +7,7 @@ use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand, support_kind};
-use crate::panels::scene::rows::{coordinates, place, show_faults};
+use crate::panels::scene::rows::{coordinates, named_place, show_faults};
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
@@ -110,7 +110,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
 /// Position and heading of the robot.
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    place(ui, |ui| {
+    named_place(ui, "Start position", |ui| {
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {
             set(Some(Robot { at_m, ..robot.clone() }), commands);
         }

@@ -77,7 +77,12 @@ pub fn pair(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
 
 /// A row with the coordinates of an item beside their name.
 pub fn place(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
-    pair(ui, &format!("Position, {}", Unit::M.display().symbol), contents);
+    named_place(ui, "Position", contents);
+}
+
+/// The same with another name than “Position”.
+pub fn named_place(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
+    pair(ui, &format!("{name}, {}", Unit::M.display().symbol), contents);
 }
 
 /// Two typed coordinates; the point once one was entered.
