@@ -112,12 +112,11 @@ pub fn restart(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(run) = &state.live.earlier_run else { return };
     let is_later = is_later_run(state);
     let help = match &run.cause {
-        RestartCause::Reset(_) if state.live.reset_is_last => {
-            "Undoes the reset: the run continues from its end, with its recording (Ctrl+Z)"
+        _ if !is_later && !is_one_undo_away(state) => {
+            "Switches to the previous run, with its scene, and continues it from its end; the present run is kept and can be \
+             brought back"
         }
-        RestartCause::Reset(_) => {
-            "Switches to the other run and continues it from its end; the present run is kept and can be brought back"
-        }
+        RestartCause::Reset(_) => "Undoes the reset: the run continues from its end, with its recording (Ctrl+Z)",
         RestartCause::Edit(_) if is_later => {
             "Repeats the edit that restarted the run and brings back what was recorded after it; the present run is kept \
              (Ctrl+Shift+Z)"
@@ -139,10 +138,24 @@ fn is_later_run(state: &AppState) -> bool {
     matches!(cause, Some(RestartCause::Edit(scene)) if redone == Some(scene))
 }
 
+/// Nothing was edited or reset since the restart that an undo takes back.
+fn is_one_undo_away(state: &AppState) -> bool {
+    let [undone, _] = state.document.undo.neighbours();
+    match state.live.earlier_run.as_ref().map(|run| &run.cause) {
+        Some(RestartCause::Reset(_)) => state.live.reset_is_last,
+        Some(RestartCause::Edit(scene)) => undone == Some(scene),
+        None => true,
+    }
+}
+
 /// Returns what the button says that goes on with the other run.
 #[must_use]
 pub fn restart_button(state: &AppState) -> &'static str {
-    if is_later_run(state) { "Redo restart" } else { "Undo restart" }
+    match (is_later_run(state), is_one_undo_away(state)) {
+        (true, _) => "Redo restart",
+        (false, true) => "Undo restart",
+        (false, false) => "Previous run",
+    }
 }
 
 /// Width of a text and the space before it, points.

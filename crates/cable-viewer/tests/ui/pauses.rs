@@ -194,3 +194,26 @@ fn issue_020_an_undo_leaves_no_other_thing_selected() {
     undo(&mut harness);
     assert_eq!(state(&harness).selection.selected, Some(Item::Support { cable: 0, support: 0 }));
 }
+
+/// Issue 20: after further edits and another run “Undo restart” exchanged two runs.
+#[test]
+fn issue_020_another_run_is_called_the_previous_one_after_further_edits() {
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 40);
+    let at = state(&harness).document.scene.robot.as_ref().unwrap().at_m;
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m: [at[0] - 0.5, at[1]] }));
+    apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+    harness.get_by_label("Undo restart");
+    edit_cable(&mut harness, |c| c.linear_density_kg_per_m *= 1.1);
+    assert!(harness.query_by_label("Undo restart").is_none());
+    harness.get_by_label("Previous run");
+    run(&mut harness, 10);
+    harness.get_by_label("Previous run");
+    // A reset is undone as such until something else is done.
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 40);
+    apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
+    harness.get_by_label("Undo restart");
+    edit_cable(&mut harness, |c| c.linear_density_kg_per_m *= 1.1);
+    harness.get_by_label("Previous run");
+}

@@ -113,7 +113,7 @@ fn the_undo_of_a_reset_brings_its_scene_back_too() {
     let mut cable = scene.cables[0].clone();
     cable.length_m += 0.5;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
-    harness.get_by_label("Undo restart").click();
+    harness.get_by_label("Previous run").click();
     harness.run_steps(3);
     let state = &harness.state().state;
     assert_eq!((&state.document.scene, state.live.now_s()), (&scene, end_s));
@@ -137,8 +137,8 @@ fn the_run_since_a_reset_is_kept_when_it_is_taken_back() {
     harness.run_steps(3);
     let second = run(&mut harness, 20);
     assert_ne!(first, second);
-    for then in [&first, &second, &first] {
-        harness.get_by_label("Undo restart").click();
+    for (button, then) in [("Undo restart", &first), ("Previous run", &second), ("Previous run", &first)] {
+        harness.get_by_label(button).click();
         harness.run_steps(3);
         let live = &harness.state().state.live;
         assert_eq!((&live.snapshot.solution, live.recording.span_s()), (&Some(then.0.clone()), then.1));

@@ -481,7 +481,7 @@ fn a_restart_is_undone_by_its_button_whatever_was_edited_since() {
         apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m }));
         apply(&mut harness, Command::Scene(SceneCommand::EditDone));
     }
-    harness.get_by_label("Undo restart").click();
+    harness.get_by_label("Previous run").click();
     harness.run_steps(4);
     assert_eq!(state(&harness).document.scene, scene);
     assert_eq!(answer(&harness).time_s, end_s);
