@@ -7,6 +7,7 @@ use crate::app::guidance::{first_step_hints, tutorial_bar};
 use crate::app::menu;
 use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
+use crate::panels::playback::Rail;
 use crate::state::{AppState, ToolSection};
 use crate::widgets::{focus, highlight};
 use crate::{canvas, panels};
@@ -175,6 +176,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let graphs_height = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
     let shown_graphs_height = (graphs_below && open.graphs).then_some(graphs_height);
     let drawer = drawer_below(ui, state, shown_graphs_height);
+    let rail = if wide && !open.graphs { Rail::Here } else { Rail::Elsewhere };
     let drawer_height = drawer.as_ref().map_or(0.0, |drawer| drawer.points);
     let mut picture = child(ui, "picture", beside_inspector.with_max_y(beside_inspector.max.y - drawer_height));
     if wide && open.edit {
@@ -195,12 +197,12 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         let mut below = child(ui, "below", beside_inspector);
         let height = match open_drawer.name {
             "plots" => graphs(&mut below, graphs_height, state, commands),
-            _ => timeline(&mut below, state, commands),
+            _ => timeline(&mut below, state, rail, commands),
         };
         open_drawer.keep(ui, height);
     }
     let mut foot = child(ui, "foot", below_menu);
-    let drawn = Panel::bottom("playback").show(&mut foot, |ui| panels::playback::ui(ui, state, commands));
+    let drawn = Panel::bottom("playback").show(&mut foot, |ui| panels::playback::with_rail(ui, state, rail, commands));
     playback_height.keep(ui, drawn.response.rect.height());
     highlight::frame(ui.ctx());
     focus::frame(ui.ctx());
@@ -254,9 +256,15 @@ fn graphs(below: &mut Ui, height: f32, state: &AppState, commands: &mut Vec<Comm
     drawn.response.rect.height()
 }
 
-/// Draws the timeline alone there, and returns its height.
-fn timeline(below: &mut Ui, state: &AppState, commands: &mut Vec<Command>) -> f32 {
-    let drawn = Panel::bottom("timeline").show(below, |ui| panels::timeline::ui(ui, state, commands));
+/// Draws the timeline alone there, or what of it is not in the row of playback, and returns its
+/// height.
+fn timeline(below: &mut Ui, state: &AppState, rail: Rail, commands: &mut Vec<Command>) -> f32 {
+    let drawn = Panel::bottom("timeline").show(below, |ui| match rail {
+        Rail::Elsewhere => panels::timeline::ui(ui, state, commands),
+        Rail::Here => {
+            ui.horizontal(|ui| panels::timeline::buttons(ui, state, commands));
+        }
+    });
     drawn.response.rect.height()
 }
 

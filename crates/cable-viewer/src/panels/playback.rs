@@ -1,6 +1,6 @@
 //! The playback panel pauses, steps and resets time and sets its speed.
 
-use egui::{Align, Button, Color32, Label, Layout, RichText, TextStyle, Ui};
+use egui::{Align, Button, Color32, Id, Label, Layout, Rect, RichText, TextStyle, Ui, UiBuilder, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::panels::timeline;
@@ -25,8 +25,41 @@ const MIN_SLIDER_ROW_WIDTH: f32 = 740.0;
 /// Width of the typed speed, points.
 const SPEED_WIDTH: f32 = 56.0;
 
-/// Draws it, in one row at every width: a second one would move all above it.
+/// The place of the timeline's rail.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rail {
+    /// Above the graphs, or in no place.
+    Elsewhere,
+    /// In this row: the graphs are folded.
+    Here,
+}
+
+/// Room that a timeline in this row leaves to the status, points: time and pace fit.
+const STATUS_WIDTH: f32 = 180.0;
+/// Widest timeline in this row, points.
+const MOST_TIMELINE_WIDTH: f32 = 520.0;
+
+/// The timeline of folded graphs.
+fn folded_timeline(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let width = (ui.available_width() - STATUS_WIDTH).min(MOST_TIMELINE_WIDTH);
+    let size = vec2(width, ui.available_height());
+    // The buttons above that come with an earlier picture must not change its identity: a drag of
+    // its knob would end.
+    let named = UiBuilder::new().scope_id(Id::unique("timeline in the row of playback"));
+    let named = named.max_rect(Rect::from_min_size(ui.available_rect_before_wrap().min, size));
+    let rail = ui.scope_builder(named.layout(Layout::left_to_right(Align::Center)), |ui| {
+        timeline::rail(ui, state, commands);
+    });
+    ui.advance_cursor_after_rect(rail.response.rect);
+}
+
+/// Draws it without a timeline.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    with_rail(ui, state, Rail::Elsewhere, commands);
+}
+
+/// Draws it, in one row at every width: a second one would move all above it.
+pub fn with_rail(ui: &mut Ui, state: &AppState, rail: Rail, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let with_slider = ui.available_width() >= MIN_SLIDER_ROW_WIDTH;
         let mut button = |ui: &mut Ui, (icon, text): (Icon, &str), help: &str, command: PlaybackCommand| {
@@ -47,7 +80,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // At the end of the row: nothing moves when it comes and goes.
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             timeline::restart(ui, state, commands);
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| show_status(ui, status(state)));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                if rail == Rail::Here {
+                    folded_timeline(ui, state, commands);
+                    ui.separator();
+                }
+                show_status(ui, status(state));
+            });
         });
     });
 }

@@ -16,9 +16,8 @@ use crate::state::{AppState, GraphRequest};
 use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::field;
 
-/// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
-/// too short to aim at.
-const LEAST_ONE_ROW_WIDTH: f32 = 960.0;
+/// Room of the line between the choice of graphs and the timeline, points.
+const SEPARATOR_WIDTH: f32 = 14.0;
 /// Below this width the graphs stand one under the other, points.
 const LEAST_SIDE_BY_SIDE_WIDTH: f32 = 480.0;
 /// Lowest graph that can still be read, points.
@@ -34,17 +33,29 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
     view.export = state.ui.graph_to_export;
     apply_request(ui, state, &mut view);
-    if ui.available_width() >= LEAST_ONE_ROW_WIDTH {
+    // Beside the choice of graphs where its rail is long enough to aim at there.
+    let id_of_width = Id::unique("width of the choice of graphs");
+    let beside = ui.data(|d| d.get_temp::<f32>(id_of_width)).unwrap_or(f32::INFINITY);
+    if ui.available_width() >= beside + timeline::width_in_row(ui) {
         ui.horizontal(|ui| {
+            let left = ui.cursor().left();
             controls(ui, state, &mut view);
             ui.separator();
+            let width = ui.cursor().left() - left;
+            ui.data_mut(|d| d.insert_temp(id_of_width, width));
             timeline::in_row(ui, state, commands);
         });
     } else {
         // Every point goes to the graphs.
-        ui.spacing_mut().item_spacing.y = 1.0;
+        ui.spacing_mut().item_spacing.y = 0.0;
         timeline::ui(ui, state, commands);
-        ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
+        ui.horizontal_wrapped(|ui| {
+            let left = ui.cursor().left();
+            controls(ui, state, &mut view);
+            let width = ui.cursor().left() - left + SEPARATOR_WIDTH;
+            let is_one_row = ui.min_rect().height() < 1.5 * ui.spacing().interact_size.y;
+            ui.data_mut(|d| d.insert_temp(id_of_width, if is_one_row { width } else { f32::INFINITY }));
+        });
     }
     let wide = ui.available_width() >= LEAST_SIDE_BY_SIDE_WIDTH;
     let room = ui.available_height() - ui.spacing().item_spacing.y;

@@ -1,7 +1,7 @@
 //! The timeline shows what was recorded, what happened in it, and which of it is on screen.
 
 use cable_core::solution::WarningKind;
-use egui::{Color32, Label, Rect, RectAlign, RichText, Sense, Slider, Stroke, TextStyle, Tooltip, Ui, pos2, vec2};
+use egui::{Color32, Id, Label, Rect, RectAlign, RichText, Sense, Slider, Stroke, TextStyle, Tooltip, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
@@ -12,8 +12,12 @@ use crate::widgets::checkbox_and_radio::checkbox;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, highlight};
 
-/// Shortest rail that can be aimed at, points.
+/// Shortest rail in the narrowest windows, points.
 const MIN_SLIDER_WIDTH: f32 = 60.0;
+/// Shortest rail beside other controls, points. Less: a frame of a minute is not aimed at.
+const MIN_SLIDER_WIDTH_IN_ROW: f32 = 300.0;
+/// Room that is kept for the words beside a rail, points: “12.34 of 123.45 s” fits.
+const WORDS_WIDTH: f32 = 130.0;
 /// Distance from a mark within which the pointer shows its text, points.
 const MARK_REACH: f32 = 4.0;
 
@@ -27,11 +31,38 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| in_row(ui, state, commands));
 }
 
+/// Returns the width (points) that it takes beside other controls, with a rail that can be aimed
+/// at; its buttons are as wide as they were in the frame before.
+#[must_use]
+pub fn width_in_row(ui: &Ui) -> f32 {
+    buttons_width(ui) + MIN_SLIDER_WIDTH_IN_ROW + WORDS_WIDTH
+}
+
+fn buttons_width(ui: &Ui) -> f32 {
+    ui.data(|d| d.get_temp(Id::unique("width of the replay controls"))).unwrap_or(FIRST_BUTTONS_WIDTH)
+}
+
+/// Width of the buttons in the first frame, points.
+const FIRST_BUTTONS_WIDTH: f32 = 260.0;
+
 /// Draws it in the rest of a row.
 pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    buttons(ui, state, commands);
+    rail(ui, state, commands);
+}
+
+/// Draws the controls of the replay without the rail.
+pub fn buttons(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let left = ui.cursor().left();
+    replay_controls(ui, state, commands);
+    let width = ui.cursor().left() - left;
+    ui.data_mut(|d| d.insert_temp(Id::unique("width of the replay controls"), width));
+}
+
+/// Draws the rail with the words beside it in the rest of a row.
+pub fn rail(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let span = state.live.recording.span_s();
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
-    replay_controls(ui, state, commands);
     let mut push = |command| commands.push(Command::Playback(command));
     let [first, last] = span.unwrap_or([0.0, 1.0]);
     let text = match state.live.recording.shown_s {

@@ -154,6 +154,41 @@ fn sized(scene: Scene, size: [f32; 2]) -> Harness<'static, ViewerApp> {
     harness
 }
 
+/// Issue 20: the rail of the timeline was 80 points wide in the opening scene.
+#[test]
+fn issue_020_the_timeline_is_long_enough_to_aim_at() {
+    for scene in [catalog::tank_robot(), catalog::tank()] {
+        for size in [[1024.0, 640.0], [1280.0, 800.0], [1600.0, 900.0], [1920.0, 1080.0]] {
+            let mut harness = sized(scene.clone(), size);
+            run(&mut harness, 20);
+            assert!(rail(&harness) >= 300.0, "{} at {size:?}", rail(&harness));
+            apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.1))));
+            assert!(rail(&harness) >= 300.0, "{} at {size:?} in the past", rail(&harness));
+        }
+    }
+}
+
+/// Issue 20: with the graphs the timeline went, too.
+#[test]
+fn issue_020_the_timeline_stays_where_the_graphs_are_folded() {
+    for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+        let mut harness = sized(catalog::tank_robot(), size);
+        let folded = OpenPanels { graphs: false, ..state(&harness).ui.panels };
+        apply(&mut harness, Command::View(ViewCommand::ShowPanels(folded)));
+        run(&mut harness, 30);
+        let rect = harness.get_by_label("Timeline").rect();
+        assert!(rect.width() >= 120.0 && rect.max.x <= size[0], "{rect:?} at {size:?}");
+        let play = harness.get_by_label("Play").rect();
+        assert!((rect.center().y - play.center().y).abs() < 4.0, "in the row of playback: {rect:?} {play:?}");
+        // It scrubs, in one press from any place to any other.
+        let (from, to) = (rect.right_center() - Vec2::new(6.0, 0.0), rect.center());
+        drag(&mut harness, from, to - from);
+        let shown = state(&harness).live.recording.shown_s.expect("an earlier picture");
+        assert!((0.15..0.35).contains(&shown), "{shown} s at {size:?}");
+        harness.get_by_label("Latest");
+    }
+}
+
 fn flat<'a>(shape: &'a Shape, all: &mut Vec<&'a Shape>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|s| flat(s, all)),
