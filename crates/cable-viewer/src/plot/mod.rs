@@ -12,7 +12,7 @@ mod keys;
 mod line_corners;
 pub mod over_time;
 
-use egui::{Align2, Color32, Id, Pos2, Rangef, Rect, RichText, Sense, Stroke, TextStyle, Ui, vec2};
+use egui::{Align2, Color32, Id, Pos2, Rangef, Rect, RichText, Sense, Shape, Stroke, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotResponse, PlotTransform, PlotUi};
 
 use crate::io::graph_in_view::{GraphInView, RIBBON};
@@ -34,8 +34,8 @@ pub const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
 /// The group of graphs over time.
 pub const TIME: &str = "time";
 
-/// The time shown, where it is not the present.
-pub const TIME_MARK: Color32 = Color32::from_gray(118);
+/// The tolerance in the graph of errors over cost.
+pub const TOLERANCE_MARK: Color32 = Color32::from_gray(118);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
@@ -193,12 +193,15 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
             plot.text(egui_plot::Text::new("hint", plot.plot_bounds().center(), words).allow_hover(false));
         }
         let places: Vec<f64> = cursors.0.iter().map(|x| x / x_si).collect();
-        draw_marks(plot, graph.mark, &places, cursor_text.as_deref());
+        draw_marks(plot, &places, cursor_text.as_deref());
         let wheel = wheel(plot);
         let asked = keys::read(plot, places.last().copied());
         keys::KeyInput { zoomed: wheel || asked.zoomed, ..asked }
     });
     name_limits(ui, graph, &response.transform, scale.high, si);
+    if let Some(mark) = graph.mark {
+        draw_playhead(ui, &response.transform, mark / x_si);
+    }
     write_ends_across(ui, &response.transform, columns, scale.across.symbol, width);
     move_cursors(ui, graph, &response, &mut cursors, x_si);
     let bounds = response.transform.bounds();
@@ -471,11 +474,22 @@ fn wheel(plot: &mut PlotUi<'_>) -> bool {
     true
 }
 
-/// Draws the time shown, the cursors and their text.
-fn draw_marks(plot: &mut PlotUi<'_>, mark: Option<f64>, cursors: &[f64], text: Option<&str>) {
-    if let Some(x) = mark {
-        plot.vline(egui_plot::VLine::new("Shown", x).color(TIME_MARK).width(1.5).allow_hover(false));
-    }
+/// Half the width of the head of the playhead, and its height, points.
+const PLAYHEAD: Vec2 = vec2(5.0, 7.0);
+
+/// The time on screen, as a line with a head at the top.
+fn draw_playhead(ui: &Ui, transform: &PlotTransform, mark: f64) {
+    let frame = *transform.frame();
+    let x = transform.position_from_point(&egui_plot::PlotPoint::new(mark, transform.bounds().min()[1])).x;
+    let (painter, colour) = (ui.painter().with_clip_rect(frame), ui.visuals().text_color());
+    painter.vline(x, frame.y_range(), Stroke::new(2.0, colour));
+    let top = egui::pos2(x, frame.top());
+    let corners = [top - vec2(PLAYHEAD.x, 0.0), top + vec2(PLAYHEAD.x, 0.0), top + vec2(0.0, PLAYHEAD.y)];
+    painter.add(Shape::convex_polygon(corners.to_vec(), colour, Stroke::NONE));
+}
+
+/// Draws the cursors and their text.
+fn draw_marks(plot: &mut PlotUi<'_>, cursors: &[f64], text: Option<&str>) {
     for (x, name) in cursors.iter().zip(["A", "B"]) {
         let line = egui_plot::VLine::new(name, *x).color(CURSOR).width(1.0).allow_hover(false);
         plot.vline(line.style(LineStyle::dashed_dense()));

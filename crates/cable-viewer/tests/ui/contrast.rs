@@ -110,7 +110,7 @@ fn text_and_graphics_stand_off_what_is_behind_them_in_both_themes() {
         for (k, line) in LINES.into_iter().enumerate() {
             ask(&format!("line {k} of a graph"), line, visuals.extreme_bg_color, 3.0);
         }
-        for (what, colour) in [("service", plot::SERVICE), ("breaking", plot::BREAKING), ("time", plot::TIME_MARK)] {
+        for (what, colour) in [("service", plot::SERVICE), ("breaking", plot::BREAKING), ("tolerance", plot::TOLERANCE_MARK)] {
             ask(&format!("mark of {what} in a graph"), colour, visuals.extreme_bg_color, 3.0);
         }
         // Lines of risk lie on the safe-reach map from the service tension on, each over one of the
@@ -173,7 +173,7 @@ fn nothing_has_the_colours_of_what_is_selected_and_of_what_warns() {
             ("sound", p.sound),
             ("risk", p.risk),
             ("calm bar", p.bars[0]),
-            ("playhead", plot::TIME_MARK),
+            ("tolerance", plot::TOLERANCE_MARK),
             ("line 1", LINES[0]),
             ("line 2", LINES[1]),
             ("line 3", LINES[2]),

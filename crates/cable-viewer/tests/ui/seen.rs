@@ -189,6 +189,34 @@ fn issue_020_the_timeline_stays_where_the_graphs_are_folded() {
     }
 }
 
+/// Issue 20: the playhead was a thin grey line without a head.
+#[test]
+fn issue_020_the_playhead_has_a_head_in_every_graph_over_time() {
+    let mut harness = open(catalog::tank_robot());
+    run(&mut harness, 60);
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.5))));
+    harness.run_steps(2);
+    let colour = harness.ctx.global_style().visuals.text_color();
+    let graph = harness.get_by_label("Over time").rect();
+    let (mut heads, mut lines) = (0, 0);
+    for clipped in &harness.output().shapes {
+        let mut all = Vec::new();
+        flat(&clipped.shape, &mut all);
+        for shape in all {
+            match shape {
+                Shape::Path(p) if p.closed && p.points.len() == 3 && p.fill == colour => {
+                    heads += usize::from(graph.contains(p.points[2]));
+                }
+                Shape::LineSegment { points, stroke } if stroke.width == 2.0 && stroke.color == colour => {
+                    lines += usize::from(points[0].x == points[1].x && graph.expand(2.0).contains(points[0]));
+                }
+                _ => {}
+            }
+        }
+    }
+    assert_eq!((heads, lines), (1, 1));
+}
+
 fn flat<'a>(shape: &'a Shape, all: &mut Vec<&'a Shape>) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|s| flat(s, all)),

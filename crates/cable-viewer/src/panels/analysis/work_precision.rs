@@ -11,7 +11,7 @@ use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
 use crate::jobs::work_precision::{MeasuredSetting, WorkPrecision};
 use crate::panels::display_names::capital;
-use crate::plot::TIME_MARK;
+use crate::plot::TOLERANCE_MARK;
 use crate::render::colour;
 use crate::state::AppState;
 use crate::units::sentence::sentence;
@@ -116,7 +116,7 @@ fn chart(ui: &mut Ui, found: &WorkPrecision, tolerance: f64) {
         .y_axis_formatter(|mark, _| power(mark.value));
     let shown = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([left - 0.4, low - 0.8], [right + 0.4, high + 0.8]));
-        let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(TIME_MARK).width(1.5);
+        let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(TOLERANCE_MARK).width(1.5);
         plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
         for (model, shape) in Model::SOLVERS.into_iter().zip(SHAPES) {
             let of_model = found.entries.iter().filter(|e| e.setting.model == model);
