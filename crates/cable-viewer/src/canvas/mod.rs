@@ -44,8 +44,11 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     border[3] += hints_height(state);
     follow::ui(state, rect, border);
     if (state.view.camera.fit_wanted || (resized && !state.view.camera.follows)) && answered {
-        let bounds = bounds::scene(state);
-        state.view.camera.fit(rect, bounds, border);
+        let fitted = bounds::scene(state);
+        state.view.camera.fit(rect, fitted, border);
+        if bounds::has_ground(state) {
+            state.view.camera.hide_ground(rect, fitted[0][1], hints_height(state));
+        }
         // The shape of the cable is not known yet: the view is fitted once more when it is.
         state.view.camera.fit_wanted = !state.is_answered();
     }

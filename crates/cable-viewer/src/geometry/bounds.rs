@@ -3,6 +3,7 @@
 use cable_core::math::Point;
 use cable_core::scene::Shape;
 
+use crate::geometry::terrain_extent::walls;
 use crate::state::AppState;
 
 /// Grows with each point put in; points that are not finite are left out.
@@ -84,7 +85,36 @@ pub fn scene(state: &AppState) -> [Point; 2] {
     crate::geometry::robot::robot_outline(state).into_iter().for_each(|p| bounds.add(p));
     crate::geometry::robot::path_flags(state).into_iter().for_each(|(_, p, _)| bounds.add(p));
     add_ground(state, &mut bounds);
+    add_walls(state, &mut bounds);
     bounds.or_unit()
+}
+
+/// A wall is fitted with what is between the walls where the picture gets wider by this factor at
+/// most. Smaller: a tank has no wall where its cable is in the middle; larger: what is looked at
+/// becomes small.
+const WIDENING_FOR_WALLS: f64 = 1.3;
+
+/// Adds the places of walls that stand near what is there already.
+fn add_walls(state: &AppState, bounds: &mut Bounds) {
+    let [left, right] = [bounds.low[0], bounds.high[0]];
+    let beyond = (WIDENING_FOR_WALLS - 1.0) * (right - left);
+    if !beyond.is_finite() {
+        return;
+    }
+    for obstacle in &state.document.scene.obstacles {
+        let Shape::Terrain { points_m } = &obstacle.shape else { continue };
+        let [wall_left, wall_right] = walls(points_m);
+        let near = |x: &f64| (left - beyond..=right + beyond).contains(x);
+        for x in [wall_left, wall_right].into_iter().flatten().filter(near) {
+            bounds.add([x, bounds.low[1]]);
+        }
+    }
+}
+
+/// Returns whether the scene has ground.
+#[must_use]
+pub fn has_ground(state: &AppState) -> bool {
+    state.document.scene.obstacles.iter().any(|o| matches!(o.shape, Shape::Terrain { .. }))
 }
 
 /// Adds the ground below what is there already: the whole of it may be a hundred times as long.

@@ -38,9 +38,24 @@ fn terrain_ends(state: &AppState) -> Option<[f64; 2]> {
     ends.reduce(|[a, b], [left, right]| [a.min(left), b.max(right)]).filter(|[left, right]| left < right)
 }
 
+/// Left and right wall of a piece of ground, where it has them: the places of their inner faces, m.
+#[must_use]
+pub fn walls(points_m: &[Point]) -> [Option<f64>; 2] {
+    let ends = points_m.first().zip(points_m.last());
+    let width = ends.map_or(0.0, |(first, last)| last[0] - first[0]);
+    [wall_face(points_m.iter(), width), wall_face(points_m.iter().rev(), width)]
+}
+
 /// The place at which ground of a width (m) begins, seen from one of its ends, m: at that end, or
 /// at the face of a wall.
-fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Option<f64> {
+fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point> + Clone, width: f64) -> Option<f64> {
+    let end = points_m.clone().next()?[0];
+    Some(wall_face(points_m, width).unwrap_or(end))
+}
+
+/// The inner face of a wall at the end from which ground of a width (m) is seen, m; None where it
+/// has none there.
+fn wall_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Option<f64> {
     let mut points = points_m.copied().peekable();
     let first = points.next()?;
     let mut last = first;
@@ -49,7 +64,7 @@ fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Opti
     }
     let wall = points.next().is_some_and(|p| last[1] - p[1] > WALL_SLOPE * (p[0] - last[0]).abs());
     let narrow = (last[0] - first[0]).abs() < WALL_WIDTH * width;
-    Some(if wall && narrow { last[0] } else { first[0] })
+    (wall && narrow).then_some(last[0])
 }
 
 /// Left and right end of the ground, where there is some, within what a robot could be led to by

@@ -55,6 +55,10 @@ const MIN_FITTED_SIZE_M: f64 = 1e-3;
 /// that falls for ever becomes a dot; smaller: a robot that drives far has its cable out of view.
 const MAX_WIDENING: f64 = 4.0;
 
+/// Most of the height of a fitted picture that the ground below everything takes. More: a third of
+/// a wide picture is ground; less: a robot stands on the edge of the picture.
+const MOST_GROUND: f32 = 0.15;
+
 impl Camera {
     /// World (m) to screen.
     #[must_use]
@@ -185,6 +189,17 @@ impl Camera {
             0.5 * (low[0] + high[0]) + f64::from(right - left) / 2.0 / self.points_per_m,
             0.5 * (low[1] + high[1]) + f64::from(top - bottom) / 2.0 / self.points_per_m,
         ];
+    }
+
+    /// Moves the view up where more than [`MOST_GROUND`] of its height is below a height, m; what
+    /// hints cover at the foot (points) does not count.
+    pub fn hide_ground(&mut self, canvas: Rect, lowest_m: f64, hints_height: f32) {
+        let most = (MOST_GROUND * canvas.height()).max(BORDER[3]) + hints_height;
+        let half = 0.5 * f64::from(canvas.height()) / self.points_per_m;
+        let bottom = lowest_m - f64::from(most) / self.points_per_m;
+        if bottom.is_finite() && bottom > self.centre_m[1] - half {
+            self.centre_m[1] = bottom + half;
+        }
     }
 }
 

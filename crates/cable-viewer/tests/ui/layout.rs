@@ -353,7 +353,7 @@ fn issue_020_labels_leave_the_robot_to_be_seen() {
         let [outline, flags] =
             [false, true].map(|on| legs().filter(|(_, r)| canvas.contains(r.center()) == on).count());
         // Two sentences about the legs had hidden what the flags stand at.
-        assert_eq!((outline, flags), (2, 2), "{found:?}");
+        assert_eq!((outline, flags), (2, 2), "{size:?}, {at_x_m} m: {found:?}");
     }
 }
 

@@ -223,3 +223,23 @@ fn flat<'a>(shape: &'a Shape, all: &mut Vec<&'a Shape>) {
         other => all.push(other),
     }
 }
+
+/// Issue 20: the wall of the tank was out of view, and ground below the lowest point took a third
+/// of the picture.
+#[test]
+fn issue_020_a_fitted_tank_shows_its_walls_and_little_of_the_ground_below() {
+    for scene in [catalog::tank_robot(), catalog::tank()] {
+        for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+            let mut harness = sized(scene.clone(), size);
+            harness.state_mut().state.ui.first_steps.hide();
+            harness.key_press(Key::F);
+            harness.run_steps(3);
+            let canvas = harness.get_by_label("Canvas").rect();
+            let [low, high] = state(&harness).view.camera.visible_m(canvas);
+            assert!(low[0] < -11.43 && high[0] > 11.43, "{} at {size:?}: {low:?} {high:?}", scene.name);
+            let lowest = -0.027;
+            let below = (lowest - low[1]) / (high[1] - low[1]);
+            assert!(below < 0.151, "{} at {size:?}: {below}", scene.name);
+        }
+    }
+}

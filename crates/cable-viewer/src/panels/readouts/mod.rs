@@ -299,7 +299,8 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
         unit::Unit::N_M2.text(judged.bending_stiffness_n_m2)
     );
     figure(ui, "Tightest bend", radius(judged.bend.radius_m), &help, Some((&place(judged.bend), &mut *commands)));
-    let help = "Tightest bend of the computed line. It is not judged: at a corner it depends on the length of the elements";
+    let help =
+        "Tightest bend of the computed line. It is not judged: at a corner it depends on the length of the elements";
     figure(ui, "  of the line", format::length(bend.radius_m), help, Some((&place(bend), &mut *commands)));
     if let Some(free) = solved.free_bend.filter(|b| b.radius_m < limit) {
         let help = "Tightest bend where nothing guides the cable: it kinks there";
