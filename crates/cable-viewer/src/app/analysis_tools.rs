@@ -59,7 +59,7 @@ pub fn tools(state: &AppState) -> [Tool; 8] {
             of_answer(ViewCommand::SetFrictionRange { shown: true, factors: state.analysis.friction_range.factors }),
         ),
         tool(
-            "Chart error over cost of every model",
+            "Plot error against cost for all models",
             "Solves the scene at rest with every model and mesh, and plots error against computing time",
             ToolSection::Solver,
             of_answer(ViewCommand::ChartWorkPrecision),

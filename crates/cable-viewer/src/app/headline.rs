@@ -37,7 +37,7 @@ fn figures(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let current = state.is_current();
     if !current {
         let (said, help) = match state.freshness() {
-            Freshness::Outdated => ("old scene", "This figure is of the last scene that had an answer"),
+            Freshness::Outdated => ("out of date", "This figure is of the last scene that had an answer"),
             Freshness::Draft => ("solving…", "This figure is of a coarse preview"),
             _ => ("solving…", "This figure is of the scene before the last change"),
         };

@@ -18,7 +18,7 @@ use crate::units::labels;
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 29] = [
+const SYNONYMS: [(&str, &str); 32] = [
     ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
@@ -39,15 +39,18 @@ const SYNONYMS: [(&str, &str); 29] = [
     ("slow motion", "slower"),
     ("find safe reach", "map reachability range"),
     ("mark the greatest", "largest maximum tension budget break down where from"),
-    ("friction range", "less more friction ribbon uncertainty sensitivity"),
+    ("friction range", "show less and more friction ribbon uncertainty sensitivity"),
     ("resume from", "go on continue"),
     ("show the latest", "present now end"),
     ("restart the solver", "crash thread"),
+    ("same drag stiffness", "hand for every cable"),
+    ("drag speed limit", "fastest hand"),
+    ("previous run", "undo restart swap exchange"),
     ("cancel solving", "stop abort"),
     ("quit", "exit close"),
     ("new scene", "create empty"),
     ("colour by", "color"),
-    ("chart error", "work precision accuracy tolerance speed mesh compare"),
+    ("plot error", "chart over cost of every model work precision accuracy tolerance speed mesh compare"),
 ];
 
 /// Opens a scene of the catalogue.

@@ -144,10 +144,7 @@ fn analyses(state: &AppState) -> Vec<PaletteEntry> {
         view("Cancel comparison", ViewCommand::EndModelComparison),
         view("Cancel chart", ViewCommand::EndWorkPrecision),
         view("Safe reach: there and back, or there only", ViewCommand::SetSafeReachOptions(both_ways)),
-        view(
-            "Show less and more friction",
-            ViewCommand::SetFrictionRange { shown: !friction.on, factors: friction.factors },
-        ),
+        view("Show friction range", ViewCommand::SetFrictionRange { shown: !friction.on, factors: friction.factors }),
         view("Unmark the place on the cable", ViewCommand::SetTensionMarker(None)),
     ];
     all.extend(
@@ -198,8 +195,8 @@ fn forms(state: &AppState) -> Vec<PaletteEntry> {
     let own = |name: &str, item| select(format!("{name}…"), item);
     let mut all = vec![
         own("Same number of segments for every cable", Item::Solver),
-        own("Same stiffness of the hand for every cable", Item::Solver),
-        own("Reset tolerance, fastest hand, segments", Item::Solver),
+        own("Same drag stiffness for all cables", Item::Solver),
+        own("Reset tolerance, drag speed limit, segments", Item::Solver),
         own("Wind changes with time", Item::Environment),
         own("Reset gravity, wind to the right, wind upwards, temperature rise", Item::Environment),
         own("Fixed number of segments", Item::Cable(cable)),
@@ -253,13 +250,13 @@ fn places(state: &AppState) -> Vec<PaletteEntry> {
         ("highest", Some(summary_of_cable.highest)),
         ("sag", summary_of_cable.sag.map(|s| s.at)),
         ("least tension", Some(summary_of_cable.least_tension.at)),
-        ("touchdowns", summary_of_cable.touchdowns.first().map(|t| t.at)),
+        ("touchdown points", summary_of_cable.touchdowns.first().map(|t| t.at)),
     ] {
         all.extend(at.map(|at| to(name, [at.x_m, at.y_m])));
     }
     for (name, bend) in [
-        ("tightest bend", summary_of_cable.tightest_bend),
-        ("bend at a guide", summary_of_cable.judged_bend.map(|j| j.bend)),
+        ("tightest bend", summary_of_cable.judged_bend.map(|j| j.bend).or(summary_of_cable.tightest_bend)),
+        ("bend of the line", summary_of_cable.tightest_bend),
         ("bend away from guides", found.free_bend),
     ] {
         all.extend(bend.map(|b| to(name, [b.x_m, b.y_m])));

@@ -118,9 +118,9 @@ fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
         ("Track force", format::force(r.thrust_n), "Force of the tracks along the ground"),
         (
-            "Traction",
-            format!("{} of available traction", format::percent(share)),
-            "Track force as a share of friction times normal force: at 100 % the tracks slip",
+            "Traction used",
+            format::percent(share),
+            "Track force as a share of what the tracks can hold, friction times normal force: at 100 % the tracks slip",
         ),
         ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
         ("Pull of the cable", format::force(pull_n), "On its hitch; it slows the robot by the balance of forces"),

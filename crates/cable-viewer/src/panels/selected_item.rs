@@ -107,6 +107,14 @@ fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
     }
 }
 
+/// Help of the row with the components of a force.
+const COMPONENTS_HELP: &str = "Its horizontal and its vertical component";
+
+/// The components of a force, N, with their directions.
+fn components(force_n: [f64; 2]) -> String {
+    format::force_with_direction(force_n).join(", ")
+}
+
 /// The figures of a support.
 fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize) -> Vec<Figure> {
     let Some(s) = answer.cables.get(cable).and_then(|c| c.supports.get(support)) else { return Vec::new() };
@@ -116,9 +124,12 @@ fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize)
     let place = if torn_off { support_position(state, cable, support).unwrap_or(now) } else { now };
     let mut rows = vec![
         ("Force on it", format::force(s.reaction_x_n.hypot(s.reaction_y_n)), "Force of the cable on the support"),
-        ("  to the right", format::force(s.reaction_x_n), "Its horizontal component"),
-        ("  upwards", format::force(s.reaction_y_n), "Its vertical component"),
-        ("Now at", format::position(place), "Where it is at this time; the position above is where it is sent"),
+        ("  components", components([s.reaction_x_n, s.reaction_y_n]), COMPONENTS_HELP),
+        (
+            "Current position",
+            format::position(place),
+            "Where it is at this time; the position above is where it is sent",
+        ),
     ];
     if torn_off {
         rows.push(("Holds", "nothing, torn off".to_owned(), "The cable broke away from it"));
@@ -149,8 +160,7 @@ fn of_obstacle(answer: &Solution, name: &str) -> Vec<Figure> {
         ("Friction", format::force(sum(|c| c.friction_n.abs())), "Sum of the friction forces"),
         ("Lying on it", format::length(sum(|c| c.ends_m - c.begins_m)), "Length of cable in contact"),
         ("Force on it", format::force(force[0].hypot(force[1])), "Of all cables together"),
-        ("  to the right", format::force(force[0]), "Its horizontal component"),
-        ("  upwards", format::force(force[1]), "Its vertical component"),
+        ("  components", components(force), COMPONENTS_HELP),
     ]
 }
 
@@ -163,7 +173,7 @@ fn of_load(state: &AppState, answer: &Solution, k: usize) -> Vec<Figure> {
     let steady = load.force_n.map(|[x, y]| ("Force", format::force(x.hypot(y)), "The same at every time"));
     let there = [
         ("Tension there", format::force(node.tension_n), "Tension of the cable beside it"),
-        ("Now at", format::position([node.x_m, node.y_m]), "Where it acts at this time"),
+        ("Current position", format::position([node.x_m, node.y_m]), "Where it acts at this time"),
     ];
     steady.into_iter().chain(there).collect()
 }

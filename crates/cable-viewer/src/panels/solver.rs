@@ -33,7 +33,7 @@ const SEGMENTS: PropertyQuantity = PropertyQuantity {
 };
 
 const HAND: PropertyQuantity = PropertyQuantity {
-    name: "Fastest hand",
+    name: "Drag speed limit",
     unit: Unit::M_PER_S,
     usual: [0.1, 20.0],
     logarithmic: true,
@@ -136,7 +136,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
         |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.solver.settings });
     let mut stated = stiffness.is_some();
     let help = "Off: for each cable, so stiff that its whole load stretches the spring by 1 % of the cable's length";
-    if checkbox(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
+    if checkbox(ui, &mut stated, "Same drag stiffness for all cables").on_hover_text(help).changed() {
         // The choice of the present cable, which is as wide as any.
         let of_cable =
             problems(&state.document.scene).ok().and_then(|all| all.first().map(|p| hand::default_hand_stiffness(p)));

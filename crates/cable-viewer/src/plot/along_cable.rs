@@ -16,7 +16,7 @@ pub const TITLE: &str = "Along the cable";
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";
 /// Name of the greatest of the inner steps.
-const PEAK: &str = "Peak since the frame before";
+const PEAK: &str = "Peak since last frame";
 /// A peak is marked where it is above the line by more than this part of it. Smaller: every frame
 /// of a swing has a mark on its line; larger: a warning names more than the graph shows.
 const MIN_PEAK_FRACTION: f64 = 0.01;

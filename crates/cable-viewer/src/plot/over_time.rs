@@ -76,7 +76,7 @@ fn graph(ui: &mut Ui, state: &AppState, pins: &[String], view: GraphView, title:
         mark: state.live.recording.shown_s,
         // A single instant is no line.
         hint: (state.live.history.samples.len() < 2 && state.analysis.references.iter().all(|r| r.run.is_none()))
-            .then_some("Play draws this over time"),
+            .then_some("Press Play to fill this graph"),
         export: view.export == Some(title),
     };
     let mut touched = show(ui, &graph, &lines(state, scene, pins, measure, seen, Some(columns)));

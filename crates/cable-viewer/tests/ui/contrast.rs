@@ -110,7 +110,9 @@ fn text_and_graphics_stand_off_what_is_behind_them_in_both_themes() {
         for (k, line) in LINES.into_iter().enumerate() {
             ask(&format!("line {k} of a graph"), line, visuals.extreme_bg_color, 3.0);
         }
-        for (what, colour) in [("service", plot::SERVICE), ("breaking", plot::BREAKING), ("tolerance", plot::TOLERANCE_MARK)] {
+        for (what, colour) in
+            [("service", plot::SERVICE), ("breaking", plot::BREAKING), ("tolerance", plot::TOLERANCE_MARK)]
+        {
             ask(&format!("mark of {what} in a graph"), colour, visuals.extreme_bg_color, 3.0);
         }
         // Lines of risk lie on the safe-reach map from the service tension on, each over one of the

@@ -270,18 +270,18 @@ fn issue_020_a_fault_leaves_the_field_under_the_pointer_where_it_is() {
 #[test]
 fn the_form_of_what_is_picked_begins_at_its_top() {
     let mut harness = open(catalog::tank_robot());
-    harness.get_by_label_contains("Show less and more friction").scroll_to_me();
+    harness.get_by_label_contains("Show friction range").scroll_to_me();
     harness.run_steps(3);
-    let lowest = harness.get_by_label_contains("Show less and more friction").rect();
+    let lowest = harness.get_by_label_contains("Show friction range").rect();
     assert!(lowest.bottom() < 780.0, "the panel is scrolled to its end: {lowest:?}");
     harness.get_by_label("Select umbilical").click();
     harness.run_steps(4);
     let name = harness.get_by_label("Deselect").rect();
     assert!(name.top() > 170.0 && name.bottom() < 400.0, "{name:?}");
     // It stays where the user scrolls it to.
-    harness.get_by_label_contains("Show less and more friction").scroll_to_me();
+    harness.get_by_label_contains("Show friction range").scroll_to_me();
     harness.run_steps(4);
-    assert!(harness.get_by_label_contains("Show less and more friction").rect().bottom() < 780.0);
+    assert!(harness.get_by_label_contains("Show friction range").rect().bottom() < 780.0);
     // A click on the cable asks where its tension comes from: the answer stood below the form.
     let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from: StartEnd::Slacker };
     apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(marker))));

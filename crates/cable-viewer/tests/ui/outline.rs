@@ -88,7 +88,7 @@ fn the_right_panel_follows_the_selection() {
         (catalog::tank(), "Select umbilical", "Cable “umbilical”", &["Cable preset", "Length slider"]),
         (catalog::tank(), "Select Scene", "The scene", &["Scene name", "Map"]),
         (catalog::tank(), "Select Environment", "The environment", &["Gravity", "Plan view"]),
-        (catalog::tank(), "Select Solver", "The solver", &["Tolerance", "FEM", "Chart error over cost"]),
+        (catalog::tank(), "Select Solver", "The solver", &["Tolerance", "FEM", "Plot error against cost"]),
         (catalog::robot_drive(), "Select robot", "The robot", &["Pull of the cable", "Add drive", "Robot facing"]),
     ] {
         let mut harness = open(scene);

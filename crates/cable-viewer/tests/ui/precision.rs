@@ -34,7 +34,7 @@ fn every_model_and_mesh_is_charted_with_the_choice_and_its_reason() {
     select(&mut harness, Item::Solver);
     harness.set_size(egui::Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
-    click(&mut harness, "Chart error over cost");
+    click(&mut harness, "Plot error against cost");
     harness.get_by_label("Progress of the chart");
     charted(&mut harness);
     let Progress::Done(found) = state(&harness).analysis.work_precision.clone() else { panic!("no chart") };
@@ -97,5 +97,5 @@ fn a_chart_that_is_cancelled_keeps_its_part() {
     std::thread::sleep(Duration::from_millis(100));
     harness.run_steps(3);
     assert_eq!(part(&harness), kept, "nothing is added once it was ended");
-    harness.get_by_label("Chart error over cost");
+    harness.get_by_label("Plot error against cost");
 }

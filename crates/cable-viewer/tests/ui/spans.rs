@@ -201,7 +201,7 @@ fn s19_the_ribbon_of_friction_repeats_what_a_hand_did() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
     let now = answer(&harness).max_tension().tension_n;
     assert!(now > 1.05 * still, "{now} N of {still} N: it was drawn");
-    click(&mut harness, "Show less and more friction");
+    click(&mut harness, "Show friction range");
     let found = ribbon(&mut harness);
     let [low, likely, high] = found.most_n;
     assert!((likely / now - 1.0).abs() < 1e-6, "{likely} N for {now} N");
@@ -216,7 +216,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     harness.set_size(Vec2::new(1400.0, 1800.0));
     play(&mut harness, 110);
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
-    click(&mut harness, "Show less and more friction");
+    click(&mut harness, "Show friction range");
     let found = ribbon(&mut harness);
     harness.run_steps(2);
     let [low, likely, high] = found.most_n;
@@ -246,7 +246,7 @@ fn friction_that_is_not_known_well_is_a_ribbon_of_tension() {
     );
     let found = ribbon(&mut harness);
     assert!((found.most_n[0] / found.most_n[2] - 1.0).abs() < 1e-12, "{:?}", found.most_n);
-    click(&mut harness, "Show less and more friction");
+    click(&mut harness, "Show friction range");
     let figure = harness.get_by_role_and_label(Role::Figure, "Over time");
     assert!(!figure.accesskit_node().description().unwrap_or_default().contains("friction"));
 }

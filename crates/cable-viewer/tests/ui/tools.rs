@@ -19,7 +19,7 @@ const HEADINGS: [(&str, &str); 7] = [
     ("Pin this result", "Compare"),
     ("Compare all models", "Compare"),
     ("Find the friction range", "Friction range"),
-    ("Chart error over cost of every model", "Selected"),
+    ("Plot error against cost for all models", "Selected"),
     ("Compare with the likely bending stiffness", "Readouts"),
 ];
 
@@ -62,14 +62,14 @@ fn the_palette_has_the_same_verbs() {
         harness.step();
     }
     harness.run_steps(20);
-    assert!(harness.query_by_label("Show less and more friction").is_none());
+    assert!(harness.query_by_label("Show friction range").is_none());
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::P);
     harness.run_steps(3);
     harness.event(egui::Event::Text("find the friction".to_owned()));
     harness.run_steps(2);
     harness.key_press(egui::Key::Enter);
     harness.run_steps(20);
-    harness.get_by_label("Show less and more friction");
+    harness.get_by_label("Show friction range");
     assert!(harness.state().state.analysis.friction_range.on);
 }
 

@@ -49,8 +49,8 @@ fn texts_of_the_wording_table() {
     select(&mut harness, Item::Robot);
     harness.set_size(egui::Vec2::new(1280.0, 2400.0));
     harness.run_steps(3);
-    harness.get_by_label("Position, m");
-    assert!(harness.query_all_by_label_contains("% of available traction").count() == 1);
+    harness.get_by_label("Start position, m");
+    harness.get_by_label("Traction used");
     let (path, text, unit_m) = (String::new(), "0 0\n1 0\n".to_owned(), "1".to_owned());
     apply(&mut harness, Command::File(FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))));
     harness.get_by_label("1 unit =");

@@ -160,7 +160,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
         ],
     },
     Tutorial {
-        title: "Compare and keep",
+        title: "Compare and save",
         scene: "hanging-span",
         steps: &[
             act("Pin this result", "Press Pin this result under Compare on the right", |s| {

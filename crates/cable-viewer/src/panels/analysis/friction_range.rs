@@ -35,7 +35,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut on = view.on;
     let help = "Repeats the run with less and with more friction and shows the spread as a ribbon in the tension graphs. Computed \
                 in the background while time is paused; what you moved or drove by hand is repeated";
-    if checkbox(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
+    if checkbox(ui, &mut on, "Show friction range").on_hover_text(help).changed() {
         commands.push(Command::View(ViewCommand::SetFrictionRange { shown: on, factors: view.factors }));
     }
     if !on {

@@ -210,15 +210,15 @@ fn of_line(map: &ReachMap, trip: Trip, limit: ReachLimit, tension_n: f64) -> Str
         let next = next.min_by(|a, b| (a.at_m[0] - x).abs().total_cmp(&(b.at_m[0] - x).abs()));
         match next.map(|p| (p.jammed, p.tension_n(trip))) {
             None => "",
-            Some((true, _)) => " (beyond, its cable is in the way)",
-            Some((_, n)) if n.is_nan() => " (beyond, no solution found)",
-            Some((_, n)) if n.is_infinite() => " (beyond, the cable is too short)",
+            Some((true, _)) => " (farther, the robot runs into its cable)",
+            Some((_, n)) if n.is_nan() => " (farther, no solution found)",
+            Some((_, n)) if n.is_infinite() => " (farther, the cable is too short)",
             Some(_) => "",
         }
     };
     let from = match limit {
         ReachLimit::Service => "Safe from",
-        ReachLimit::Breaking => "No break from",
+        ReachLimit::Breaking => "Unbroken from",
     };
     format!("{from} x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }

@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let help = "Solves the scene at rest with every model, with 25 to 400 segments where it has a mesh, in the background, and charts \
                     how far each is from the answer with the settings in use, and how long it takes";
         let can = state.document.fault.is_none();
-        let button = ui.add_enabled(can, egui::Button::new("Chart error over cost")).on_hover_text(help);
+        let button = ui.add_enabled(can, egui::Button::new("Plot error against cost")).on_hover_text(help);
         if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
             commands.push(Command::View(ViewCommand::ChartWorkPrecision));
         }

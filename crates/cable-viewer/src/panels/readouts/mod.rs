@@ -242,17 +242,23 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
     );
     figure(
         ui,
-        "Length now",
+        "Stretched length",
         text,
         "Unstretched length with strain and heat, and how much that is above the unstretched length",
         None,
     );
-    let text = format!("{}, {} suspended", format::length(first.lying_m), format::length(first.suspended_m));
-    figure(ui, "Lying", text, "Unstretched length on ground and other obstacles, and the rest of it", None);
+    let text = format!("{}, {} free", format::length(first.lying_m), format::length(first.suspended_m));
+    figure(
+        ui,
+        "On the ground",
+        text,
+        "Unstretched length on ground and other obstacles, and the rest of it, which hangs free",
+        None,
+    );
     if let Some(down) = first.touchdowns.first() {
-        let text = format!("{}, first at {}", first.touchdowns.len(), format::length(down.at.arc_length_m));
+        let text = format!("{}, from {}", first.touchdowns.len(), format::length(down.at.arc_length_m));
         let help = "Places where it comes down on something or leaves it";
-        figure(ui, "Touchdowns", text, help, Some((&node(down.at), &mut *commands)));
+        figure(ui, "Touchdown points", text, help, Some((&node(down.at), &mut *commands)));
     }
     let least = first.least_tension;
     let help = "The least tension anywhere on the cable";
@@ -471,9 +477,9 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     }
     // The sum of the forces on a moving cable is no fault: it accelerates the cable.
     let (name, help) = if solved.assumptions.inertia {
-        ("Accelerating force", "Sum of all forces on the cable, as a share of the largest: it accelerates the cable")
+        ("Net force", "Sum of all forces on the cable, as a share of the largest: it accelerates the cable")
     } else {
-        ("Out of balance", "Sum of all forces on the cable, as a share of the largest: 0 in perfect balance")
+        ("Force imbalance", "Sum of all forces on the cable, as a share of the largest: 0 in perfect balance")
     };
     match &first.balance {
         Some(b) => figure(ui, name, format::percent(b.relative_residual), help, None),

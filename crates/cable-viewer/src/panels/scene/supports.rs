@@ -122,7 +122,7 @@ fn place_apart(ui: &mut Ui, state: &AppState, row: &Row<'_>) {
     if (at[0] - begins[0]).hypot(at[1] - begins[1]) <= COINCIDENCE_M {
         return;
     }
-    labelled(ui, "Now at", &format!("Position now of {}", row.value.name), |ui| {
+    labelled(ui, "Current position", &format!("Position now of {}", row.value.name), |ui| {
         let help = "Where it is at the time shown; above stands where the scene puts it at the start";
         ui.weak(format::position(at)).on_hover_text(help)
     });
