@@ -61,10 +61,11 @@ pub fn length(value_m: f64) -> String {
     scaled(value_m, system::Kind::Length)
 }
 
-/// A length and the least one that is allowed, m, both in the unit of that: `163.0 ≥ 140.0 mm`.
+/// A length and the least one that is allowed, m, both in the unit of the greater: `163.0 ≥ 140.0
+/// mm`.
 #[must_use]
 pub fn length_beside_limit(value_m: f64, limit_m: f64) -> String {
-    let (symbol, si) = system::for_size(system::Kind::Length, limit_m);
+    let (symbol, si) = system::for_size(system::Kind::Length, value_m.max(limit_m));
     let sign = if value_m < limit_m { '<' } else { '≥' };
     format!("{} {sign} {}", significant(value_m / si, DIGITS), quantity(limit_m / si, DIGITS, symbol))
 }
