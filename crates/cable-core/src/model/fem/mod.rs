@@ -192,9 +192,9 @@ impl FemModel {
         copy
     }
 
-    /// The errors of an answer that neglects so much bending, relative to the greatest tension. Where
-    /// a cable turns by φ under a tension T, its stiffness lowers the tension by T φ²/8 and moves it
-    /// aside by ½φ √(EI/T).
+    /// The errors of an answer that neglects so much bending, relative to the greatest tension.
+    /// Where a cable turns by φ under a tension T, its stiffness lowers the tension by T φ²/8 and
+    /// moves it aside by ½φ √(EI/T).
     fn error_of_neglected_bending(&self, answer: &CableSolution, part: f64) -> ErrorEstimates {
         let aside_m = elastica::bend_length(&self.problem, answer) * (2.0 * part).sqrt();
         ErrorEstimates { position_m: Some(aside_m), ..ErrorEstimates::of_forces(answer, Some(part)) }

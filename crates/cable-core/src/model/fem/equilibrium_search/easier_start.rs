@@ -37,15 +37,16 @@ const STIFFENING_FRACTIONS: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 const COARSEST_BARS: usize = 40;
 
 impl FemModel {
-    /// Finds the first equilibrium from that on a mesh of few bars (nested iteration): slack travels
-    /// along the bars in waves, which takes as many steps as there are bars, and how it comes to
-    /// rest should not depend on their number. The coarse mesh may take as many iterations as this
-    /// one. Returns None, without a change, if it has no equilibrium near by or is not coarser.
+    /// Finds the first equilibrium from that on a mesh of few bars (nested iteration): slack
+    /// travels along the bars in waves, which takes as many steps as there are bars, and how it
+    /// comes to rest should not depend on their number. The coarse mesh may take as many iterations
+    /// as this one. Returns None, without a change, if it has no equilibrium near by or is not
+    /// coarser.
     pub(in crate::model::fem) fn rest_on_coarser_mesh(&mut self) -> Option<StepReport> {
         let bars = self.stepper.cable.meshing.even_bars;
         let halvings = (bars / COARSEST_BARS).checked_ilog2().filter(|halvings| *halvings > 0)?;
         let max_work = self.tuning().equilibrium.max_work;
-        let mut coarse = self.laid_on(bars >> halvings)?;
+        let mut coarse = self.on_other_bars(bars >> halvings)?;
         coarse.is_comparison = true;
         coarse.limit_work(max_work >> halvings);
         let on_coarse = coarse.find_equilibrium().ok()?;
@@ -135,8 +136,8 @@ impl FemModel {
         (outcome, is_flexible.then_some(first))
     }
 
-    /// Starts from the equilibrium of an easier cable, with less axial stiffness (continuation): the
-    /// search with nearly inextensible bars is ill-conditioned although the equilibrium hardly
+    /// Starts from the equilibrium of an easier cable, with less axial stiffness (continuation):
+    /// the search with nearly inextensible bars is ill-conditioned although the equilibrium hardly
     /// differs. That search may itself start from an easier one. Cables with an axial stiffness
     /// below `eased_loads`, in whole loads, are not eased like this. All searches share the `work`.
     pub(in crate::model::fem) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
