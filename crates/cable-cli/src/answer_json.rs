@@ -121,7 +121,8 @@ pub struct InertiaEntry {
     /// Greatest speed over the square root of gravity times length; null without gravity.
     pub froude_number: Option<f64>,
     /// True if a run without inertia differs by more than the tolerance or has no answer; null if
-    /// none accompanies this run, or if the difference is not clear.
+    /// none accompanies this run, if it was given up as not cheaper, or if the difference is not
+    /// clear.
     pub matters: Option<bool>,
 }
 

@@ -34,7 +34,7 @@ const ITERATIONS: [(&str, Model, usize, usize); 19] = [
     ("floor-drag", Model::MassSpring, 119, 16230),
     ("rubble-drop", Model::Fem, 0, 439),
     ("rubble-drop", Model::MassSpring, 1, 14130),
-    ("plan-posts", Model::Fem, 61, 1512),
+    ("plan-posts", Model::Fem, 62, 1552),
     ("plan-posts", Model::MassSpring, 5, 11280),
 ];
 

@@ -128,6 +128,30 @@ fn a_fall_does_not_go_without_inertia() {
     assert_eq!(effect.without.and_then(|w| w.force_error), None);
 }
 
+/// A slow cable that can touch itself: steps without inertia search longer than those with it. That
+/// such a run is given up says nothing about inertia.
+#[test]
+fn issue_016_a_run_without_inertia_that_costs_more_leaves_the_verdict_open() {
+    let mut scene = shaken(8.5, [0.0, 0.0]);
+    let shape = Shape::Terrain { points_m: vec![[-6.0, 0.0], [30.0, 0.0]] };
+    scene.obstacles = vec![Obstacle { name: "floor".into(), shape, friction: Some(0.5) }];
+    let cable = &mut scene.cables[0];
+    (cable.self_contact, cable.length_m, cable.segments) = (true, 6.0, Some(60));
+    (cable.axial_stiffness_n, cable.linear_density_kg_per_m) = (4e5, 0.6);
+    cable.supports = vec![Support::fixed("left", [0.0, 2.0]), Support::fixed("right", [2.0, 2.0])];
+    cable.supports[1].motion = Some(Motion { times_s: vec![0.0, 20.0], points_m: vec![[2.0, 2.0], [1.8, 2.0]] });
+    let question = Question::History(Inertia::Dynamic);
+    let mut sim = Simulation::for_question(scene, Model::Auto, Settings::default(), question).unwrap();
+    sim.settle().unwrap();
+    let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_next_cheaper();
+    timeline.at(Instant::nearest(5.0), |_| ()).unwrap();
+    let effect = timeline.inertia_effect().expect("a run with inertia");
+    println!("{effect}");
+    let without = effect.without.expect("a run beside it");
+    assert!(without.costs_more && without.force_error.is_none(), "{effect}");
+    assert_eq!(effect.matters(), None);
+}
+
 #[test]
 fn a_run_without_inertia_has_no_such_numbers() {
     let mut sim = Simulation::new(shaken(8.5, [0.0, -0.1]), Model::Auto).unwrap();

@@ -201,3 +201,30 @@ fn issue_016_a_stiff_cable_stays_where_it_was_laid() {
         }
     }
 }
+
+/// A stiff cable between posts in plan view, compressed all along: the length over which it bends
+/// was that of a tension, of which there is none, and the answer was refused for an error without
+/// a number.
+#[test]
+fn issue_016_errors_of_a_cable_under_compression_are_numbers() {
+    let mut scene = catalog::cable_alone(
+        [11.0, 0.6, 4e5],
+        vec![Support::fixed("start", [0.0, 0.0]), Support::fixed("end", [9.0, 0.6])],
+    );
+    scene.view = View::Plan;
+    let cable = &mut scene.cables[0];
+    (cable.bending_stiffness_n_m2, cable.segments, cable.diameter_m) = (5.0, Some(160), 0.0282);
+    cable.route_m = [[0.0, 0.0], [1.5, 0.75], [2.6, 0.92], [3.4, 0.82], [4.4, 0.1], [5.5, -0.92], [6.5, -0.95]]
+        .into_iter()
+        .chain([[7.5, -0.3], [9.0, 0.6]])
+        .collect();
+    for (name, center_m) in [("first", [3.0, 0.35]), ("second", [6.0, -0.4])] {
+        let shape = Shape::Circle { center_m, radius_m: 0.3 };
+        scene.obstacles.push(Obstacle { name: name.into(), shape, friction: Some(0.4) });
+    }
+    let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+    let answer = sim.settle().unwrap_or_else(|why| panic!("{why}"));
+    let cable = &answer.cables[0];
+    assert!(cable.nodes.iter().all(|n| n.tension_n < 0.0));
+    assert!(cable.errors.is_finite() && cable.errors.position_m.is_some_and(|p| p < 11.0), "{:?}", cable.errors);
+}

@@ -246,6 +246,7 @@ fn others() -> Vec<Box<dyn Sentence>> {
         neglects: NeglectedEffect::Obstacles,
         force_error,
         position_error_m: force_error.map(|_| 0.123),
+        costs_more: false,
     };
     vec![
         Box::new(ModelReason::Requested),

@@ -43,6 +43,7 @@ pub(super) fn next_cheaper<'a>(
             neglects,
             force_error: errors.map(|e| e[0]).filter(|e| e.is_finite()),
             position_error_m: errors.map(|e| e[1]).filter(|e| e.is_finite()),
+            costs_more: false,
         };
         if let Some(before) = found {
             let worse = |a: Option<f64>, b: Option<f64>| Some(larger(a?, b?));

@@ -36,4 +36,8 @@ pub struct NextCheaper {
     /// Greatest distance between the two places of a point of the cable, m; `None` if the cheaper
     /// model has no answer.
     pub position_error_m: Option<f64>,
+    /// True if it was given up because it took more work than the answer itself: its errors are not
+    /// known, and it is not cheaper.
+    #[serde(default)]
+    pub costs_more: bool,
 }

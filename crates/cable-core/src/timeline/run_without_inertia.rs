@@ -9,10 +9,10 @@ use crate::model::{Inertia, Model, Settings};
 use crate::simulation::Simulation;
 use crate::solution::{ErrorEstimates, NeglectedEffect, NextCheaper};
 
-/// Number of iterations on all nodes by which the run without inertia may be ahead of the run that
-/// it accompanies. Smaller: a slow motion that begins with a hard step has no answer; larger: what
-/// is let go costs more to follow without inertia than with it.
-const ITERATIONS_AHEAD: usize = 1000;
+/// Greatest number of iterations of a step on all nodes, and that by which the run without inertia
+/// may be ahead of the run that it accompanies. Smaller: slow motions with hard steps have no
+/// answer; larger: what is let go costs more to follow without inertia than with it.
+const MAX_ITERATIONS: usize = 1000;
 
 /// The run without inertia beside one that has it.
 #[derive(Debug)]
@@ -23,8 +23,11 @@ pub(super) struct RunWithoutInertia {
     /// Number of steps of the run that make one of it, and those that the run has made.
     times: u64,
     count: u64,
-    /// Work that it may still do, in iterations times nodes.
+    /// Work that it may still do, in all and in a step, in iterations times nodes.
     work_left: usize,
+    max_work_of_step: usize,
+    /// True if it was given up because it had taken more work than the run beside it.
+    costs_more: bool,
     /// The most by which the two differed so far, and at rest: of their meshes, or of what friction
     /// allows.
     apart: ErrorEstimates,
@@ -60,7 +63,7 @@ impl RunWithoutInertia {
         let simulation = Simulation::for_question(run.scene().clone(), Model::Auto, settings, question);
         let simulation = simulation.ok().and_then(|mut simulation| simulation.settle().is_ok().then_some(simulation));
         let nodes: usize = run.answers().iter().map(|answer| answer.nodes.len()).sum();
-        let work_left = ITERATIONS_AHEAD * nodes;
+        let max_work = MAX_ITERATIONS * nodes;
         // A cast takes what is too long for one step as one.
         let times = ((QUASI_STATIC_STEP_S / step_s).round() as u64).max(1);
         let model = simulation.as_ref().map_or(Model::Auto, Simulation::model);
@@ -68,7 +71,18 @@ impl RunWithoutInertia {
         let apart =
             ErrorEstimates { max_tension_n: Some(0.0), support_force_n: Some(0.0), position_m: Some(0.0), ..none };
         let greatest_n = vec![0.0; run.answers().len()];
-        let mut this = Self { simulation, model, times, count: 0, work_left, apart, apart_at_rest: apart, greatest_n };
+        let mut this = Self {
+            simulation,
+            model,
+            times,
+            count: 0,
+            work_left: max_work,
+            max_work_of_step: max_work,
+            costs_more: false,
+            apart,
+            apart_at_rest: apart,
+            greatest_n,
+        };
         this.compare(run);
         this.apart_at_rest = this.apart;
         Some(this)
@@ -81,12 +95,15 @@ impl RunWithoutInertia {
         if !self.count.is_multiple_of(self.times) {
             return;
         }
-        self.simulation = self.simulation.take().and_then(|mut own| {
-            own.limit_work(self.work_left);
-            advance(&mut own, run.time_s(), Inertia::QuasiStatic).ok()?;
-            self.work_left = self.work_left.checked_sub(own.work_of_step())?;
-            Some(own)
-        });
+        let Some(mut own) = self.simulation.take() else { return };
+        own.limit_work(self.work_left.min(self.max_work_of_step));
+        let steps = advance(&mut own, run.time_s(), Inertia::QuasiStatic).is_ok();
+        let left = self.work_left.checked_sub(own.work_of_step());
+        // A step that fails with all that a step may take is none that more steps would have paid
+        // for.
+        self.costs_more = left.is_none() || !steps && self.work_left < self.max_work_of_step;
+        self.work_left = left.unwrap_or(0);
+        self.simulation = (steps && !self.costs_more).then_some(own);
         self.compare(run);
     }
 
@@ -124,6 +141,7 @@ impl RunWithoutInertia {
             neglects: NeglectedEffect::Inertia,
             force_error: forces.map(|force| in_parts_of(force, most)),
             position_error_m: beyond(self.apart.position_m, self.apart_at_rest.position_m),
+            costs_more: self.costs_more,
         }
     }
 }

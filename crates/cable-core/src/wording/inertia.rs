@@ -21,6 +21,9 @@ impl Sentence for InertiaEffect {
             None => "it is not clear whether inertia matters",
         };
         let tolerance = at_most(self.tolerance, 2);
-        format!("{mach}{froude}: {verdict} at tolerance {tolerance} ({})", without.sentence(units))
+        let hidden = self.hidden_by().filter(|_| self.matters().is_none()).map_or_else(String::new, |error| {
+            format!("; at rest the two differ by {} % already", significant(100.0 * error, 2))
+        });
+        format!("{mach}{froude}: {verdict} at tolerance {tolerance} ({}{hidden})", without.sentence(units))
     }
 }

@@ -78,6 +78,9 @@ impl Sentence for NextCheaper {
             NeglectedEffect::Inertia => "inertia",
         };
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
+            if self.costs_more {
+                return format!("{}, ignoring {what}, takes more work and was not followed to the end", self.model);
+            }
             let fails =
                 if self.neglects == NeglectedEffect::Inertia { "does not come to the end" } else { "has no answer" };
             return format!("{}, ignoring {what}, {fails}", self.model);

@@ -194,10 +194,13 @@ impl FemModel {
 
     /// The errors of an answer that neglects so much bending, relative to the greatest tension.
     /// Where a cable turns by φ under a tension T, its stiffness lowers the tension by T φ²/8 and
-    /// moves it aside by ½φ √(EI/T).
+    /// moves it aside by ½φ √(EI/T), and by no more than its length. Compression counts as tension,
+    /// as it does in that part.
     fn error_of_neglected_bending(&self, answer: &CableSolution, part: f64) -> ErrorEstimates {
-        let aside_m = elastica::bend_length(&self.problem, answer) * (2.0 * part).sqrt();
-        ErrorEstimates { position_m: Some(aside_m), ..ErrorEstimates::of_forces(answer, Some(part)) }
+        let greatest_n = answer.nodes.iter().map(|n| n.tension_n.abs()).fold(f64::MIN_POSITIVE, larger);
+        let aside_m = (2.0 * part * (self.problem.bending_stiffness / greatest_n)).sqrt();
+        let position_m = Some(if aside_m < self.problem.length { aside_m } else { self.problem.length });
+        ErrorEstimates { position_m, ..ErrorEstimates::of_forces(answer, Some(part)) }
     }
 
     /// Makes `part` the part that holds the present state.

@@ -554,6 +554,13 @@ pub struct StartTuning {
     /// The same fraction for a stiff cable, whose initial shape is that of a flexible one: its
     /// bending contributes to the support forces. Smaller and larger as above.
     pub max_stiff_force_change: f64,
+    /// Number of bars from which the search for the initial equilibrium starts from that of a
+    /// coarser mesh. Smaller: meshes that need no help are solved twice. Larger: a relaxation of a
+    /// thousand bars takes minutes.
+    pub two_mesh_bars: usize,
+    /// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next.
+    /// Larger: the coarse solution differs from that of the fine mesh.
+    pub mesh_ratio: usize,
     /// Least axial stiffness, in whole loads, of a cable whose search for the initial equilibrium
     /// starts from that of a softer one. Smaller: cables that need no help come to other
     /// equilibria. Larger: slack ones in folds find none (of 300 over posts and beams 10 did not).
@@ -590,6 +597,8 @@ impl Default for StartTuning {
             route_node_bars: 0.3,
             max_force_change: 0.1,
             max_stiff_force_change: 0.5,
+            two_mesh_bars: 500,
+            mesh_ratio: 8,
             eased_loads: 1e5,
             softest_loads: 1e3,
             stiffness_ratio: 10.0,

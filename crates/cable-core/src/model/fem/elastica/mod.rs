@@ -153,7 +153,7 @@ fn is_crushed(problem: &Problem, answer: &CableSolution) -> bool {
 }
 
 /// Length over which a cable bends at the tension of an answer, √(EI/T), m.
-pub fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
+fn bend_length(problem: &Problem, answer: &CableSolution) -> f64 {
     let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(f64::MIN_POSITIVE, larger);
     (problem.bending_stiffness / greatest).sqrt()
 }

@@ -10,7 +10,7 @@ use crate::model::fem::stepper::Stepper;
 use crate::model::fem::system::WorkBudget;
 use crate::model::fem::{FemModel, PresentPart};
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium};
-use crate::model::{Mechanics, StepReport};
+use crate::model::{Mechanics, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Warning};
 
@@ -37,12 +37,17 @@ const STIFFENING_FRACTIONS: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 const COARSEST_BARS: usize = 40;
 
 impl FemModel {
+    /// Finds the first equilibrium of a cable that its own search did not find, from that of an
+    /// easier one. Returns None, without a change, if there is none.
+    pub(in crate::model::fem) fn rest_from_easier_cable(&mut self) -> Option<StepReport> {
+        self.rest_by_stiffening().or_else(|| self.rest_from_coarse_mesh())
+    }
+
     /// Finds the first equilibrium from that on a mesh of few bars (nested iteration): slack
-    /// travels along the bars in waves, which takes as many steps as there are bars, and how it
-    /// comes to rest should not depend on their number. The coarse mesh may take as many iterations
-    /// as this one. Returns None, without a change, if it has no equilibrium near by or is not
-    /// coarser.
-    pub(in crate::model::fem) fn rest_on_coarser_mesh(&mut self) -> Option<StepReport> {
+    /// travels along the bars in waves, which takes as many steps as there are bars. The coarse
+    /// mesh may take as many iterations as this one. Returns None, without a change, if it has no
+    /// equilibrium near by or is not coarser.
+    fn rest_from_coarse_mesh(&mut self) -> Option<StepReport> {
         let bars = self.stepper.cable.meshing.even_bars;
         let halvings = (bars / COARSEST_BARS).checked_ilog2().filter(|halvings| *halvings > 0)?;
         let max_work = self.tuning().equilibrium.max_work;
@@ -73,7 +78,7 @@ impl FemModel {
     /// in steps. Slack that falls upon a robot, or beside it, comes to rest as a flexible cable;
     /// all of the stiffness at once keeps it from there. Returns None, without a change, where a
     /// step is not found.
-    pub(in crate::model::fem) fn rest_by_stiffening(&mut self) -> Option<StepReport> {
+    fn rest_by_stiffening(&mut self) -> Option<StepReport> {
         let (whole, time_s) = (self.problem.bending_stiffness, self.stepper.cable.time());
         if !(whole > 0.0) {
             return None;
@@ -82,7 +87,7 @@ impl FemModel {
         let mut softer: Option<CableSolution> = None;
         for part in STIFFENING_FRACTIONS {
             let problem = Problem { bending_stiffness: part * whole, ..Problem::clone(&self.problem) };
-            let mut model = self.of_easier_cable(problem)?;
+            let mut model = self.of_easier_cable(problem, self.settings)?;
             let rests = match &softer {
                 None => model.settle().is_ok(),
                 Some(softer) => model.stepper.rests_from(softer, time_s, &self.dragged, &mut work),
@@ -94,8 +99,8 @@ impl FemModel {
     }
 
     /// The model of an easier cable at the same supports; None if there is none.
-    fn of_easier_cable(&self, problem: Problem) -> Option<Self> {
-        let model = Self::with_tuning(Arc::new(problem), self.settings, self.tuning().clone()).ok()?;
+    fn of_easier_cable(&self, problem: Problem, settings: Settings) -> Option<Self> {
+        let model = Self::with_tuning(Arc::new(problem), settings, self.tuning().clone()).ok()?;
         // Nobody reads its errors.
         let dragged = self.dragged.clone();
         let mut model = Self { dragged, present: PresentPart::Stepper, is_comparison: true, ..model };
@@ -136,18 +141,25 @@ impl FemModel {
         (outcome, is_flexible.then_some(first))
     }
 
-    /// Starts from the equilibrium of an easier cable, with less axial stiffness (continuation):
-    /// the search with nearly inextensible bars is ill-conditioned although the equilibrium hardly
-    /// differs. That search may itself start from an easier one. Cables with an axial stiffness
-    /// below `eased_loads`, in whole loads, are not eased like this. All searches share the `work`.
+    /// Starts from the equilibrium of an easier cable: on a coarser mesh (nested iteration),
+    /// because slack travels along the bars in waves and relaxation takes as many steps as there
+    /// are bars; and with less axial stiffness (continuation), because the search with nearly
+    /// inextensible bars is ill-conditioned although the equilibrium hardly differs. That search
+    /// may itself start from an easier one. Cables with an axial stiffness below `eased_loads`, in
+    /// whole loads, are not eased like this. All searches share the `work`.
     pub(in crate::model::fem) fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
+        let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let start = self.tuning().start;
+        let segments = if fine > start.two_mesh_bars { Some(fine / start.mesh_ratio) } else { self.settings.segments };
         let (own, load) = (self.problem.axial_stiffness, self.problem.whole_load());
-        if !(load > 0.0 && own >= eased_loads * load) {
+        let is_eased = load > 0.0 && own >= eased_loads * load;
+        let axial_stiffness = if is_eased { own / start.stiffness_ratio } else { own };
+        if segments == self.settings.segments && axial_stiffness == own {
             return;
         }
-        let problem = Problem { axial_stiffness: own / start.stiffness_ratio, ..Problem::clone(&self.problem) };
-        let Some(mut easier) = self.of_easier_cable(problem) else { return };
+        let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
+        let settings = Settings { segments, ..self.settings };
+        let Some(mut easier) = self.of_easier_cable(problem, settings) else { return };
         easier.stepper.cable.meshing.slides = self.stepper.cable.meshing.slides;
         easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
         easier.stepper.solver.work_left = *work;

@@ -96,10 +96,7 @@ impl FemModel {
         let begins = !self.stepper.rested && self.stepper.cable.time() == 0.0;
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
-        let is_unknown = matches!(start, SpansStart::Unknown);
-        let from_coarser = if begins && is_unknown { self.rest_on_coarser_mesh() } else { None };
-        let is_sought = from_coarser.is_none();
-        if begins && is_sought && !matches!(start, SpansStart::Accepted(_)) {
+        if begins && !matches!(start, SpansStart::Accepted(_)) {
             // Easier cables are meant to save work, so together they may do as much as the search
             // itself.
             let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
@@ -108,11 +105,7 @@ impl FemModel {
         let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
         let first = self.stepper.cable.state();
         let before = if has_equilibrium { None } else { Some(self.stepper.clone()) };
-        let found = match from_coarser {
-            Some(report) => Ok(report),
-            None if has_equilibrium => self.stepper.settle(&self.dragged),
-            None => self.settle_unknown(),
-        };
+        let found = if has_equilibrium { self.stepper.settle(&self.dragged) } else { self.settle_unknown() };
         let found = match start {
             SpansStart::Accepted(warnings) => found.map(|mut report| {
                 report.warnings.extend(warnings);
@@ -121,7 +114,7 @@ impl FemModel {
             SpansStart::Slides(slides) => self.rest_after_slide(found, &first, slides),
             SpansStart::Rejected | SpansStart::Unknown => found,
         };
-        let found = if begins { found.or_else(|why| self.rest_by_stiffening().ok_or(why)) } else { found };
+        let found = if begins { found.or_else(|why| self.rest_from_easier_cable().ok_or(why)) } else { found };
         if let (Err(_), Some(before)) = (&found, before) {
             self.stepper = before;
         }
