@@ -7,9 +7,9 @@ use super::NextCheaper;
 /// verdicts are those of finer runs then, 5 are near the tolerance and 29 open; with 1, four are
 /// wrong.
 const MAX_OPEN_TOLERANCES: f64 = 3.0;
-/// Differences at rest above this multiple of the tolerance hide the effect of inertia. Larger: 2 of
-/// 2200 motions from rests that differ by 4 % are said not to need inertia; smaller: with 1, more
-/// verdicts are open.
+/// Differences at rest above this multiple of the tolerance hide the effect of inertia. Larger: 2
+/// of 2200 motions from rests that differ by 4 % are said not to need inertia; smaller: with 1,
+/// more verdicts are open.
 const MAX_TOLERANCES_AT_REST: f64 = 10.0;
 
 /// Speeds of a run beside those at which inertia shows.
