@@ -191,7 +191,7 @@ impl Camera {
         ];
     }
 
-    /// Moves the view up where more than [`MOST_GROUND`] of its height is below a height, m; what
+    /// Moves the view up where more than `MOST_GROUND` of its height is below a height, m; what
     /// hints cover at the foot (points) does not count.
     pub fn hide_ground(&mut self, canvas: Rect, lowest_m: f64, hints_height: f32) {
         let most = (MOST_GROUND * canvas.height()).max(BORDER[3]) + hints_height;
