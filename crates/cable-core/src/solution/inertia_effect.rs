@@ -48,12 +48,10 @@ impl InertiaEffect {
     pub fn matters(&self) -> Option<bool> {
         let without = self.without?;
         let Some(apart) = without.force_error else { return (!without.costs_more).then_some(true) };
-        let is_hidden = self.hidden_by().is_some();
-        match apart {
-            _ if apart > MAX_OPEN_TOLERANCES * self.tolerance => Some(true),
-            _ if apart <= self.tolerance && !is_hidden => Some(false),
-            _ => None,
+        if apart <= self.tolerance && self.hidden_by().is_none() {
+            return Some(false);
         }
+        (apart > MAX_OPEN_TOLERANCES * self.tolerance).then_some(true)
     }
 
     /// The difference at rest, if it hides smaller effects of inertia.

@@ -31,9 +31,9 @@ pub(in crate::model::fem) enum SpansStart {
 /// found nowhere.
 const STIFFENING_FRACTIONS: [f64; 5] = [0.0, 1e-3, 1e-2, 0.1, 0.3];
 
-/// Least number of bars of the mesh on which a cable first comes to rest, which has up to twice as
-/// many. Smaller: shapes of the coarse mesh lie elsewhere among obstacles than those of finer ones;
-/// larger: the search on the coarse mesh takes longer.
+/// Least number of bars of the coarse mesh from which a finer one may come to rest; it has up to
+/// twice as many. Smaller: shapes of the coarse mesh lie elsewhere among obstacles than those of
+/// finer ones; larger: the search on the coarse mesh takes longer.
 const COARSEST_BARS: usize = 40;
 
 impl FemModel {
